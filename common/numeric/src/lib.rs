@@ -1,0 +1,3 @@
+//! Numbers: scalars, lanes, the precision ladder, small linear algebra, seeded randomness.
+
+pub mod rational;

@@ -1,0 +1,1 @@
+//! Expressions as text, in the notation that the Bertini-classic and our JSON format share.
