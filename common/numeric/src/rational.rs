@@ -88,8 +88,7 @@ impl ComplexRational {
         if other.is_zero() {
             return None;
         }
-        let modulus =
-            Rational::from(&other.re * &other.re) + Rational::from(&other.im * &other.im);
+        let modulus = Rational::from(&other.re * &other.re) + Rational::from(&other.im * &other.im);
         let product = self.multiply(&other.conjugate());
         Some(Self::new(product.re / &modulus, product.im / &modulus))
     }

@@ -12,9 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// One node of an [`Expressions`] arena. Children always have smaller numbers.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct NodeId(pub u32);
 
 /// Elementary functions; they may be applied to constants only.
@@ -135,7 +133,8 @@ impl Expressions {
                 self.dependence(*a)
             }
         };
-        let id = NodeId(u32::try_from(self.nodes.len()).expect("an arena holds at most 2^32 nodes"));
+        let id =
+            NodeId(u32::try_from(self.nodes.len()).expect("an arena holds at most 2^32 nodes"));
         self.nodes.push(node.clone());
         self.dependence.push(dependence);
         self.index.insert(node, id);
@@ -240,7 +239,9 @@ impl Expressions {
         );
         if let Some(y) = self.as_constant(b).cloned() {
             if let Some(x) = self.as_constant(a) {
-                let quotient = x.divide(&y).expect("a zero denominator is refused where it is read");
+                let quotient = x
+                    .divide(&y)
+                    .expect("a zero denominator is refused where it is read");
                 return self.constant(quotient);
             }
             let inverse = ComplexRational::real(1)

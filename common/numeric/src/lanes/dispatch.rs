@@ -1,0 +1,150 @@
+//! Choose the instruction set once, around a whole chunk of work.
+//!
+//! `dispatch(job)` runs `job.run()` compiled for the best instruction set of
+//! this machine. The only `unsafe` code of the mathematics stands here.
+
+/// Work that is compiled once per instruction set.
+///
+/// `run` and everything below it must be `#[inline(always)]`, and it is a trait
+/// method because a closure cannot be marked so; measured: otherwise each
+/// operation is a call and all is 17 to 20 times slower
+/// (`continuation/benches/tracking.rs` has the guard).
+pub trait Job {
+    /// What the work gives.
+    type Output;
+    /// Does the work.
+    fn run(self) -> Self::Output;
+}
+
+/// An instruction set with fused multiply-add.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InstructionSet {
+    /// x86-64 with AVX-512 F, DQ, VL and FMA.
+    Avx512,
+    /// x86-64 with AVX2 and FMA.
+    Avx2,
+    /// AArch64, where NEON and fused multiply-add are always there.
+    Neon,
+    /// No hardware fused multiply-add: the same bits, but very slow; not for work.
+    Software,
+}
+
+impl InstructionSet {
+    /// The best one that this machine has.
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if std::arch::is_x86_feature_detected!("fma")
+                && std::arch::is_x86_feature_detected!("avx512f")
+                && std::arch::is_x86_feature_detected!("avx512dq")
+                && std::arch::is_x86_feature_detected!("avx512vl")
+            {
+                return Self::Avx512;
+            }
+            if std::arch::is_x86_feature_detected!("fma")
+                && std::arch::is_x86_feature_detected!("avx2")
+            {
+                return Self::Avx2;
+            }
+            Self::Software
+        }
+        #[cfg(target_arch = "aarch64")]
+        {
+            Self::Neon
+        }
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        {
+            Self::Software
+        }
+    }
+
+    /// Its name, as workers announce it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Avx512 => "avx512",
+            Self::Avx2 => "avx2",
+            Self::Neon => "neon",
+            Self::Software => "software",
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+fn run_avx512<J: Job>(job: J) -> J::Output {
+    job.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn run_avx2<J: Job>(job: J) -> J::Output {
+    job.run()
+}
+
+/// Runs the job with the best instruction set of this machine.
+pub fn dispatch<J: Job>(job: J) -> J::Output {
+    dispatch_on(InstructionSet::detect(), job)
+}
+
+/// Runs the job with one instruction set, for tests that compare them.
+///
+/// An instruction set that this machine lacks falls back to plain code, which gives the same bits.
+pub fn dispatch_on<J: Job>(instruction_set: InstructionSet, job: J) -> J::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let best = InstructionSet::detect();
+        if instruction_set == InstructionSet::Avx512 && best == InstructionSet::Avx512 {
+            // SAFETY: the features were detected on this machine just now;
+            // `lanes_agree_on_every_instruction_set` runs both and compares.
+            return unsafe { run_avx512(job) };
+        }
+        if instruction_set == InstructionSet::Avx2
+            && matches!(best, InstructionSet::Avx2 | InstructionSet::Avx512)
+        {
+            // SAFETY: as above; a machine with the AVX-512 set has AVX2.
+            return unsafe { run_avx2(job) };
+        }
+    }
+    let _ = instruction_set;
+    job.run()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Lanes;
+    use crate::scalar::{Complex, Real};
+
+    struct Horner([f64; 16]);
+
+    impl Job for Horner {
+        type Output = [u64; 16];
+        #[inline(always)]
+        fn run(self) -> [u64; 16] {
+            let x = Complex {
+                re: Lanes(self.0),
+                im: Lanes([0.25; 16]),
+            };
+            let mut sum = Complex::<Lanes<16>>::from_f64((), 1.0, 0.0);
+            for k in 1..40 {
+                sum.mul(&x);
+                sum.re.add(&Lanes::from_f64((), 1.0 / f64::from(k)));
+            }
+            sum.div(&x);
+            std::array::from_fn(|i| sum.re.0[i].to_bits() ^ sum.im.0[i].to_bits())
+        }
+    }
+
+    #[test]
+    fn lanes_agree_on_every_instruction_set() {
+        let x = std::array::from_fn(|i| (i as f64 - 7.3) / 9.1);
+        let plain = dispatch_on(InstructionSet::Software, Horner(x));
+        for set in [
+            InstructionSet::Avx512,
+            InstructionSet::Avx2,
+            InstructionSet::Neon,
+        ] {
+            assert_eq!(plain, dispatch_on(set, Horner(x)), "{}", set.name());
+        }
+    }
+}

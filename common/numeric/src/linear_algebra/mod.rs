@@ -1,0 +1,7 @@
+//! Small dense linear algebra for any scalar and any width.
+//!
+//! Systems of mechanisms have some tens of unknowns; at that size general
+//! libraries spend their time on blocking and dispatch. Larger matrices belong
+//! to a library.
+
+pub mod matrix;
