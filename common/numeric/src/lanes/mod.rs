@@ -79,6 +79,9 @@ impl<const W: usize> Real for Lanes<W> {
     fn from_control(_: (), value: &Self) -> Self {
         *value
     }
+    fn bits(_: ()) -> u32 {
+        53
+    }
     #[inline(always)]
     fn context(&self) -> Self::Context {}
     #[inline(always)]

@@ -57,6 +57,9 @@ impl Real for f64 {
     fn from_control(_: (), value: &f64) -> Self {
         *value
     }
+    fn bits(_: ()) -> u32 {
+        53
+    }
     #[inline(always)]
     fn context(&self) -> Self::Context {}
     #[inline(always)]

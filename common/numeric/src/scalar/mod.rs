@@ -54,6 +54,8 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
     fn from_rational(context: Self::Context, value: &Rational) -> Self;
     /// A control number, exactly.
     fn from_control(context: Self::Context, value: &Self::Control) -> Self;
+    /// Bits of the significand of numbers made with this context.
+    fn bits(context: Self::Context) -> u32;
     /// The context that makes numbers of this one's precision.
     fn context(&self) -> Self::Context;
     /// `self = other`.
@@ -215,6 +217,19 @@ impl<R: Real> Complex<R> {
         self.im.mul_add(&a.re, &b.im);
     }
 
+    /// `self = a*a`: real part `-(a.im*a.im) + a.re*a.re`, imaginary part
+    /// `(a.re + a.re)*a.im`, the products fused as in [`Complex::set_product`].
+    #[inline(always)]
+    pub fn set_square(&mut self, a: &Self) {
+        self.re.set(&a.im);
+        self.re.mul(&a.im);
+        self.re.neg();
+        self.re.mul_add(&a.re, &a.re);
+        self.im.set(&a.re);
+        self.im.add(&a.re);
+        self.im.mul(&a.im);
+    }
+
     /// `self *= other`.
     #[inline(always)]
     pub fn mul(&mut self, other: &Self) {
@@ -245,6 +260,20 @@ impl<R: Real> Complex<R> {
     pub fn scale(&mut self, r: &R) {
         self.re.mul(r);
         self.im.mul(r);
+    }
+
+    /// `self += r*a` with `r` real.
+    #[inline(always)]
+    pub fn scale_add(&mut self, r: &R, a: &Self) {
+        self.re.mul_add(r, &a.re);
+        self.im.mul_add(r, &a.im);
+    }
+
+    /// `self -= r*a` with `r` real.
+    #[inline(always)]
+    pub fn scale_sub(&mut self, r: &R, a: &Self) {
+        self.re.mul_sub(r, &a.re);
+        self.im.mul_sub(r, &a.im);
     }
 
     /// `|self|^2`.

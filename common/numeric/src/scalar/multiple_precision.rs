@@ -26,6 +26,9 @@ impl Real for MultiplePrecision {
     fn from_control(bits: u32, value: &f64) -> Self {
         Self(Float::with_val(bits, *value))
     }
+    fn bits(bits: u32) -> u32 {
+        bits
+    }
     fn context(&self) -> u32 {
         self.0.prec()
     }
