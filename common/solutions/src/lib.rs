@@ -1,1 +1,2 @@
-
+//! What the endpoints mean.
+#![forbid(unsafe_code)]

@@ -1,0 +1,27 @@
+//! Homotopies: H(x, t) from t = 1, where solutions are known, to t = 0, where they are wanted.
+
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// What is deformed into what. Pure data; `prepare` makes a program of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum HomotopyKind {
+    /// `(1-t) F + t gamma G` with the start system G that belongs to the start points.
+    StraightLine {
+        /// Values of the system's parameters, if it has any.
+        parameters: Vec<Complex64>,
+    },
+    /// F(x; p(t)) with p from the start parameters to each target in turn.
+    /// Item number i starts at start point `i % starts` and goes to target `i / starts`.
+    Parameter {
+        /// Where the start points solve the system.
+        start: Vec<Complex64>,
+        /// Where they are wanted; every one has the length of `start`.
+        targets: Vec<Vec<Complex64>>,
+    },
+    /// A homotopy of the user's own: the system's path variable is t.
+    PathVariable {
+        /// Values of the system's other parameters, at their places; the path variable's own is ignored.
+        parameters: Vec<Complex64>,
+    },
+}

@@ -1,0 +1,81 @@
+//! PathResult: what is known about one path when it ends. The noun that leaves this floor.
+//!
+//! Facts only, no time and no worker, so that two executions of one path can be
+//! compared bit for bit. What needs all paths at once (multiplicity, duplicates,
+//! classes) is `solutions`' business.
+
+use crate::tracker::outcome::PathOutcome;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// A path's number: its index in the stage that first started it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct PathIndex(pub u64);
+
+/// The coordinates of a point in the arithmetic that it was found in.
+///
+/// Homogeneous coordinates, group after group in the order of the system's
+/// groups: an affine group of n variables has n + 1 coordinates, the
+/// homogenising one first; a homogeneous group has its variables. Each group is
+/// scaled so that its largest coordinate has modulus about 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Coordinates {
+    /// Hardware doubles.
+    Double(Vec<Complex64>),
+}
+
+impl Coordinates {
+    /// Rounded to doubles.
+    pub fn to_double(&self) -> &[Complex64] {
+        match self {
+            Self::Double(values) => values,
+        }
+    }
+}
+
+/// How much was done for one path. The same on every machine and at every width.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Accepted steps.
+    pub steps: u32,
+    /// Rejected steps.
+    pub rejections: u32,
+    /// Evaluations of the homotopy with its derivatives, each followed by an elimination.
+    pub evaluations: u32,
+    /// Row exchanges that left the stage's preferred row order.
+    pub exchanges: u32,
+    /// Turns around the target that the endgame made.
+    pub turns: u32,
+}
+
+/// All that is known about one path when it ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PathResult {
+    /// The path, by its index in the stage that first started it.
+    pub origin: PathIndex,
+    /// 0 for the first time that the path is tracked, then 1, 2, ...
+    pub attempt: u16,
+    /// Why the path ended.
+    pub outcome: PathOutcome,
+    /// Where it ended. For a failed path: where it was last.
+    pub endpoint: Coordinates,
+    /// The path parameter where it ended: 0, except for a failed path.
+    pub t: Complex64,
+    /// Largest |F_i| at the endpoint, each equation and each group scaled to 1.
+    pub residual: f64,
+    /// Condition number of the Jacobian at the endpoint, rows scaled; infinite where unknown.
+    pub condition: f64,
+    /// Estimated error of the endpoint, relative to its largest coordinate.
+    pub accuracy: f64,
+    /// How many turns around t = 0 bring the path back to itself; `None` where it was not asked
+    /// (a regular endpoint has winding number 1).
+    pub winding_number: Option<u32>,
+    /// For each affine group: how often the homogenising coordinate turned around 0 while the
+    /// path made its `winding_number` turns around t = 0. Positive: the coordinate goes to 0
+    /// with t (the endpoint is at infinity). Empty where no turn was made.
+    pub infinity_turns: Vec<i32>,
+    /// Highest precision used, in bits.
+    pub precision_bits: u32,
+    /// How much was done.
+    pub counts: Counts,
+}

@@ -1,0 +1,171 @@
+//! StartPoints: any start point by its index, so that a chunk is only a range.
+
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// BLAKE3 digest of a stored object, by which it is fetched and checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct Digest(pub [u8; 32]);
+
+impl std::fmt::Display for Digest {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+/// Where the start points of a stage come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum StartPoints {
+    /// The solutions of x_i^(d_i) = 1: made from the index.
+    TotalDegree {
+        /// Degrees of the equations.
+        degrees: Vec<u32>,
+    },
+    /// The solutions of a product of linear forms: made from the index.
+    Multihomogeneous {
+        /// Degree of each equation in each group: `degrees[equation][group]`.
+        degrees: Vec<Vec<u32>>,
+        /// Dimension of each group: how many equations take their factor from it.
+        dimensions: Vec<u32>,
+    },
+    /// Given points, stored as one object.
+    Stored {
+        /// Digest of the object's bytes (see [`StoredPoints::to_bytes`]).
+        object: Digest,
+        /// How many points it holds.
+        count: u64,
+    },
+    /// Some of the start points of another kind, by their indices there: paths tracked again.
+    Selected {
+        /// Where the indices count.
+        base: Box<StartPoints>,
+        /// The chosen indices, ascending.
+        indices: Vec<u64>,
+    },
+}
+
+/// Points as an object: the variables of the system in order, one point after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoredPoints {
+    /// Coordinates per point.
+    pub dimension: usize,
+    /// All coordinates, point after point.
+    pub coordinates: Vec<Complex64>,
+}
+
+/// An object that holds no points.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the object of start points is damaged: {0}")]
+pub struct DamagedPoints(&'static str);
+
+const MAGIC: &[u8; 8] = b"CGNPTS01";
+
+impl StoredPoints {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.coordinates.len() / self.dimension.max(1)
+    }
+
+    /// True when there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.coordinates.is_empty()
+    }
+
+    /// One point.
+    pub fn point(&self, index: usize) -> &[Complex64] {
+        &self.coordinates[index * self.dimension..(index + 1) * self.dimension]
+    }
+
+    /// The bytes of the object: magic, dimension, then coordinates, little endian.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(16 + 16 * self.coordinates.len());
+        bytes.extend_from_slice(MAGIC);
+        bytes.extend_from_slice(&(self.dimension as u64).to_le_bytes());
+        for z in &self.coordinates {
+            bytes.extend_from_slice(&z.re.to_le_bytes());
+            bytes.extend_from_slice(&z.im.to_le_bytes());
+        }
+        bytes
+    }
+
+    /// Reads what [`Self::to_bytes`] wrote.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, DamagedPoints> {
+        let word = |at: usize| -> Option<[u8; 8]> { bytes.get(at..at + 8)?.try_into().ok() };
+        if word(0).as_ref() != Some(MAGIC) {
+            return Err(DamagedPoints("it does not begin with the right magic"));
+        }
+        let dimension = word(8)
+            .map(u64::from_le_bytes)
+            .and_then(|d| usize::try_from(d).ok())
+            .filter(|&d| d > 0)
+            .ok_or(DamagedPoints("it has no dimension"))?;
+        let body = &bytes[16..];
+        let size = dimension
+            .checked_mul(16)
+            .ok_or(DamagedPoints("its dimension is absurd"))?;
+        if body.len() % size != 0 {
+            return Err(DamagedPoints("its length is no multiple of its dimension"));
+        }
+        let coordinates = body
+            .chunks_exact(16)
+            .map(|c| {
+                let part = |k: usize| {
+                    f64::from_le_bytes(c[k..k + 8].try_into().expect("a chunk has 16 bytes"))
+                };
+                Complex64::new(part(0), part(8))
+            })
+            .collect::<Vec<_>>();
+        if coordinates
+            .iter()
+            .any(|z| !z.re.is_finite() || !z.im.is_finite())
+        {
+            return Err(DamagedPoints("a coordinate is not finite"));
+        }
+        Ok(Self {
+            dimension,
+            coordinates,
+        })
+    }
+}
+
+impl StartPoints {
+    /// How many start points there are; `None` when they are more than fit in 64 bits.
+    pub fn count(&self) -> Option<u64> {
+        match self {
+            Self::TotalDegree { degrees } => degrees
+                .iter()
+                .try_fold(1u64, |product, &d| product.checked_mul(u64::from(d))),
+            Self::Multihomogeneous {
+                degrees,
+                dimensions,
+            } => crate::start_systems::multihomogeneous::bezout_number(degrees, dimensions),
+            Self::Stored { count, .. } => Some(*count),
+            Self::Selected { indices, .. } => Some(indices.len() as u64),
+        }
+    }
+
+    /// The index, in the stage that first started it, of item `index`.
+    pub fn origin(&self, index: u64) -> u64 {
+        match self {
+            Self::Selected { base, indices } => base.origin(indices[index as usize]),
+            _ => index,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stored_points_come_back() {
+        let points = StoredPoints {
+            dimension: 2,
+            coordinates: (0..6).map(|k| Complex64::new(f64::from(k), -0.5)).collect(),
+        };
+        let bytes = points.to_bytes();
+        assert_eq!(StoredPoints::from_bytes(&bytes).unwrap(), points);
+        assert!(StoredPoints::from_bytes(&bytes[..bytes.len() - 1]).is_err());
+        assert!(StoredPoints::from_bytes(b"").is_err());
+    }
+}

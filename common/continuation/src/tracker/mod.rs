@@ -1,0 +1,4 @@
+//! How one path is followed: settings, state, steps, outcome.
+
+pub mod outcome;
+pub mod settings;

@@ -1,0 +1,51 @@
+//! PathOutcome: why a path ended. A failed path is a value, not an error.
+
+use serde::{Deserialize, Serialize};
+
+/// Why a path ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum PathOutcome {
+    /// Reached t = 0, and Newton's method confirms a regular endpoint there.
+    Regular,
+    /// The endgame settled on an endpoint at which the Jacobian is singular.
+    Singular,
+    /// Stopped before that.
+    Failed(Failure),
+}
+
+/// Why a path was given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Failure {
+    /// The start point does not solve the start system.
+    InvalidStartPoint,
+    /// The step became too small for the arithmetic: the path needs a higher rung of precision.
+    StepTooSmall,
+    /// The path took more steps than the settings allow.
+    TooManySteps,
+    /// The endgame found no radius at which winding number and endpoint are stable.
+    EndgameUnsettled,
+    /// Tracking this path ended the process that tracked it, every time.
+    KilledItsWorker,
+}
+
+impl Failure {
+    /// All reasons, for tables of counts.
+    pub const ALL: [Self; 5] = [
+        Self::InvalidStartPoint,
+        Self::StepTooSmall,
+        Self::TooManySteps,
+        Self::EndgameUnsettled,
+        Self::KilledItsWorker,
+    ];
+
+    /// The reason in words, for people.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::InvalidStartPoint => "the start point does not solve the start system",
+            Self::StepTooSmall => "the step became too small for double precision",
+            Self::TooManySteps => "more steps than the settings allow",
+            Self::EndgameUnsettled => "the endgame found no stable endpoint",
+            Self::KilledItsWorker => "tracking it ended the worker's process, every time",
+        }
+    }
+}

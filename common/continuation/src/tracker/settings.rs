@@ -1,0 +1,103 @@
+//! Settings: every number that decides a path, with unit, default, and where the default comes from.
+
+use serde::{Deserialize, Serialize};
+
+/// What decides how a path is tracked. Part of what a path's result is a function of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Estimated error of an accepted point, relative to its largest coordinate.
+    pub tolerance: f64,
+    /// Largest first Newton correction after a prediction, relative to the largest coordinate.
+    /// Larger is faster and jumps between paths more often; 1e-2 was seen to jump
+    /// on the nine-point problem.
+    pub predictor_tolerance: f64,
+    /// Largest step in t.
+    pub max_step: f64,
+    /// Smallest step, relative to the distance that is left to the next target in t.
+    pub min_step: f64,
+    /// Accepted and rejected steps of one path.
+    pub max_steps: u32,
+    /// Where the endgame begins, in |t|.
+    pub endgame_boundary: f64,
+    /// Radius of the first turn around t = 0, for paths that do not end regularly before it.
+    pub endgame_radius: f64,
+    /// The endgame gives up below this radius.
+    pub endgame_min_radius: f64,
+    /// Most turns that may be needed until a path closes.
+    pub max_winding_number: u32,
+    /// Condition number above which an endpoint is left to the endgame for singular endpoints.
+    pub singular_condition: f64,
+    /// Relative accuracy at which a singular endpoint counts as settled.
+    pub endgame_tolerance: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-10,
+            predictor_tolerance: 1e-4,
+            max_step: 0.1,
+            min_step: 1e-13,
+            max_steps: 20_000,
+            endgame_boundary: 0.1,
+            endgame_radius: 1e-3,
+            endgame_min_radius: 1e-9,
+            max_winding_number: 32,
+            singular_condition: 1e8,
+            endgame_tolerance: 1e-8,
+        }
+    }
+}
+
+/// Named settings; each names its trade.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Preset {
+    /// A hundred times tighter prediction: about three times slower, fewest path jumps.
+    Careful,
+    /// What the known counts were checked with.
+    #[default]
+    Default,
+    /// Faster, more path jumps for the crossing check to repair.
+    Fast,
+    /// Fastest; for experiments only.
+    Reckless,
+}
+
+impl Preset {
+    /// The settings that the name stands for.
+    pub fn settings(self) -> Settings {
+        let default = Settings::default();
+        match self {
+            Self::Careful => Settings {
+                predictor_tolerance: 1e-6,
+                max_step: 0.05,
+                ..default
+            },
+            Self::Default => default,
+            Self::Fast => Settings {
+                predictor_tolerance: 1e-3,
+                ..default
+            },
+            Self::Reckless => Settings {
+                predictor_tolerance: 1e-2,
+                max_step: 0.25,
+                ..default
+            },
+        }
+    }
+}
+
+impl Settings {
+    /// Tighter settings for a path that is tracked again, `attempt` counted from 1.
+    #[must_use]
+    pub fn tightened(&self, attempt: u16) -> Self {
+        let mut tighter = self.clone();
+        for _ in 0..attempt {
+            tighter.predictor_tolerance *= 0.01;
+            tighter.max_step *= 0.5;
+            tighter.max_steps = tighter.max_steps.saturating_mul(4);
+        }
+        tighter.predictor_tolerance = tighter.predictor_tolerance.max(1e-9);
+        tighter
+    }
+}

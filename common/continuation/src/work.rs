@@ -1,0 +1,57 @@
+//! Stage and Work: what is asked of workers. A chunk is a range of a stage's items.
+//!
+//! Pure data: it travels to workers, who build everything else from it and the system.
+
+use crate::homotopies::HomotopyKind;
+use crate::start_points::StartPoints;
+use crate::tracker::settings::Settings;
+use serde::{Deserialize, Serialize};
+
+/// A stage's number within its job, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct StageId(pub u32);
+
+/// What a worker does with each item.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Work {
+    /// Track the path of each start point to its end.
+    Track,
+}
+
+/// One kind of work over the start points of one homotopy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// Its number within the job.
+    pub id: StageId,
+    /// What is done with each item.
+    pub work: Work,
+    /// What is deformed into what.
+    pub homotopy: HomotopyKind,
+    /// Where the paths begin.
+    pub start_points: StartPoints,
+    /// How they are tracked.
+    pub settings: Settings,
+    /// Seed of everything random in the homotopy. Tracking a path again keeps it.
+    pub seed: u64,
+    /// 0 for the first time that the paths are tracked, then 1, 2, ...
+    pub attempt: u16,
+}
+
+impl Stage {
+    /// How many items the stage has; `None` when they are more than fit in 64 bits.
+    pub fn items(&self) -> Option<u64> {
+        match (&self.homotopy, &self.start_points) {
+            // An item of a repetition is named by its index among all targets and starts.
+            (_, StartPoints::Selected { indices, .. }) => Some(indices.len() as u64),
+            (HomotopyKind::Parameter { targets, .. }, starts) => {
+                starts.count()?.checked_mul(targets.len() as u64)
+            }
+            (_, starts) => starts.count(),
+        }
+    }
+
+    /// The index of item `item` in the stage that first started its path.
+    pub fn origin(&self, item: u64) -> u64 {
+        self.start_points.origin(item)
+    }
+}

@@ -1,0 +1,2 @@
+//! The wire: generated messages, checked conversions, digests.
+#![forbid(unsafe_code)]

@@ -1,0 +1,2 @@
+//! The server of paths and its command-line client.
+#![forbid(unsafe_code)]

@@ -1,0 +1,2 @@
+//! The process that tracks.
+#![forbid(unsafe_code)]
