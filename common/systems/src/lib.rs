@@ -2,4 +2,5 @@
 #![forbid(unsafe_code)]
 
 pub mod expression;
+pub mod formats;
 pub mod system;

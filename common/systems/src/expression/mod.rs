@@ -5,7 +5,12 @@
 //! at once, so that the graph of a system holds no node twice and no work that
 //! could have been done before.
 
+pub mod build;
 pub mod display;
+pub mod exact;
+pub mod fault;
+pub mod parse;
+pub mod token;
 
 use cognate_numeric::rational::{ComplexRational, Rational};
 use serde::{Deserialize, Serialize};

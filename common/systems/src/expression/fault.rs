@@ -1,0 +1,181 @@
+//! Faults: what can be wrong in a text, and where; the formats add file, line and column.
+
+use crate::formats::limits::Limit;
+use std::fmt;
+
+/// A range of bytes of a text.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Span {
+    /// First byte.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+}
+
+impl Span {
+    /// From the start of this span to the end of another.
+    pub fn to(self, other: Span) -> Span {
+        Span {
+            start: self.start,
+            end: other.end,
+        }
+    }
+}
+
+/// Something wrong at a place of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Where.
+    pub span: Span,
+    /// What.
+    pub problem: Problem,
+}
+
+impl Fault {
+    /// A fault at a place.
+    pub fn new(span: Span, problem: Problem) -> Self {
+        Self { span, problem }
+    }
+
+    /// One thing was expected, another found.
+    pub fn expected(span: Span, expected: impl Into<String>, found: impl Into<String>) -> Self {
+        Self::new(
+            span,
+            Problem::Expected {
+                expected: expected.into(),
+                found: found.into(),
+            },
+        )
+    }
+
+    /// A limit was passed.
+    pub fn limit(span: Span, limit: Limit, found: impl ToString) -> Self {
+        Self::new(
+            span,
+            Problem::Limit {
+                limit,
+                found: found.to_string(),
+            },
+        )
+    }
+}
+
+/// What can be wrong in an input.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Problem {
+    /// The text does not follow its grammar.
+    Expected {
+        /// What would have been right here.
+        expected: String,
+        /// What stands here.
+        found: String,
+    },
+    /// A name that was never declared.
+    UnknownName(String),
+    /// A name that is declared a second time.
+    DuplicateName {
+        /// The name.
+        name: String,
+        /// Where it was declared first, in words.
+        first: String,
+    },
+    /// A name that has a meaning of its own.
+    ReservedName {
+        /// The name.
+        name: String,
+        /// What it stands for.
+        meaning: &'static str,
+    },
+    /// A function that is declared but never defined.
+    Undefined(String),
+    /// Definitions that depend on themselves: each name needs the next, the last the first.
+    Cycle(Vec<String>),
+    /// There is nothing to solve for.
+    NoVariables,
+    /// There is nothing to solve.
+    NoEquations,
+    /// An equation that holds always or never.
+    ConstantEquation(String),
+    /// A definition that depends on more than its kind allows.
+    TooDependent {
+        /// The name that is defined.
+        name: String,
+        /// What it was declared as.
+        kind: &'static str,
+        /// What it must not contain.
+        without: &'static str,
+    },
+    /// A denominator, or the base of a negative power, that contains a variable.
+    DivisionByVariables,
+    /// A denominator that is exactly 0.
+    DivisionByZero,
+    /// An elementary function or a root of something that is not constant.
+    NotConstant(&'static str),
+    /// A limit was passed.
+    Limit {
+        /// Which one.
+        limit: Limit,
+        /// How large the input is.
+        found: String,
+    },
+    /// Something that a later version may read.
+    NotInThisVersion(String),
+}
+
+impl Problem {
+    /// What would have been right.
+    pub fn expected(&self) -> String {
+        match self {
+            Problem::Expected { expected, .. } => expected.clone(),
+            Problem::UnknownName(_) => "a declared name".into(),
+            Problem::DuplicateName { .. } => "a new name".into(),
+            Problem::ReservedName { .. } => "a name without a meaning of its own".into(),
+            Problem::Undefined(name) => format!("a definition `{name} = ...`"),
+            Problem::Cycle(_) => "definitions that do not depend on themselves".into(),
+            Problem::NoVariables => "at least one variable".into(),
+            Problem::NoEquations => "at least one equation".into(),
+            Problem::ConstantEquation(_) => "an equation that contains a variable".into(),
+            Problem::TooDependent { kind, without, .. } => format!("a {kind} without {without}"),
+            Problem::DivisionByVariables => "a denominator without variables".into(),
+            Problem::DivisionByZero => "a denominator that is not 0".into(),
+            Problem::NotConstant(what) => format!("a constant as {what}"),
+            Problem::Limit { limit, .. } => format!("at most {} {}", limit.value, limit.what),
+            Problem::NotInThisVersion(_) => "something that this version reads".into(),
+        }
+    }
+
+    /// What stands there instead.
+    pub fn found(&self) -> String {
+        match self {
+            Problem::Expected { found, .. } => found.clone(),
+            Problem::UnknownName(name) => format!("the unknown name `{name}`"),
+            Problem::DuplicateName { name, first } => format!("`{name}`, which {first}"),
+            Problem::ReservedName { name, meaning } => format!("`{name}`, which is {meaning}"),
+            Problem::Undefined(name) => format!("none for `{name}`"),
+            Problem::Cycle(names) => format!("the cycle {}", names.join(" -> ")),
+            Problem::NoVariables | Problem::NoEquations => "none".into(),
+            Problem::ConstantEquation(name) => format!("`{name}`, which contains none"),
+            Problem::TooDependent { name, .. } => format!("`{name}`, which contains some"),
+            Problem::DivisionByVariables => "one with variables".into(),
+            Problem::DivisionByZero => "0".into(),
+            Problem::NotConstant(_) => "an expression with variables or parameters".into(),
+            Problem::Limit { limit, found } => {
+                format!("{found} (not in this version: limit {})", limit.name)
+            }
+            Problem::NotInThisVersion(what) => what.clone(),
+        }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Problem::DivisionByVariables => f.write_str(
+                "not in this version: division by an expression with variables; \
+                 multiply the denominator out",
+            ),
+            Problem::NotInThisVersion(what) => write!(f, "not in this version: {what}"),
+            _ => write!(f, "expected {}, found {}", self.expected(), self.found()),
+        }
+    }
+}

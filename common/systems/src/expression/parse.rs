@@ -1,0 +1,352 @@
+//! Parse: from the text of an expression to its steps in postfix order.
+//!
+//! One loop with a stack of open operators, so that no nesting can exhaust the
+//! machine's stack. Names are only collected here; what they stand for may be
+//! written later in the file, and is asked when the graph is built (`build.rs`).
+
+use super::Function;
+use super::fault::{Fault, Problem, Span};
+use super::token::{TokenKind, Tokens};
+use crate::formats::limits;
+use cognate_numeric::rational::Rational;
+use rug::Integer;
+use rug::ops::Pow;
+use std::collections::HashMap;
+
+/// One step of a stack machine; operators take their operands from the stack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// Puts a number: index into [`Parsed::numbers`].
+    Number(u32),
+    /// Puts what a name stands for: index into [`Names`].
+    Name(u32),
+    /// Puts the imaginary unit.
+    ImaginaryUnit,
+    /// Puts the circle constant.
+    Pi,
+    /// `a + b`.
+    Add,
+    /// `a - b`.
+    Subtract,
+    /// `a * b`.
+    Multiply,
+    /// `a / b`.
+    Divide,
+    /// `a ^ b`.
+    Power,
+    /// `-a`.
+    Negate,
+    /// An elementary function.
+    Call(Function),
+}
+
+/// A step and the place of its own sign in the text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// What is done.
+    pub operation: Operation,
+    /// Where the text says so.
+    pub span: Span,
+}
+
+/// An expression in postfix order.
+#[derive(Clone, Debug, Default)]
+pub struct Parsed {
+    /// The steps.
+    pub steps: Vec<Step>,
+    /// The numbers that occur, exactly.
+    pub numbers: Vec<Rational>,
+    /// The place of the whole expression.
+    pub span: Span,
+}
+
+/// Names of one file, each with a small number.
+#[derive(Clone, Debug, Default)]
+pub struct Names {
+    list: Vec<String>,
+    index: HashMap<String, u32>,
+}
+
+impl Names {
+    /// The number of a name, new if it must be.
+    pub fn intern(&mut self, name: &str) -> u32 {
+        if let Some(&number) = self.index.get(name) {
+            return number;
+        }
+        let number = u32::try_from(self.list.len()).expect("fewer names than bytes in a file");
+        self.list.push(name.into());
+        self.index.insert(name.into(), number);
+        number
+    }
+
+    /// The number of a name that occurred already.
+    pub fn find(&self, name: &str) -> Option<u32> {
+        self.index.get(name).copied()
+    }
+
+    /// The name with a number.
+    pub fn name(&self, number: u32) -> &str {
+        &self.list[number as usize]
+    }
+
+    /// How many names there are.
+    pub fn count(&self) -> usize {
+        self.list.len()
+    }
+}
+
+/// In what the text formats differ.
+#[derive(Clone, Copy, Debug)]
+pub struct Dialect {
+    /// Names of the imaginary unit.
+    pub imaginary: &'static [&'static str],
+    /// Whether `Pi` is the circle constant.
+    pub pi: bool,
+}
+
+impl Dialect {
+    /// Bertini-classic and our JSON.
+    pub const BERTINI: Dialect = Dialect {
+        imaginary: &["I"],
+        pi: true,
+    };
+    /// PHCpack.
+    pub const PHCPACK: Dialect = Dialect {
+        imaginary: &["i", "I"],
+        pi: false,
+    };
+
+    /// What a name means by itself, so that nothing else may be called so.
+    pub fn reserved(&self, name: &str) -> Option<&'static str> {
+        if self.imaginary.contains(&name) {
+            Some("the imaginary unit")
+        } else if self.pi && name == "Pi" {
+            Some("the circle constant")
+        } else if elementary(name).is_some() {
+            Some("an elementary function")
+        } else {
+            None
+        }
+    }
+}
+
+/// The elementary function with this name.
+pub fn elementary(name: &str) -> Option<Function> {
+    Some(match name {
+        "sqrt" => Function::SquareRoot,
+        "exp" => Function::Exponential,
+        "log" => Function::Logarithm,
+        "sin" => Function::Sine,
+        "cos" => Function::Cosine,
+        "tan" => Function::Tangent,
+        _ => return None,
+    })
+}
+
+/// What waits on the stack of operators.
+#[derive(Clone, Copy)]
+enum Open {
+    Bracket,
+    Operator(Operation),
+}
+
+/// How strongly an operator binds: `-x^2` is `-(x^2)`, `-a*b` is `(-a)*b`.
+fn precedence(operation: Operation) -> u8 {
+    match operation {
+        Operation::Add | Operation::Subtract => 1,
+        Operation::Multiply | Operation::Divide => 2,
+        Operation::Negate => 3,
+        Operation::Power => 4,
+        _ => 5,
+    }
+}
+
+fn binary(symbol: char) -> Option<Operation> {
+    Some(match symbol {
+        '+' => Operation::Add,
+        '-' => Operation::Subtract,
+        '*' => Operation::Multiply,
+        '/' => Operation::Divide,
+        '^' => Operation::Power,
+        _ => return None,
+    })
+}
+
+/// Reads the longest expression at the tokens' place; the token after it stays.
+///
+/// `end` says in words what may follow the expression. `written` counts the
+/// steps of a whole file, for the limit on them.
+pub fn expression(
+    tokens: &mut Tokens<'_>,
+    names: &mut Names,
+    dialect: Dialect,
+    end: &str,
+    written: &mut u64,
+) -> Result<Parsed, Fault> {
+    let mut parsed = Parsed::default();
+    let mut open: Vec<(Open, Span)> = Vec::new();
+    let mut operand_next = true;
+    let start = tokens.peek().span;
+    let mut steps = *written;
+    loop {
+        let token = tokens.peek();
+        let mut put = |parsed: &mut Parsed, operation, span| {
+            steps += 1;
+            parsed.steps.push(Step { operation, span });
+        };
+        if operand_next {
+            match token.kind {
+                TokenKind::Number(text) => {
+                    let value = number(text, token.span)?;
+                    let number = Operation::Number(parsed.numbers.len() as u32);
+                    put(&mut parsed, number, token.span);
+                    parsed.numbers.push(value);
+                    operand_next = false;
+                }
+                TokenKind::Name(text) => {
+                    let mut after = tokens.clone();
+                    after.take();
+                    let called = after.peek().kind == TokenKind::Symbol('(');
+                    match elementary(text).filter(|_| called) {
+                        Some(function) => {
+                            open.push((Open::Operator(Operation::Call(function)), token.span));
+                        }
+                        None => {
+                            let operation = if dialect.imaginary.contains(&text) {
+                                Operation::ImaginaryUnit
+                            } else if dialect.pi && text == "Pi" {
+                                Operation::Pi
+                            } else {
+                                Operation::Name(names.intern(text))
+                            };
+                            put(&mut parsed, operation, token.span);
+                            operand_next = false;
+                        }
+                    }
+                }
+                TokenKind::Symbol('(') => open.push((Open::Bracket, token.span)),
+                TokenKind::Symbol('-') => {
+                    open.push((Open::Operator(Operation::Negate), token.span));
+                }
+                TokenKind::Symbol('+') => {}
+                _ => {
+                    return Err(Fault::expected(
+                        token.span,
+                        "a number, a name or `(`",
+                        token.describe(),
+                    ));
+                }
+            }
+            tokens.take();
+        } else {
+            let operator = match token.kind {
+                TokenKind::Symbol(symbol) => binary(symbol),
+                _ => None,
+            };
+            // Operators that bind at least as strongly are complete now.
+            while let Some(&(Open::Operator(top), span)) = open.last() {
+                let complete = operator.is_none_or(|next| {
+                    precedence(top) > precedence(next)
+                        || precedence(top) == precedence(next) && next != Operation::Power
+                });
+                if !complete {
+                    break;
+                }
+                put(&mut parsed, top, span);
+                open.pop();
+            }
+            match (operator, token.kind, open.last()) {
+                (Some(operation), ..) => {
+                    open.push((Open::Operator(operation), token.span));
+                    operand_next = true;
+                }
+                (None, TokenKind::Symbol(')'), Some(_)) => {
+                    open.pop();
+                }
+                (None, _, Some(_)) => {
+                    return Err(Fault::expected(
+                        token.span,
+                        "an operator or `)`",
+                        token.describe(),
+                    ));
+                }
+                (None, TokenKind::Symbol(')' | '('), None)
+                | (None, TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Unknown(_), None) =>
+                {
+                    return Err(Fault::expected(
+                        token.span,
+                        format!("an operator or {end}"),
+                        token.describe(),
+                    ));
+                }
+                (None, _, None) => break,
+            }
+            tokens.take();
+        }
+        if open.len() as u64 > limits::NESTING.value {
+            return Err(Fault::limit(token.span, limits::NESTING, open.len()));
+        }
+        if steps > limits::OPERATIONS.value {
+            return Err(Fault::limit(token.span, limits::OPERATIONS, "more"));
+        }
+    }
+    *written = steps;
+    parsed.span = Span {
+        start: start.start,
+        end: tokens.position(),
+    };
+    Ok(parsed)
+}
+
+/// The exact value of a decimal number: `1.5e-3` is 3/2000.
+pub fn number(text: &str, span: Span) -> Result<Rational, Fault> {
+    let (mantissa, exponent) = match text.find(['e', 'E']) {
+        Some(at) => (&text[..at], &text[at + 1..]),
+        None => (text, "0"),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits = (whole.len() + fraction.len()) as u64;
+    if digits > limits::NUMBER_DIGITS.value {
+        return Err(Fault::limit(span, limits::NUMBER_DIGITS, digits));
+    }
+    let refused = || {
+        Fault::limit(
+            span,
+            limits::NUMBER_EXPONENT,
+            exponent.trim_start_matches('+'),
+        )
+    };
+    let power: i64 = exponent.parse().map_err(|_| refused())?;
+    if power.unsigned_abs() > limits::NUMBER_EXPONENT.value {
+        return Err(refused());
+    }
+    let power = power - fraction.len() as i64;
+    let digits = format!("{whole}{fraction}");
+    let integer: Integer = digits.parse().map_err(|_| {
+        Fault::expected(
+            span,
+            "a decimal number",
+            format!("`{}`", super::token::shorten(text)),
+        )
+    })?;
+    let scale = Integer::from(10).pow(u32::try_from(power.unsigned_abs()).expect("limited above"));
+    Ok(if power < 0 {
+        Rational::from((integer, scale))
+    } else {
+        Rational::from(integer * scale)
+    })
+}
+
+/// Refuses a name that means something by itself.
+pub fn check_free(name: &str, span: Span, dialect: Dialect) -> Result<(), Fault> {
+    match dialect.reserved(name) {
+        Some(meaning) => Err(Fault::new(
+            span,
+            Problem::ReservedName {
+                name: name.into(),
+                meaning,
+            },
+        )),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,222 @@
+//! Tokens: the words of the expression grammar, with their places in the text.
+
+use super::fault::{Fault, Span};
+use winnow::ascii::{digit0, digit1};
+use winnow::combinator::{alt, opt};
+use winnow::error::EmptyError;
+use winnow::prelude::*;
+use winnow::token::{any, one_of, take_while};
+
+/// What a token is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TokenKind<'a> {
+    /// A number without a sign: `12`, `1.5`, `.5e-3`.
+    Number(&'a str),
+    /// A name: a letter or `_`, then letters, digits, `_`, `[` and `]`.
+    Name(&'a str),
+    /// One of `+ - * / ^ ( ) ; , = :`; `**` is read as `^`.
+    Symbol(char),
+    /// A character that belongs to no token.
+    Unknown(char),
+    /// The end of the text.
+    End,
+}
+
+/// A token and its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Token<'a> {
+    /// What it is.
+    pub kind: TokenKind<'a>,
+    /// Where it stands.
+    pub span: Span,
+}
+
+impl Token<'_> {
+    /// The token in words, for messages.
+    pub fn describe(&self) -> String {
+        match self.kind {
+            TokenKind::Number(text) => format!("the number `{}`", shorten(text)),
+            TokenKind::Name(text) => format!("the name `{}`", shorten(text)),
+            TokenKind::Symbol(symbol) => format!("`{symbol}`"),
+            TokenKind::Unknown(c) if c.is_control() => {
+                format!("the control character U+{:04X}", c as u32)
+            }
+            TokenKind::Unknown(c) => format!("the character `{c}`"),
+            TokenKind::End => "the end of the text".into(),
+        }
+    }
+}
+
+/// At most 40 characters of a text, for messages.
+pub fn shorten(text: &str) -> String {
+    match text.char_indices().nth(40) {
+        Some((at, _)) => format!("{}...", &text[..at]),
+        None => text.into(),
+    }
+}
+
+/// True for a text that is one name.
+pub fn is_name(text: &str) -> bool {
+    name.parse(text).is_ok()
+}
+
+type Lexed<T> = Result<T, EmptyError>;
+
+fn number<'a>(input: &mut &'a str) -> Lexed<&'a str> {
+    (
+        alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void())),
+        // `2e` is the number 2 and the name e: an exponent has digits.
+        opt((one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1)),
+    )
+        .take()
+        .parse_next(input)
+}
+
+fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
+    (
+        one_of(|c: char| c.is_alphabetic() || c == '_'),
+        take_while(0.., |c: char| {
+            c.is_alphanumeric() || matches!(c, '_' | '[' | ']')
+        }),
+    )
+        .take()
+        .parse_next(input)
+}
+
+fn lexeme<'a>(input: &mut &'a str) -> Lexed<TokenKind<'a>> {
+    alt((
+        number.map(TokenKind::Number),
+        name.map(TokenKind::Name),
+        "**".value(TokenKind::Symbol('^')),
+        one_of(['+', '-', '*', '/', '^', '(', ')', ';', ',', '=', ':']).map(TokenKind::Symbol),
+        any.map(TokenKind::Unknown),
+    ))
+    .parse_next(input)
+}
+
+fn blank<'a>(input: &mut &'a str, comment: Option<char>) -> Lexed<&'a str> {
+    loop {
+        let _: &str = take_while(0.., char::is_whitespace).parse_next(input)?;
+        match comment {
+            Some(c) if input.starts_with(c) => {
+                let _: &str = take_while(0.., |c| c != '\n').parse_next(input)?;
+            }
+            _ => return Ok(""),
+        }
+    }
+}
+
+/// Reads a text token by token, with one token of look-ahead.
+#[derive(Clone, Debug)]
+pub struct Tokens<'a> {
+    text: &'a str,
+    rest: &'a str,
+    end: usize,
+    comment: Option<char>,
+    peeked: Option<Token<'a>>,
+}
+
+impl<'a> Tokens<'a> {
+    /// Reads `text`; from `comment` to the end of a line is skipped.
+    pub fn new(text: &'a str, comment: Option<char>) -> Self {
+        Self {
+            text,
+            rest: text,
+            end: 0,
+            comment,
+            peeked: None,
+        }
+    }
+
+    /// The next token, which stays.
+    pub fn peek(&mut self) -> Token<'a> {
+        if let Some(token) = self.peeked {
+            return token;
+        }
+        let total = self.text.len();
+        // Neither can fail: blanks may be empty, and `lexeme` takes any character.
+        let _ = blank(&mut self.rest, self.comment);
+        let start = total - self.rest.len();
+        let kind = lexeme(&mut self.rest).unwrap_or(TokenKind::End);
+        let span = Span {
+            start,
+            end: total - self.rest.len(),
+        };
+        let token = Token { kind, span };
+        self.peeked = Some(token);
+        token
+    }
+
+    /// The next token, which is consumed.
+    pub fn take(&mut self) -> Token<'a> {
+        let token = self.peek();
+        self.peeked = None;
+        self.end = token.span.end;
+        token
+    }
+
+    /// Consumes the next token if it is this symbol.
+    pub fn take_symbol(&mut self, symbol: char) -> Option<Span> {
+        let token = self.peek();
+        (token.kind == TokenKind::Symbol(symbol)).then(|| self.take().span)
+    }
+
+    /// Consumes this symbol, or says what was expected.
+    pub fn expect_symbol(&mut self, symbol: char, expected: &str) -> Result<Span, Fault> {
+        let token = self.peek();
+        match self.take_symbol(symbol) {
+            Some(span) => Ok(span),
+            None => Err(Fault::expected(token.span, expected, token.describe())),
+        }
+    }
+
+    /// Where the last consumed token ended.
+    pub fn position(&self) -> usize {
+        self.end
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> &'a str {
+        self.text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kinds(text: &str) -> Vec<TokenKind<'_>> {
+        let mut tokens = Tokens::new(text, Some('%'));
+        let mut kinds = Vec::new();
+        loop {
+            match tokens.take().kind {
+                TokenKind::End => return kinds,
+                kind => kinds.push(kind),
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_and_names_that_begin_with_e_are_told_apart() {
+        use TokenKind::{Name, Number, Symbol};
+        assert_eq!(kinds("2e5*e5"), [Number("2e5"), Symbol('*'), Name("e5")]);
+        assert_eq!(
+            kinds("2e+x"),
+            [Number("2"), Name("e"), Symbol('+'), Name("x")]
+        );
+        assert_eq!(kinds("1.5E-3.5"), [Number("1.5E-3"), Number(".5")]);
+        assert_eq!(
+            kinds("x**y % a comment\n^1."),
+            [Name("x"), Symbol('^'), Name("y"), Symbol('^'), Number("1."),]
+        );
+        assert_eq!(kinds("x[1]_2 @"), [Name("x[1]_2"), TokenKind::Unknown('@')]);
+    }
+
+    #[test]
+    fn spans_count_bytes() {
+        let mut tokens = Tokens::new("  ab\u{e9} ;", None);
+        assert_eq!(tokens.take().span, Span { start: 2, end: 6 });
+        assert_eq!(tokens.take().span, Span { start: 7, end: 8 });
+        assert_eq!(tokens.take().span, Span { start: 8, end: 8 });
+    }
+}

@@ -1,0 +1,270 @@
+//! Bertini-classic input: settings, declarations and definitions in any order.
+
+mod definitions;
+mod settings;
+
+use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish};
+use crate::expression::fault::{Fault, Problem as What, Span};
+use crate::expression::parse::{self, Dialect, Names, Parsed};
+use crate::expression::token::{TokenKind, Tokens};
+use std::collections::HashMap;
+
+/// What a name was declared as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Variable,
+    Function,
+    Constant,
+    Parameter,
+    PathVariable,
+}
+
+impl Kind {
+    fn describe(self) -> &'static str {
+        match self {
+            Kind::Variable => "variable",
+            Kind::Function => "function",
+            Kind::Constant => "constant",
+            Kind::Parameter => "parameter",
+            Kind::PathVariable => "path variable",
+        }
+    }
+}
+
+/// How a line that declares names begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Declaration {
+    Group { homogeneous: bool },
+    Plain(Kind),
+}
+
+fn declaration(word: &str) -> Option<Declaration> {
+    Some(match word {
+        "variable_group" => Declaration::Group { homogeneous: false },
+        "hom_variable_group" => Declaration::Group { homogeneous: true },
+        "variable" => Declaration::Plain(Kind::Variable),
+        "function" => Declaration::Plain(Kind::Function),
+        "constant" => Declaration::Plain(Kind::Constant),
+        "parameter" => Declaration::Plain(Kind::Parameter),
+        "pathvariable" => Declaration::Plain(Kind::PathVariable),
+        _ => return None,
+    })
+}
+
+/// Everything that a file says, before any name has a meaning.
+#[derive(Debug, Default)]
+struct Statements {
+    names: Names,
+    /// Names in the order of their declaration.
+    declared: Vec<(u32, Kind, Span)>,
+    kinds: HashMap<u32, Kind>,
+    /// Where each name was declared.
+    places: HashMap<u32, Span>,
+    /// Groups of variables: homogeneous or not, and the names.
+    groups: Vec<(bool, Vec<u32>)>,
+    /// Names of `variable`, which form no group of their own.
+    ungrouped: Vec<u32>,
+    /// Definitions in the order of the file: name, its place, what it is.
+    definitions: Vec<(u32, Span, Parsed)>,
+    defined: HashMap<u32, usize>,
+    end: Span,
+}
+
+/// Reads a Bertini-classic file.
+pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
+    let mut settings = FileSettings::default();
+    let mut warnings = Vec::new();
+    let system = statements(source, &mut settings, &mut warnings)
+        .and_then(|s| s.into_system())
+        .and_then(|(system, places, end)| finish(system, &places, end))
+        .map_err(|fault| source.error(fault))?;
+    if settings.user_homotopy && system.path_variable.is_none() {
+        warnings.push(Warning {
+            file: source.name.into(),
+            line: 1,
+            message: "UserHomotopy is set, but no pathvariable is declared; solved without it"
+                .into(),
+        });
+        settings.user_homotopy = false;
+    }
+    settings.user_homotopy |= system.path_variable.is_some();
+    Ok(Problem {
+        system,
+        settings,
+        format: Format::Bertini,
+        warnings,
+    })
+}
+
+const FIRST: &str = "a Bertini-classic input (`CONFIG`, `INPUT` or a declaration such as \
+     `variable_group`), a PHCpack system (the number of equations) or a JSON problem (`{`)";
+const STATEMENT: &str = "a declaration, a definition `name = expression;` or `END;`";
+
+fn statements(
+    source: &Source<'_>,
+    settings: &mut FileSettings,
+    warnings: &mut Vec<Warning>,
+) -> Result<Statements, Fault> {
+    let mut tokens = Tokens::new(source.text, Some('%'));
+    let first = tokens.peek();
+    if first.kind == TokenKind::End {
+        return Err(Fault::expected(first.span, FIRST, "an empty file"));
+    }
+    if first.kind == TokenKind::Name("CONFIG") {
+        tokens.take();
+        settings::read(source, &mut tokens, settings, warnings)?;
+        let token = tokens.peek();
+        if token.kind != TokenKind::Name("INPUT") {
+            return Err(Fault::expected(token.span, "`INPUT`", token.describe()));
+        }
+    }
+    let bracketed = tokens.peek().kind == TokenKind::Name("INPUT");
+    if bracketed {
+        tokens.take();
+    }
+    let mut statements = Statements::default();
+    let mut written = 0;
+    loop {
+        let token = tokens.take();
+        let word = match token.kind {
+            TokenKind::Name(word) => word,
+            TokenKind::End if !bracketed && !statements.declared.is_empty() => {
+                statements.end = token.span;
+                break;
+            }
+            _ => {
+                let expected = if token == first { FIRST } else { STATEMENT };
+                return Err(Fault::expected(token.span, expected, token.describe()));
+            }
+        };
+        if let Some(declaration) = declaration(word) {
+            statements.declare(&mut tokens, declaration, source)?;
+        } else if word == "END" {
+            tokens.expect_symbol(';', "`;`")?;
+            statements.end = token.span;
+            let rest = tokens.peek();
+            if rest.kind != TokenKind::End {
+                warnings.push(Warning {
+                    file: source.name.into(),
+                    line: source.line_and_column(rest.span.start).0,
+                    message: "what follows the `END;` of the input is ignored".into(),
+                });
+            }
+            break;
+        } else if matches!(word, "random" | "random_real")
+            && matches!(tokens.peek().kind, TokenKind::Name(_))
+        {
+            let what = format!("`{word}` declarations; write the number as a `constant`");
+            return Err(Fault::new(token.span, What::NotInThisVersion(what)));
+        } else {
+            if tokens.peek().kind != TokenKind::Symbol('=') {
+                if token == first {
+                    return Err(Fault::expected(token.span, FIRST, token.describe()));
+                }
+                let next = tokens.peek();
+                let found = format!("{} after `{word}`", next.describe());
+                return Err(Fault::expected(next.span, "`=` or a declaration", found));
+            }
+            tokens.take();
+            parse::check_free(word, token.span, Dialect::BERTINI)?;
+            let name = statements.names.intern(word);
+            let parsed = parse::expression(
+                &mut tokens,
+                &mut statements.names,
+                Dialect::BERTINI,
+                "`;`",
+                &mut written,
+            )?;
+            tokens.expect_symbol(';', "an operator or `;`")?;
+            if let Some(&earlier) = statements.defined.get(&name) {
+                let line = source
+                    .line_and_column(statements.definitions[earlier].1.start)
+                    .0;
+                let first = format!("is defined in line {line} already");
+                return Err(Fault::new(
+                    token.span,
+                    What::DuplicateName {
+                        name: word.into(),
+                        first,
+                    },
+                ));
+            }
+            statements
+                .defined
+                .insert(name, statements.definitions.len());
+            statements.definitions.push((name, token.span, parsed));
+        }
+    }
+    Ok(statements)
+}
+
+impl Statements {
+    fn declare(
+        &mut self,
+        tokens: &mut Tokens<'_>,
+        declaration: Declaration,
+        source: &Source<'_>,
+    ) -> Result<(), Fault> {
+        let mut members = Vec::new();
+        loop {
+            let token = tokens.take();
+            let TokenKind::Name(word) = token.kind else {
+                return Err(Fault::expected(token.span, "a name", token.describe()));
+            };
+            parse::check_free(word, token.span, Dialect::BERTINI)?;
+            let name = self.names.intern(word);
+            let kind = match declaration {
+                Declaration::Group { .. } => Kind::Variable,
+                Declaration::Plain(kind) => kind,
+            };
+            if let Some(earlier) = self.places.get(&name) {
+                let line = source.line_and_column(earlier.start).0;
+                let first = format!(
+                    "is declared as a {} in line {line}",
+                    self.kinds[&name].describe()
+                );
+                let problem = What::DuplicateName {
+                    name: word.into(),
+                    first,
+                };
+                return Err(Fault::new(token.span, problem));
+            }
+            if kind == Kind::PathVariable && self.kinds.values().any(|&k| k == kind) {
+                return Err(Fault::expected(
+                    token.span,
+                    "one path variable",
+                    format!("a second one, `{word}`"),
+                ));
+            }
+            let grouped = matches!(declaration, Declaration::Group { .. });
+            let mixed = if grouped {
+                !self.ungrouped.is_empty()
+            } else {
+                !self.groups.is_empty()
+            };
+            if kind == Kind::Variable && mixed {
+                return Err(Fault::expected(
+                    token.span,
+                    "variables either in groups or in `variable` lists",
+                    format!("`{word}` after the other kind"),
+                ));
+            }
+            self.declared.push((name, kind, token.span));
+            self.kinds.insert(name, kind);
+            self.places.insert(name, token.span);
+            members.push(name);
+            let token = tokens.take();
+            match token.kind {
+                TokenKind::Symbol(',') => {}
+                TokenKind::Symbol(';') => break,
+                _ => return Err(Fault::expected(token.span, "`,` or `;`", token.describe())),
+            }
+        }
+        match declaration {
+            Declaration::Group { homogeneous } => self.groups.push((homogeneous, members)),
+            Declaration::Plain(Kind::Variable) => self.ungrouped.extend(members),
+            Declaration::Plain(_) => {}
+        }
+        Ok(())
+    }
+}

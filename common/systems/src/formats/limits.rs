@@ -1,0 +1,53 @@
+//! Limits: how large an input may be. Every reader refuses what is larger,
+//! and the error names the limit; all of them stand here and nowhere else.
+
+/// A named bound on something that an input holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limit {
+    /// The name that errors give.
+    pub name: &'static str,
+    /// What is counted, in the plural.
+    pub what: &'static str,
+    /// The largest number that is accepted.
+    pub value: u64,
+}
+
+const fn limit(name: &'static str, what: &'static str, value: u64) -> Limit {
+    Limit { name, what, value }
+}
+
+/// Size of a problem, symmetry or degenerate file; the largest real one known to us has 1 MB.
+pub const FILE_BYTES: Limit = limit("FILE_BYTES", "bytes in a file", 16 << 20);
+/// Size of a file with start solutions or parameters: about 10^6 points of 8 coordinates.
+pub const POINT_FILE_BYTES: Limit =
+    limit("POINT_FILE_BYTES", "bytes in a file of points", 512 << 20);
+/// Variables of a system; linear algebra here is dense.
+pub const VARIABLES: Limit = limit("VARIABLES", "variables", 1_000);
+/// Equations of a system.
+pub const EQUATIONS: Limit = limit("EQUATIONS", "equations", 1_000);
+/// Parameters of a system.
+pub const PARAMETERS: Limit = limit("PARAMETERS", "parameters", 10_000);
+/// Different subexpressions of a system; a node takes about 200 bytes.
+pub const NODES: Limit = limit("NODES", "different subexpressions", 1_000_000);
+/// Numbers, names and operations written in a file.
+pub const OPERATIONS: Limit = limit("OPERATIONS", "numbers, names and operations", 4_000_000);
+/// Brackets, signs and powers that are open at one place.
+pub const NESTING: Limit = limit("NESTING", "levels of nesting", 10_000);
+/// Arrays and objects that are open at one place of a JSON text.
+pub const JSON_NESTING: Limit = limit("JSON_NESTING", "levels of nesting in JSON", 32);
+/// Absolute value of an exponent, numerator and denominator of a rational one.
+pub const EXPONENT: Limit = limit("EXPONENT", "as exponent", 100_000);
+/// Degree of an equation.
+pub const DEGREE: Limit = limit("DEGREE", "as degree of an equation", 100_000);
+/// Digits of a number.
+pub const NUMBER_DIGITS: Limit = limit("NUMBER_DIGITS", "digits of a number", 10_000);
+/// Power of ten of a number in scientific notation; double precision ends at 308.
+pub const NUMBER_EXPONENT: Limit = limit("NUMBER_EXPONENT", "as power of ten of a number", 10_000);
+/// Bits of an exact constant, numerators and denominators together.
+pub const CONSTANT_BITS: Limit = limit("CONSTANT_BITS", "bits of an exact constant", 1 << 17);
+/// Bits of all exact constants that are computed while reading.
+pub const TOTAL_CONSTANT_BITS: Limit = limit(
+    "TOTAL_CONSTANT_BITS",
+    "bits of all exact constants",
+    1 << 30,
+);

@@ -1,0 +1,204 @@
+//! Formats: what people already have, read and written.
+//!
+//! `read` takes a problem in Bertini-classic, PHCpack or our JSON, told apart
+//! by content, and gives a checked `System` with the settings of the file.
+
+pub mod bertini;
+pub(crate) mod definitions;
+pub mod error;
+pub mod limits;
+
+pub use error::{FormatError, Place, Source};
+
+use crate::expression::fault::{Fault, Problem as What, Span};
+use crate::expression::{Dependence, Expressions, Node};
+use crate::system::{System, SystemError};
+use std::fmt;
+
+/// The notation of a problem file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Bertini-classic.
+    Bertini,
+    /// PHCpack.
+    Phcpack,
+    /// Our own JSON.
+    Json,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Format::Bertini => "Bertini-classic",
+            Format::Phcpack => "PHCpack",
+            Format::Json => "JSON",
+        })
+    }
+}
+
+/// How many digits a file asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PrecisionHint {
+    /// Double precision only (`MPType: 0`).
+    Double,
+    /// A fixed number of bits (`MPType: 1`, `Precision: 96`).
+    Bits(u32),
+    /// As many as each path needs (`MPType: 2`).
+    Adaptive,
+}
+
+/// Settings that stand in a problem file; what the command line says goes first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FileSettings {
+    /// Seed of all random numbers (`RandomSeed`; 0 there means none is given).
+    pub seed: Option<u64>,
+    /// Digits to compute with (`MPType`, `Precision`).
+    pub precision: Option<PrecisionHint>,
+    /// Accuracy of endpoints (`FinalTol`).
+    pub final_tolerance: Option<f64>,
+    /// Accuracy on the path (`TrackTolBeforeEG`).
+    pub tracking_tolerance: Option<f64>,
+    /// Accuracy on the path near its end (`TrackTolDuringEG`).
+    pub endgame_tolerance: Option<f64>,
+    /// Steps after which a path is given up (`MaxNumberSteps`).
+    pub maximum_steps: Option<u64>,
+    /// The file is a homotopy of the user's own (`UserHomotopy`, or a path variable is declared).
+    pub user_homotopy: bool,
+    /// The file is for a parameter homotopy (`ParameterHomotopy`; 1 solves generic
+    /// parameters, 2 moves to wanted ones).
+    pub parameter_homotopy: Option<u8>,
+}
+
+/// Something in a file that was understood but not followed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// The file's name.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// What is not followed.
+    pub message: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.file, self.line, self.message)
+    }
+}
+
+/// What a problem file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The system, checked.
+    pub system: System,
+    /// The file's settings.
+    pub settings: FileSettings,
+    /// The notation it was in.
+    pub format: Format,
+    /// What is not followed.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads a problem in any of the formats, told apart by content.
+///
+/// `name` is only for messages.
+pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
+    let text = decode(name, content, limits::FILE_BYTES)?;
+    let source = Source { name, text };
+    bertini::read(&source)
+}
+
+/// The text of a file, if it is text of an acceptable size.
+pub(crate) fn decode<'a>(
+    name: &str,
+    content: &'a [u8],
+    limit: limits::Limit,
+) -> Result<&'a str, FormatError> {
+    if content.len() as u64 > limit.value {
+        let fault = Fault::limit(Span::default(), limit, content.len());
+        return Err(Source { name, text: "" }.error(fault));
+    }
+    let readable = |text: &'a str, found: &str| {
+        let at = Span {
+            start: text.len(),
+            end: text.len(),
+        };
+        Source { name, text }.error(Fault::expected(at, "text in UTF-8", found))
+    };
+    let text = match std::str::from_utf8(content) {
+        Ok(text) => text,
+        Err(e) => {
+            let valid = &content[..e.valid_up_to()];
+            let text = std::str::from_utf8(valid).unwrap_or_default();
+            return Err(readable(
+                text,
+                &format!("the byte 0x{:02x}", content[e.valid_up_to()]),
+            ));
+        }
+    };
+    if let Some(at) = text.find('\0') {
+        return Err(readable(&text[..at], "the byte 0x00"));
+    }
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// Checks what every reader promises; `places` are the equations' places in the text.
+pub(crate) fn finish(system: System, places: &[Span], end: Span) -> Result<System, Fault> {
+    let at = |i: usize| places.get(i).copied().unwrap_or(end);
+    let sizes = [
+        (limits::VARIABLES, system.variables.len()),
+        (limits::EQUATIONS, system.equations.len()),
+        (limits::PARAMETERS, system.parameters.len()),
+    ];
+    for (limit, count) in sizes {
+        if count as u64 > limit.value {
+            return Err(Fault::limit(end, limit, count));
+        }
+    }
+    if system.variables.is_empty() {
+        return Err(Fault::new(end, What::NoVariables));
+    }
+    for (i, &equation) in system.equations.iter().enumerate() {
+        if system.expressions.dependence(equation) != Dependence::Variables {
+            return Err(Fault::new(
+                at(i),
+                What::ConstantEquation(system.equation_names[i].clone()),
+            ));
+        }
+    }
+    let degrees = degrees(&system.expressions);
+    for (i, &equation) in system.equations.iter().enumerate() {
+        let degree = degrees[equation.0 as usize];
+        if degree > limits::DEGREE.value {
+            return Err(Fault::limit(at(i), limits::DEGREE, degree));
+        }
+    }
+    match system.check() {
+        Ok(()) => Ok(system),
+        Err(SystemError::NoVariables) => Err(Fault::new(end, What::NoVariables)),
+        Err(SystemError::NoEquations) => Err(Fault::new(end, What::NoEquations)),
+        Err(other) => Err(Fault::expected(
+            end,
+            "a consistent system",
+            other.to_string(),
+        )),
+    }
+}
+
+/// An upper bound of the degree of every node, without overflow.
+fn degrees(expressions: &Expressions) -> Vec<u64> {
+    let mut degrees: Vec<u64> = Vec::with_capacity(expressions.nodes().len());
+    for node in expressions.nodes() {
+        let of = |id: &crate::expression::NodeId| degrees[id.0 as usize];
+        let degree = match node {
+            Node::Variable(_) => 1,
+            Node::Constant(_) | Node::Parameter(_) | Node::Root(..) | Node::Function(..) => 0,
+            Node::Add(a, b) | Node::Subtract(a, b) => of(a).max(of(b)),
+            Node::Multiply(a, b) => of(a).saturating_add(of(b)),
+            Node::Divide(a, _) | Node::Negate(a) => of(a),
+            Node::Power(a, exponent) => of(a).saturating_mul(u64::from(*exponent)),
+        };
+        degrees.push(degree);
+    }
+    degrees
+}
