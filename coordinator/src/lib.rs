@@ -1,2 +1,5 @@
 //! The server of paths and its command-line client.
 #![forbid(unsafe_code)]
+
+pub mod chunks;
+pub mod ledger;

@@ -1,0 +1,3 @@
+//! Chunks: who gets what, how large, until when.
+
+pub mod sizing;

@@ -1,0 +1,206 @@
+//! Names of jobs, chunks, leases, requests and processes. Types, not integers and strings.
+
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::StageId;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// A name that is none.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum IdentityError {
+    /// Names have 1 to 128 visible ASCII characters.
+    #[error("{what} must have 1 to 128 visible ASCII characters")]
+    Name {
+        /// Which name.
+        what: &'static str,
+    },
+    /// A job's id has 16 hexadecimal digits.
+    #[error("`{0}` is no job id: it must have 16 hexadecimal digits")]
+    Job(String),
+    /// A digest has 64 hexadecimal digits.
+    #[error("`{0}` is no digest: it must have 64 hexadecimal digits")]
+    Digest(String),
+}
+
+macro_rules! name {
+    ($(#[$doc:meta])* $type:ident, $what:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        pub struct $type(String);
+
+        impl $type {
+            /// Checks the length and the characters.
+            pub fn new(name: impl Into<String>) -> Result<Self, IdentityError> {
+                let name = name.into();
+                if (1..=128).contains(&name.len()) && name.bytes().all(|b| b.is_ascii_graphic()) {
+                    Ok(Self(name))
+                } else {
+                    Err(IdentityError::Name { what: $what })
+                }
+            }
+
+            /// The name.
+            pub fn as_str(&self) -> &str {
+                &self.0
+            }
+        }
+
+        impl fmt::Display for $type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(&self.0)
+            }
+        }
+    };
+}
+
+name!(
+    /// Chosen by whoever asks, so that asking twice is asking once.
+    RequestId,
+    "a request id"
+);
+name!(
+    /// One worker process.
+    WorkerId,
+    "a worker's id"
+);
+name!(
+    /// One coordinator process.
+    CoordinatorId,
+    "a coordinator's id"
+);
+name!(
+    /// On whose behalf jobs run; tenants share the workers fairly.
+    Tenant,
+    "a tenant's name"
+);
+
+/// A job, named after the request that made it: 16 hexadecimal digits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct JobId(pub u64);
+
+impl JobId {
+    /// The id of the job that a request makes.
+    pub fn of_request(request: &RequestId) -> Self {
+        let hash = blake3::hash(request.as_str().as_bytes());
+        let head = hash.as_bytes().first_chunk::<8>();
+        Self(u64::from_be_bytes(
+            *head.expect("a BLAKE3 hash has 32 bytes"),
+        ))
+    }
+}
+
+impl fmt::Display for JobId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
+
+impl FromStr for JobId {
+    type Err = IdentityError;
+    fn from_str(text: &str) -> Result<Self, IdentityError> {
+        Some(text)
+            .filter(|t| t.len() == 16 && t.bytes().all(|b| b.is_ascii_hexdigit()))
+            .and_then(|t| u64::from_str_radix(t, 16).ok())
+            .map(Self)
+            .ok_or_else(|| IdentityError::Job(text.chars().take(40).collect()))
+    }
+}
+
+/// Grows whenever a chunk or a job changes hands; writes with an older one are refused.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub struct Epoch(pub u64);
+
+/// A chunk, by its first item. Chunks are cut smaller, never joined, so the name stays its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct ChunkId {
+    /// The job.
+    pub job: JobId,
+    /// The stage within the job.
+    pub stage: StageId,
+    /// The first item.
+    pub first: u64,
+}
+
+/// One lease of one chunk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct LeaseId {
+    /// The chunk.
+    pub chunk: ChunkId,
+    /// Which of its leases.
+    pub epoch: Epoch,
+}
+
+impl fmt::Display for LeaseId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ChunkId { job, stage, first } = self.chunk;
+        write!(f, "{job}/{}/{first}/{}", stage.0, self.epoch.0)
+    }
+}
+
+/// Items `first..last` of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct ItemRange {
+    /// The first item.
+    pub first: u64,
+    /// One past the last item.
+    pub last: u64,
+}
+
+impl ItemRange {
+    /// Number of items.
+    pub fn len(&self) -> u64 {
+        self.last.saturating_sub(self.first)
+    }
+
+    /// True when there are none.
+    pub fn is_empty(&self) -> bool {
+        self.last <= self.first
+    }
+}
+
+/// Reads the 64 hexadecimal digits that a [`Digest`] prints.
+pub fn parse_digest(text: &str) -> Result<Digest, IdentityError> {
+    let bad = || IdentityError::Digest(text.chars().take(80).collect());
+    let digits = text.as_bytes();
+    if digits.len() != 64 {
+        return Err(bad());
+    }
+    let mut bytes = [0; 32];
+    for (byte, pair) in bytes.iter_mut().zip(digits.chunks_exact(2)) {
+        let nibble = |c: u8| char::from(c).to_digit(16).ok_or_else(bad);
+        *byte = (nibble(pair[0])? * 16 + nibble(pair[1])?) as u8;
+    }
+    Ok(Digest(bytes))
+}
+
+/// The digest of these bytes.
+pub fn digest_of(bytes: &[u8]) -> Digest {
+    Digest(*blake3::hash(bytes).as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_checked() {
+        assert!(RequestId::new("").is_err());
+        assert!(RequestId::new("a b").is_err());
+        assert!(RequestId::new("x".repeat(129)).is_err());
+        assert_eq!(RequestId::new("x-1").unwrap().as_str(), "x-1");
+    }
+
+    #[test]
+    fn ids_come_back_from_their_text() {
+        let job = JobId::of_request(&RequestId::new("a").unwrap());
+        assert_eq!(job.to_string().parse::<JobId>().unwrap(), job);
+        assert!("12".parse::<JobId>().is_err());
+        assert!("+123456789abcdef".parse::<JobId>().is_err());
+        let digest = digest_of(b"x");
+        assert_eq!(parse_digest(&digest.to_string()).unwrap(), digest);
+        assert!(parse_digest("zz").is_err());
+    }
+}

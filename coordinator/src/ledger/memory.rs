@@ -1,0 +1,808 @@
+//! The ledger in memory: what the others are compared with, and the simulation's ledger.
+//!
+//! Deterministic: the same calls at the same times give the same answers.
+
+use super::clock::{Clock, LedgerTime};
+use super::identity::*;
+use super::rows::*;
+use super::{Ledger, LedgerError};
+use crate::chunks::sizing::Situation;
+use async_trait::async_trait;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::StageId;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// Workers that were heard within this time count for the sizes of chunks.
+pub const PRESENT_MS: u64 = 60_000;
+/// What an item is taken to cost, in microseconds of CPU, while nothing is measured.
+pub const UNMEASURED_MICROS: u64 = 1000;
+
+/// A ledger that lives as long as its process.
+pub struct MemoryLedger {
+    clock: Arc<dyn Clock>,
+    books: Mutex<Books>,
+}
+
+#[derive(Default)]
+struct Books {
+    requests: BTreeMap<RequestId, JobId>,
+    jobs: BTreeMap<JobId, Job>,
+    /// Virtual time of each tenant: microseconds of CPU that were used or are in use.
+    tenants: BTreeMap<Tenant, i64>,
+    workers: BTreeMap<WorkerId, Worker>,
+    leases: BTreeMap<WorkerId, BTreeSet<ChunkId>>,
+}
+
+struct Job {
+    row: JobRow,
+    virtual_time: i64,
+    stages: BTreeMap<StageId, Stage>,
+}
+
+struct Stage {
+    definition: Digest,
+    items: u64,
+    closed: bool,
+    cpu_micros: u64,
+    chunks: BTreeMap<u64, Chunk>,
+}
+
+struct Chunk {
+    row: ChunkRow,
+    request: Option<RequestId>,
+    charged: i64,
+}
+
+struct Worker {
+    says: WorkerSeen,
+    first_seen: LedgerTime,
+    last_seen: LedgerTime,
+    items_done: u64,
+}
+
+impl MemoryLedger {
+    /// An empty ledger.
+    pub fn new(clock: Arc<dyn Clock>) -> Self {
+        Self {
+            clock,
+            books: Mutex::default(),
+        }
+    }
+
+    fn books(&self) -> MutexGuard<'_, Books> {
+        self.books
+            .lock()
+            .expect("no call panics while it holds the books")
+    }
+}
+
+impl Stage {
+    fn count(&self, wanted: impl Fn(&ChunkState) -> bool) -> Count {
+        let mut count = Count::default();
+        for chunk in self.chunks.values().filter(|c| wanted(&c.row.state)) {
+            count.items += chunk.row.items.len();
+            count.chunks += 1;
+        }
+        count
+    }
+
+    fn row(&self, stage: StageId) -> StageRow {
+        StageRow {
+            stage,
+            definition: self.definition,
+            items: self.items,
+            closed: self.closed,
+            ready: self.count(|s| *s == ChunkState::Ready),
+            leased: self.count(|s| matches!(s, ChunkState::Leased { .. })),
+            accepted: self.count(|s| matches!(s, ChunkState::Accepted { .. })),
+            failed: self.count(|s| matches!(s, ChunkState::Failed { .. })),
+            cpu_micros: self.cpu_micros,
+        }
+    }
+}
+
+impl Job {
+    fn leased_chunks(&self) -> u64 {
+        let leased = |s: &Stage| s.count(|s| matches!(s, ChunkState::Leased { .. })).chunks;
+        self.stages.values().map(leased).sum()
+    }
+}
+
+impl Books {
+    fn job(&mut self, job: JobId) -> Result<&mut Job, LedgerError> {
+        self.jobs.get_mut(&job).ok_or(LedgerError::UnknownJob(job))
+    }
+
+    fn fenced(&mut self, job: JobId, epoch: Epoch) -> Result<&mut Job, LedgerError> {
+        let found = self.job(job)?;
+        if found.row.steward_epoch != epoch || found.row.state.has_ended() {
+            return Err(LedgerError::Fenced(job));
+        }
+        Ok(found)
+    }
+
+    fn chunk(&mut self, id: ChunkId) -> Option<&mut Chunk> {
+        let stage = self.jobs.get_mut(&id.job)?.stages.get_mut(&id.stage)?;
+        stage.chunks.get_mut(&id.first)
+    }
+
+    /// Adds to the virtual time of a job and its tenant.
+    fn charge(&mut self, job: JobId, micros: i64) {
+        if let Some(job) = self.jobs.get_mut(&job) {
+            job.virtual_time += micros;
+            *self
+                .tenants
+                .entry(job.row.asked.tenant.clone())
+                .or_default() += micros;
+        }
+    }
+
+    /// Takes a leased chunk from its worker and puts it into another state.
+    fn unlease(&mut self, id: ChunkId, state: ChunkState) -> Option<WorkerId> {
+        let chunk = self.chunk(id)?;
+        let ChunkState::Leased { worker, .. } = std::mem::replace(&mut chunk.row.state, state)
+        else {
+            return None;
+        };
+        chunk.request = None;
+        let charged = std::mem::take(&mut chunk.charged);
+        self.charge(id.job, -charged);
+        if let Some(held) = self.leases.get_mut(&worker) {
+            held.remove(&id);
+        }
+        Some(worker)
+    }
+
+    fn release_all(&mut self, job: JobId) {
+        let held: Vec<ChunkId> = self.leases.values().flatten().copied().collect();
+        for id in held.into_iter().filter(|id| id.job == job) {
+            self.unlease(id, ChunkState::Ready);
+        }
+    }
+
+    fn present_threads(&self, now: LedgerTime, request: &LeaseRequest) -> u64 {
+        let others = self.workers.values().filter(|w| {
+            w.says.worker != request.worker
+                && !w.says.draining
+                && now.since_ms(w.last_seen) < PRESENT_MS
+        });
+        others.map(|w| u64::from(w.says.threads)).sum::<u64>() + u64::from(request.threads)
+    }
+
+    /// The chunk whose turn it is: the tenant's, then the job's least virtual time.
+    fn choose(&self, request: &LeaseRequest) -> Option<ChunkId> {
+        let turn = |job: &Job| {
+            let tenant = self.tenants.get(&job.row.asked.tenant).copied();
+            (tenant.unwrap_or(0), job.virtual_time, job.row.number)
+        };
+        let mut candidates: Vec<&Job> = self
+            .jobs
+            .values()
+            .filter(|job| {
+                job.row.state == JobState::Running
+                    && job.row.asked.numerics_revision == request.numerics_revision
+                    && job.leased_chunks() < u64::from(request.in_flight_limit)
+            })
+            .collect();
+        candidates.sort_by_key(|job| turn(job));
+        candidates
+            .iter()
+            .flat_map(|job| job.stages.values())
+            .flat_map(|stage| stage.chunks.values())
+            .find(|chunk| {
+                chunk.row.state == ChunkState::Ready
+                    && chunk.row.suspicions < request.suspicion_limit
+            })
+            .map(|chunk| chunk.row.chunk)
+    }
+
+    fn lease_one(&mut self, now: LedgerTime, request: &LeaseRequest) -> Option<Lease> {
+        let id = self.choose(request)?;
+        let all_threads = self.present_threads(now, request);
+        let job = self.jobs.get_mut(&id.job)?;
+        let stage = job.stages.get_mut(&id.stage)?;
+        let counts = stage.row(id.stage);
+        let wanted = request.sizing.items(&Situation {
+            ready_items: counts.ready.items,
+            done_items: counts.accepted.items,
+            done_micros: counts.cpu_micros,
+            threads: u64::from(request.threads),
+            all_threads,
+        });
+        let chunk = stage.chunks.get_mut(&id.first)?;
+        let rest = ItemRange {
+            first: id.first.saturating_add(wanted),
+            last: chunk.row.items.last,
+        };
+        if !rest.is_empty() {
+            chunk.row.items.last = rest.first;
+            let mut row = chunk.row.clone();
+            row.chunk.first = rest.first;
+            row.items = rest;
+            let cut = Chunk {
+                row,
+                request: None,
+                charged: 0,
+            };
+            stage.chunks.insert(rest.first, cut);
+        }
+        let chunk = stage.chunks.get_mut(&id.first)?;
+        let charged = estimate(chunk.row.items.len(), &counts);
+        let until = now.after_ms(request.duration_ms);
+        chunk.row.epoch.0 += 1;
+        chunk.row.state = ChunkState::Leased {
+            worker: request.worker.clone(),
+            until,
+        };
+        chunk.request = Some(request.request.clone());
+        chunk.charged = charged;
+        job.row.started.get_or_insert(now);
+        let lease = Lease {
+            lease: LeaseId {
+                chunk: id,
+                epoch: chunk.row.epoch,
+            },
+            items: chunk.row.items,
+            until,
+            problem: job.row.asked.problem,
+            definition: stage.definition,
+            alone: chunk.row.alone,
+        };
+        self.charge(id.job, charged);
+        self.leases
+            .entry(request.worker.clone())
+            .or_default()
+            .insert(id);
+        Some(lease)
+    }
+
+    fn held(&self, worker: &WorkerId) -> Vec<ChunkId> {
+        let held = self.leases.get(worker);
+        held.map_or_else(Vec::new, |set| set.iter().copied().collect())
+    }
+}
+
+/// What so many items of a stage are taken to cost, in microseconds of CPU.
+pub fn estimate(items: u64, counts: &StageRow) -> i64 {
+    let each = match counts.accepted.items {
+        0 => UNMEASURED_MICROS,
+        done => counts.cpu_micros / done,
+    };
+    i64::try_from(items.saturating_mul(each)).unwrap_or(i64::MAX / 4)
+}
+
+/// Refuses numbers that a ledger on a database could not hold.
+pub fn check_size(what: &'static str, number: u64) -> Result<i64, LedgerError> {
+    i64::try_from(number)
+        .ok()
+        .filter(|&n| n <= i64::MAX / 4)
+        .ok_or(LedgerError::TooLarge(what))
+}
+
+/// True when the ranges make up `whole`, in order, each with at least one item.
+pub fn make_up(ranges: impl IntoIterator<Item = ItemRange>, whole: ItemRange) -> bool {
+    let mut next = whole.first;
+    for range in ranges {
+        if range.first != next || range.is_empty() {
+            return false;
+        }
+        next = range.last;
+    }
+    next == whole.last
+}
+
+#[async_trait]
+impl Ledger for MemoryLedger {
+    async fn now(&self) -> Result<LedgerTime, LedgerError> {
+        Ok(self.clock.now())
+    }
+
+    async fn submit(&self, id: RequestId, asked: NewJob) -> Result<Submitted, LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let job = JobId::of_request(&id);
+        if let Some(before) = books.jobs.get(&job) {
+            if before.row.asked != asked || books.requests.get(&id) != Some(&job) {
+                return Err(LedgerError::RequestReused(id));
+            }
+            return Ok(Submitted { job, is_new: false });
+        }
+        // Nobody saves up virtual time while he has no jobs.
+        let active = |books: &Books| -> Vec<(Tenant, i64)> {
+            let unfinished = books.jobs.values().filter(|j| !j.row.state.has_ended());
+            unfinished
+                .map(|j| (j.row.asked.tenant.clone(), j.virtual_time))
+                .collect()
+        };
+        let active = active(&books);
+        let floor = active
+            .iter()
+            .filter_map(|(t, _)| books.tenants.get(t))
+            .min();
+        let own = books.tenants.get(&asked.tenant).copied().unwrap_or(0);
+        let tenant_time = floor.map_or(own, |&floor| own.max(floor));
+        books.tenants.insert(asked.tenant.clone(), tenant_time);
+        let same_tenant = active.iter().filter(|(t, _)| *t == asked.tenant);
+        let virtual_time = same_tenant.map(|&(_, v)| v).min().unwrap_or(0);
+        let number = books.jobs.len() as u64 + 1;
+        let row = JobRow {
+            job,
+            number,
+            asked,
+            state: JobState::Queued,
+            reason: None,
+            submitted: now,
+            started: None,
+            ended: None,
+            steward: None,
+            steward_epoch: Epoch(0),
+            steward_until: LedgerTime(0),
+            snapshot: None,
+            solutions: None,
+            summary: None,
+        };
+        books.requests.insert(id, job);
+        books.jobs.insert(
+            job,
+            Job {
+                row,
+                virtual_time,
+                stages: BTreeMap::new(),
+            },
+        );
+        Ok(Submitted { job, is_new: true })
+    }
+
+    async fn cancel(&self, job: JobId, reason: &str) -> Result<Cancelled, LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let row = &mut books.job(job)?.row;
+        if row.state.has_ended() {
+            return Ok(Cancelled::HadEnded(row.state));
+        }
+        row.state = JobState::Cancelled;
+        row.reason = Some(reason.to_owned());
+        row.ended = Some(now);
+        books.release_all(job);
+        Ok(Cancelled::Now)
+    }
+
+    async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
+        Ok(self.books().jobs.get(&job).map(|j| j.row.clone()))
+    }
+
+    async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError> {
+        let books = self.books();
+        let mut rows: Vec<JobRow> = books.jobs.values().map(|j| j.row.clone()).collect();
+        rows.sort_by_key(|row| row.number);
+        Ok(rows.split_off(rows.len().saturating_sub(limit as usize)))
+    }
+
+    async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
+        let mut books = self.books();
+        let stages = &books.job(job)?.stages;
+        Ok(stages.iter().map(|(&id, stage)| stage.row(id)).collect())
+    }
+
+    async fn steward(
+        &self,
+        job: JobId,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<Option<Epoch>, LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let row = &mut books.job(job)?.row;
+        let held = row.steward_until > now;
+        let mine = row.steward.as_ref() == Some(who);
+        if row.state.has_ended() || (held && !mine) {
+            return Ok(None);
+        }
+        if !held || !mine {
+            row.steward_epoch.0 += 1;
+            row.steward = Some(who.clone());
+        }
+        row.steward_until = now.after_ms(duration_ms);
+        Ok(Some(row.steward_epoch))
+    }
+
+    async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
+        let books = self.books();
+        let mut rows: Vec<(u64, JobId)> = books
+            .jobs
+            .values()
+            .filter(|j| !j.row.state.has_ended())
+            .map(|j| (j.row.number, j.row.job))
+            .collect();
+        rows.sort_unstable();
+        Ok(rows.into_iter().map(|(_, job)| job).collect())
+    }
+
+    async fn advance(&self, job: JobId, epoch: Epoch, step: Advance) -> Result<(), LedgerError> {
+        let mut books = self.books();
+        let found = books.fenced(job, epoch)?;
+        for &id in &step.close {
+            let stage = found.stages.get(&id);
+            if !stage.is_some_and(|s| !s.closed && s.row(id).is_complete()) {
+                return Err(LedgerError::StageOrder(job, id));
+            }
+        }
+        let mut opened = BTreeSet::new();
+        for new in &step.open {
+            check_size("the number of items of a stage", new.items)?;
+            let whole = ItemRange {
+                first: 0,
+                last: new.items,
+            };
+            let again = found.stages.contains_key(&new.stage) || !opened.insert(new.stage);
+            if again || !make_up(new.chunks.iter().copied(), whole) {
+                return Err(LedgerError::StageOrder(job, new.stage));
+            }
+        }
+        for id in &step.close {
+            if let Some(stage) = found.stages.get_mut(id) {
+                stage.closed = true;
+            }
+        }
+        for new in step.open {
+            let chunk = |&items: &ItemRange| {
+                let row = ChunkRow {
+                    chunk: ChunkId {
+                        job,
+                        stage: new.stage,
+                        first: items.first,
+                    },
+                    items,
+                    state: ChunkState::Ready,
+                    epoch: Epoch(0),
+                    suspicions: 0,
+                    alone: false,
+                };
+                let chunk = Chunk {
+                    row,
+                    request: None,
+                    charged: 0,
+                };
+                (items.first, chunk)
+            };
+            let stage = Stage {
+                definition: new.definition,
+                items: new.items,
+                closed: false,
+                cpu_micros: 0,
+                chunks: new.chunks.iter().map(chunk).collect(),
+            };
+            found.stages.insert(new.stage, stage);
+            found.row.state = JobState::Running;
+        }
+        if step.snapshot.is_some() {
+            found.row.snapshot = step.snapshot;
+        }
+        Ok(())
+    }
+
+    async fn split(
+        &self,
+        chunk: ChunkId,
+        epoch: Epoch,
+        pieces: &[Piece],
+    ) -> Result<(), LedgerError> {
+        let mut books = self.books();
+        let job = books.fenced(chunk.job, epoch)?;
+        let stage = job.stages.get_mut(&chunk.stage);
+        let (chunks, whole) = stage
+            .and_then(|s| {
+                let whole = s.chunks.get(&chunk.first)?.row.clone();
+                (whole.state == ChunkState::Ready).then_some((&mut s.chunks, whole))
+            })
+            .filter(|(_, whole)| make_up(pieces.iter().map(|p| p.items), whole.items))
+            .ok_or(LedgerError::NotAPartition(chunk.job))?;
+        for piece in pieces {
+            let mut row = whole.clone();
+            row.chunk.first = piece.items.first;
+            row.items = piece.items;
+            row.suspicions = piece.suspicions;
+            row.alone = piece.alone;
+            let cut = Chunk {
+                row,
+                request: None,
+                charged: 0,
+            };
+            chunks.insert(piece.items.first, cut);
+        }
+        Ok(())
+    }
+
+    async fn condemn(
+        &self,
+        chunk: ChunkId,
+        epoch: Epoch,
+        result: ResultObject,
+    ) -> Result<(), LedgerError> {
+        let mut books = self.books();
+        books.fenced(chunk.job, epoch)?;
+        let found = books
+            .chunk(chunk)
+            .filter(|c| c.row.state == ChunkState::Ready && c.row.items == result.items)
+            .ok_or(LedgerError::NotAPartition(chunk.job))?;
+        found.row.state = ChunkState::Failed { result };
+        Ok(())
+    }
+
+    async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let row = &mut books.fenced(job, epoch)?.row;
+        row.ended = Some(now);
+        match end {
+            JobEnd::Solved { solutions, summary } => {
+                row.state = JobState::Solved;
+                row.solutions = Some(solutions);
+                row.summary = Some(summary);
+            }
+            JobEnd::Failed { reason } => {
+                row.state = JobState::Failed;
+                row.reason = Some(reason);
+            }
+        }
+        books.release_all(job);
+        Ok(())
+    }
+
+    async fn finished_chunks(
+        &self,
+        job: JobId,
+        stage: StageId,
+        from: u64,
+        limit: u32,
+    ) -> Result<Vec<ChunkRow>, LedgerError> {
+        let mut books = self.books();
+        let chunks = books.job(job)?.stages.get(&stage).map(|s| &s.chunks);
+        let rows = chunks.into_iter().flat_map(|c| c.range(from..));
+        Ok(rows
+            .map(|(_, chunk)| &chunk.row)
+            .filter(|row| {
+                matches!(
+                    row.state,
+                    ChunkState::Accepted { .. } | ChunkState::Failed { .. }
+                )
+            })
+            .take(limit as usize)
+            .cloned()
+            .collect())
+    }
+
+    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
+        let mut books = self.books();
+        let stages = books.job(job)?.stages.values();
+        let rows = stages.flat_map(|s| s.chunks.values()).map(|c| &c.row);
+        Ok(rows
+            .filter(|row| row.state == ChunkState::Ready && row.suspicions >= suspicions)
+            .cloned()
+            .collect())
+    }
+
+    async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError> {
+        let mut books = self.books();
+        let mut sums: BTreeMap<WorkerId, (u64, u64)> = BTreeMap::new();
+        for stage in books.job(job)?.stages.values() {
+            for chunk in stage.chunks.values() {
+                if let ChunkState::Accepted { worker, result } = &chunk.row.state {
+                    let sum = sums.entry(worker.clone()).or_default();
+                    sum.0 += result.items.len();
+                    sum.1 += result.cpu_micros;
+                }
+            }
+        }
+        let transport = |worker: &WorkerId| {
+            let known = books.workers.get(worker);
+            known.map_or_else(String::new, |w| w.says.transport.clone())
+        };
+        Ok(sums
+            .into_iter()
+            .map(|(worker, (items, cpu_micros))| Contribution {
+                transport: transport(&worker),
+                worker,
+                items,
+                cpu_micros,
+            })
+            .collect())
+    }
+
+    async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError> {
+        let now = self.clock.now();
+        let until = now.after_ms(request.duration_ms);
+        let mut books = self.books();
+        let mut again = Vec::new();
+        let mut holds_alone = false;
+        for id in books.held(&request.worker) {
+            let job = &books.jobs[&id.job];
+            let (problem, definition) = (job.row.asked.problem, job.stages[&id.stage].definition);
+            let Some(chunk) = books.chunk(id) else {
+                continue;
+            };
+            holds_alone |= chunk.row.alone;
+            if chunk.request.as_ref() != Some(&request.request) {
+                continue;
+            }
+            chunk.row.state = ChunkState::Leased {
+                worker: request.worker.clone(),
+                until,
+            };
+            again.push(Lease {
+                lease: LeaseId {
+                    chunk: id,
+                    epoch: chunk.row.epoch,
+                },
+                items: chunk.row.items,
+                until,
+                problem,
+                definition,
+                alone: chunk.row.alone,
+            });
+        }
+        if !again.is_empty() || holds_alone {
+            return Ok(again);
+        }
+        let mut leases = Vec::new();
+        while leases.len() < request.slots as usize {
+            let Some(lease) = books.lease_one(now, &request) else {
+                break;
+            };
+            let alone = lease.alone;
+            leases.push(lease);
+            if alone {
+                break;
+            }
+        }
+        Ok(leases)
+    }
+
+    async fn renew(
+        &self,
+        leases: &[LeaseId],
+        duration_ms: u64,
+    ) -> Result<Vec<Renewal>, LedgerError> {
+        let end = self.clock.now().after_ms(duration_ms);
+        let mut books = self.books();
+        let renewals = leases.iter().map(|lease| {
+            let chunk = books.chunk(lease.chunk);
+            match chunk.filter(|c| c.row.epoch == lease.epoch) {
+                Some(chunk) => match &mut chunk.row.state {
+                    ChunkState::Leased { until, .. } => {
+                        *until = end;
+                        Renewal::Until(end)
+                    }
+                    _ => Renewal::Lost,
+                },
+                None => Renewal::Lost,
+            }
+        });
+        Ok(renewals.collect())
+    }
+
+    async fn complete(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError> {
+        check_size("the CPU time of a chunk", result.cpu_micros)?;
+        let mut books = self.books();
+        let Some(chunk) = books.chunk(lease.chunk) else {
+            return Ok(Completion::Stale);
+        };
+        match &chunk.row.state {
+            ChunkState::Leased { worker, .. }
+                if chunk.row.epoch == lease.epoch && chunk.row.items == result.items =>
+            {
+                let worker = worker.clone();
+                let (items, micros) = (result.items.len(), result.cpu_micros);
+                let accepted = ChunkState::Accepted {
+                    worker: worker.clone(),
+                    result,
+                };
+                books.unlease(lease.chunk, accepted);
+                books.charge(lease.chunk.job, micros as i64);
+                if let Some(job) = books.jobs.get_mut(&lease.chunk.job)
+                    && let Some(stage) = job.stages.get_mut(&lease.chunk.stage)
+                {
+                    stage.cpu_micros += micros;
+                }
+                if let Some(worker) = books.workers.get_mut(&worker) {
+                    worker.items_done += items;
+                }
+                Ok(Completion::Accepted)
+            }
+            ChunkState::Accepted { result: first, .. } if first.items == result.items => {
+                Ok(if first.hash != result.hash {
+                    Completion::HashDiffers
+                } else if chunk.row.epoch == lease.epoch {
+                    Completion::AlreadyAccepted
+                } else {
+                    Completion::Stale
+                })
+            }
+            _ => Ok(Completion::Stale),
+        }
+    }
+
+    async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
+        let mut books = self.books();
+        let Some(chunk) = books.chunk(lease.chunk) else {
+            return Ok(());
+        };
+        let held = matches!(chunk.row.state, ChunkState::Leased { .. });
+        if held && chunk.row.epoch == lease.epoch {
+            if let GiveBack::Failed { .. } = why {
+                chunk.row.suspicions += 1;
+            }
+            books.unlease(lease.chunk, ChunkState::Ready);
+        }
+        Ok(())
+    }
+
+    async fn expire(&self) -> Result<Vec<Expired>, LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let mut held: Vec<ChunkId> = books.leases.values().flatten().copied().collect();
+        held.sort_unstable();
+        let mut expired = Vec::new();
+        for id in held {
+            let Some(chunk) = books.chunk(id) else {
+                continue;
+            };
+            if !matches!(chunk.row.state, ChunkState::Leased { until, .. } if until <= now) {
+                continue;
+            }
+            chunk.row.suspicions += 1;
+            let (epoch, suspicions) = (chunk.row.epoch, chunk.row.suspicions);
+            if let Some(worker) = books.unlease(id, ChunkState::Ready) {
+                expired.push(Expired {
+                    lease: LeaseId { chunk: id, epoch },
+                    worker,
+                    suspicions,
+                });
+            }
+        }
+        Ok(expired)
+    }
+
+    async fn seen(&self, says: WorkerSeen) -> Result<(), LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let worker = books
+            .workers
+            .entry(says.worker.clone())
+            .or_insert_with(|| Worker {
+                says: says.clone(),
+                first_seen: now,
+                last_seen: now,
+                items_done: 0,
+            });
+        worker.says = says;
+        worker.last_seen = now;
+        Ok(())
+    }
+
+    async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, LedgerError> {
+        let books = self.books();
+        let mut rows: Vec<WorkerRow> = books
+            .workers
+            .values()
+            .map(|w| WorkerRow {
+                says: w.says.clone(),
+                first_seen: w.first_seen,
+                last_seen: w.last_seen,
+                items_done: w.items_done,
+                leased_chunks: books.held(&w.says.worker).len() as u64,
+            })
+            .collect();
+        rows.sort_by(|a, b| {
+            let key = |row: &WorkerRow| (row.last_seen, row.says.worker.clone());
+            key(b).cmp(&key(a))
+        });
+        rows.truncate(limit as usize);
+        Ok(rows)
+    }
+}

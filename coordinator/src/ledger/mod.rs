@@ -1,0 +1,148 @@
+//! trait Ledger: jobs, stages, chunks, leases. What the service knows and must not forget.
+//!
+//! Its one rule: a fact is acknowledged after it is durable. Every write of a
+//! worker carries its lease's epoch, every write of a steward its job's epoch,
+//! and a write with an old epoch changes nothing. Results are not in here, only
+//! the names and hashes of the objects that hold them.
+
+pub mod clock;
+pub mod identity;
+pub mod memory;
+pub mod rows;
+
+use self::clock::LedgerTime;
+use self::identity::{CoordinatorId, Epoch, JobId, LeaseId, RequestId};
+use self::rows::*;
+use async_trait::async_trait;
+use cognate_continuation::work::StageId;
+
+/// Why a ledger did not do what it was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum LedgerError {
+    /// There is no such job.
+    #[error("there is no job {0}")]
+    UnknownJob(JobId),
+    /// Another steward drives the job, or the job has ended: nothing was changed.
+    #[error("the writer is not job {0}'s steward any more")]
+    Fenced(JobId),
+    /// One request id was used for two different jobs.
+    #[error("request id `{0}` was used before, for another problem or other options")]
+    RequestReused(RequestId),
+    /// The pieces of a split do not make up a chunk that is ready.
+    #[error("the pieces do not make up a chunk of job {0} that is ready")]
+    NotAPartition(JobId),
+    /// A stage was opened twice, or closed while some of its chunks were not finished.
+    #[error("stage {1:?} of job {0} cannot be opened or closed now")]
+    StageOrder(JobId, StageId),
+    /// A number is too large for the ledger.
+    #[error("{0} is larger than the ledger can hold")]
+    TooLarge(&'static str),
+    /// What stands in the ledger's file is not what this program writes there.
+    #[error("the ledger is damaged or from another program: {0}")]
+    Damaged(String),
+    /// The file is from a later version.
+    #[error("the ledger has schema version {found}, and this program knows only {known}")]
+    TooNew {
+        /// What the file says.
+        found: i64,
+        /// What this program can read.
+        known: i64,
+    },
+    /// The storage engine failed.
+    #[error("the ledger's storage failed: {0}")]
+    Storage(String),
+    /// The ledger has been closed.
+    #[error("the ledger is closed")]
+    Closed,
+}
+
+/// What the service knows and must not forget.
+///
+/// After every call, in every stage: ready + leased + accepted + failed items = all items.
+#[async_trait]
+pub trait Ledger: Send + Sync {
+    /// The ledger's own clock: the database's or the simulator's. No other is used for deadlines.
+    async fn now(&self) -> Result<LedgerTime, LedgerError>;
+
+    // Clients.
+
+    /// Remembers a job. The same request id with the same content is the same job.
+    async fn submit(&self, id: RequestId, job: NewJob) -> Result<Submitted, LedgerError>;
+    /// Ends a job that has not ended yet; returns its leased chunks to ready.
+    async fn cancel(&self, job: JobId, reason: &str) -> Result<Cancelled, LedgerError>;
+    /// One job.
+    async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError>;
+    /// Jobs in the order of their submission, the latest `limit` of them.
+    async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError>;
+    /// The job's stages with their counts, in order.
+    async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError>;
+
+    // The steward.
+
+    /// Takes or keeps the right to drive a job for `duration_ms`; `None` while another has it or
+    /// once the job has ended. A new steward gets a new epoch.
+    async fn steward(
+        &self,
+        job: JobId,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<Option<Epoch>, LedgerError>;
+    /// Jobs that have not ended.
+    async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError>;
+    /// Closes and opens stages and keeps the snapshot of the algorithm after that: all or nothing.
+    async fn advance(&self, job: JobId, epoch: Epoch, step: Advance) -> Result<(), LedgerError>;
+    /// Cuts a ready chunk into pieces, which must make it up without gap or overlap.
+    async fn split(
+        &self,
+        chunk: identity::ChunkId,
+        epoch: Epoch,
+        pieces: &[Piece],
+    ) -> Result<(), LedgerError>;
+    /// Accepts the coordinator's own verdict on a ready chunk that no worker survives.
+    async fn condemn(
+        &self,
+        chunk: identity::ChunkId,
+        epoch: Epoch,
+        result: ResultObject,
+    ) -> Result<(), LedgerError>;
+    /// Ends a job.
+    async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError>;
+    /// Accepted and failed chunks of a stage from item `from` on, in the order of their items,
+    /// at most `limit` of them.
+    async fn finished_chunks(
+        &self,
+        job: JobId,
+        stage: StageId,
+        from: u64,
+        limit: u32,
+    ) -> Result<Vec<ChunkRow>, LedgerError>;
+    /// Ready chunks that have at least `suspicions` suspicions against them.
+    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError>;
+    /// Who finished how many items of a job, by worker.
+    async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError>;
+
+    // Workers.
+
+    /// Leases up to `slots` chunks. The same request of the same worker gets the same leases.
+    async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError>;
+    /// Prolongs leases by `duration_ms` from now.
+    async fn renew(
+        &self,
+        leases: &[LeaseId],
+        duration_ms: u64,
+    ) -> Result<Vec<Renewal>, LedgerError>;
+    /// Accepts a chunk's result, whose object is already durable.
+    async fn complete(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError>;
+    /// Returns a leased chunk to ready. A lease that has ended is left alone.
+    async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError>;
+    /// Returns chunks whose lease has ended to ready, each with one more suspicion.
+    async fn expire(&self) -> Result<Vec<Expired>, LedgerError>;
+    /// Remembers that a worker was here.
+    async fn seen(&self, worker: WorkerSeen) -> Result<(), LedgerError>;
+    /// All workers that were ever seen, the latest `limit` of them.
+    async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, LedgerError>;
+}

@@ -1,0 +1,401 @@
+//! What stands in the ledger and what its calls carry: pure data.
+
+use super::clock::LedgerTime;
+use super::identity::*;
+use crate::chunks::sizing::Sizing;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::StageId;
+use serde::{Deserialize, Serialize};
+
+/// How far a job is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum JobState {
+    /// Submitted; no stage is open yet.
+    Queued,
+    /// Stages are open or about to be.
+    Running,
+    /// Ended with a result.
+    Solved,
+    /// Ended without: the reason says why.
+    Failed,
+    /// Somebody ended it.
+    Cancelled,
+}
+
+impl JobState {
+    /// All states.
+    pub const ALL: [Self; 5] = [
+        Self::Queued,
+        Self::Running,
+        Self::Solved,
+        Self::Failed,
+        Self::Cancelled,
+    ];
+
+    /// The state in one word, as the ledger and the clients write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Queued => "queued",
+            Self::Running => "running",
+            Self::Solved => "solved",
+            Self::Failed => "failed",
+            Self::Cancelled => "cancelled",
+        }
+    }
+
+    /// True once nothing more will happen.
+    pub fn has_ended(self) -> bool {
+        matches!(self, Self::Solved | Self::Failed | Self::Cancelled)
+    }
+}
+
+/// What a client asks for. Large things are objects, named by their digests.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NewJob {
+    /// On whose behalf.
+    pub tenant: Tenant,
+    /// What people call it: a file's name, for instance.
+    pub label: String,
+    /// The checked system, as an object.
+    pub problem: Digest,
+    /// How it is to be solved: the options as the planner reads them.
+    pub options: Vec<u8>,
+    /// Only workers of this numerics revision may track its paths.
+    pub numerics_revision: u32,
+}
+
+/// What a submission did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Submitted {
+    /// The job.
+    pub job: JobId,
+    /// False when the same request had made it before.
+    pub is_new: bool,
+}
+
+/// What a cancellation did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cancelled {
+    /// The job was going on and is cancelled now.
+    Now,
+    /// It had ended before, in this state.
+    HadEnded(JobState),
+}
+
+/// A job's row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct JobRow {
+    /// The job.
+    pub job: JobId,
+    /// Jobs count from 1 in the order of their submission.
+    pub number: u64,
+    /// What was asked.
+    pub asked: NewJob,
+    /// How far it is.
+    pub state: JobState,
+    /// Why it failed or was cancelled.
+    pub reason: Option<String>,
+    /// When it was submitted.
+    pub submitted: LedgerTime,
+    /// When its first chunk was leased.
+    pub started: Option<LedgerTime>,
+    /// When it ended.
+    pub ended: Option<LedgerTime>,
+    /// Who drives it, with which epoch, until when.
+    pub steward: Option<CoordinatorId>,
+    /// Epoch of the last steward; 0 before the first.
+    pub steward_epoch: Epoch,
+    /// Until when the steward's right lasts.
+    pub steward_until: LedgerTime,
+    /// The algorithm's state after the last closed stage, as an object.
+    pub snapshot: Option<Digest>,
+    /// The solutions, as an object.
+    pub solutions: Option<Digest>,
+    /// The summary, as an object.
+    pub summary: Option<Digest>,
+}
+
+/// A stage that is to be opened, already cut into chunks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NewStage {
+    /// Its number within the job.
+    pub stage: StageId,
+    /// The stage, as an object.
+    pub definition: Digest,
+    /// How many items it has.
+    pub items: u64,
+    /// Its first chunks: they make up the items in order. A lease may cut them smaller.
+    pub chunks: Vec<ItemRange>,
+}
+
+/// One step of a job: what a steward writes in one piece.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Advance {
+    /// Stages whose results have all been absorbed.
+    pub close: Vec<StageId>,
+    /// The stages that the algorithm opened after that.
+    pub open: Vec<NewStage>,
+    /// The algorithm's state after that, as an object.
+    pub snapshot: Option<Digest>,
+}
+
+/// How a job ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum JobEnd {
+    /// With solutions and a summary, both objects.
+    Solved {
+        /// The solutions.
+        solutions: Digest,
+        /// The summary.
+        summary: Digest,
+    },
+    /// Without.
+    Failed {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// Items and chunks of one kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Count {
+    /// Items.
+    pub items: u64,
+    /// Chunks.
+    pub chunks: u64,
+}
+
+/// A stage's row with its counts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StageRow {
+    /// Its number within the job.
+    pub stage: StageId,
+    /// The stage, as an object.
+    pub definition: Digest,
+    /// How many items it has.
+    pub items: u64,
+    /// False while its results are still awaited or not yet absorbed.
+    pub closed: bool,
+    /// Waiting for a worker.
+    pub ready: Count,
+    /// With a worker.
+    pub leased: Count,
+    /// Done.
+    pub accepted: Count,
+    /// Given up: each has a result that says so.
+    pub failed: Count,
+    /// CPU time of the accepted items, in microseconds.
+    pub cpu_micros: u64,
+}
+
+impl StageRow {
+    /// The sum that must be `items`.
+    pub fn accounted(&self) -> u64 {
+        self.ready.items + self.leased.items + self.accepted.items + self.failed.items
+    }
+
+    /// True when every item has a result.
+    pub fn is_complete(&self) -> bool {
+        self.accepted.items + self.failed.items == self.items
+    }
+}
+
+/// Where a chunk is; each state carries its data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ChunkState {
+    /// Waits for a worker.
+    Ready,
+    /// With a worker.
+    Leased {
+        /// Which.
+        worker: WorkerId,
+        /// Until when, unless renewed.
+        until: LedgerTime,
+    },
+    /// Done by a worker.
+    Accepted {
+        /// Which.
+        worker: WorkerId,
+        /// Its result.
+        result: ResultObject,
+    },
+    /// Given up by the coordinator, with a result that says so.
+    Failed {
+        /// That result.
+        result: ResultObject,
+    },
+}
+
+/// A chunk's row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChunkRow {
+    /// The chunk.
+    pub chunk: ChunkId,
+    /// Its items.
+    pub items: ItemRange,
+    /// Where it is.
+    pub state: ChunkState,
+    /// Epoch of its last lease; 0 before the first.
+    pub epoch: Epoch,
+    /// How many of its leases ended with a dead, silent or failing worker.
+    pub suspicions: u32,
+    /// True when a worker that takes it takes nothing beside it.
+    pub alone: bool,
+}
+
+/// The object that holds a chunk's results.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ResultObject {
+    /// Which items it holds.
+    pub items: ItemRange,
+    /// Its address in the result store.
+    pub address: String,
+    /// Hash over its records: the same for every execution.
+    pub hash: Digest,
+    /// CPU time of the tracking, in microseconds.
+    pub cpu_micros: u64,
+}
+
+/// A piece of a chunk that is split.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// Its items.
+    pub items: ItemRange,
+    /// Suspicions that it inherits.
+    pub suspicions: u32,
+    /// True when a worker that takes it takes nothing beside it.
+    pub alone: bool,
+}
+
+/// A worker asks for chunks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeaseRequest {
+    /// Who asks.
+    pub worker: WorkerId,
+    /// The same for a request that is sent again: it gets the same leases.
+    pub request: RequestId,
+    /// Only jobs of this revision are given out.
+    pub numerics_revision: u32,
+    /// How many threads the worker tracks with.
+    pub threads: u32,
+    /// How many chunks it wants at most.
+    pub slots: u32,
+    /// How long it may keep them without renewal, in milliseconds.
+    pub duration_ms: u64,
+    /// How large the chunks are to be.
+    pub sizing: Sizing,
+    /// Chunks with this many suspicions are for the steward to split, not to lease.
+    pub suspicion_limit: u32,
+    /// A job has at most this many chunks with workers.
+    pub in_flight_limit: u32,
+}
+
+/// A leased chunk.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lease {
+    /// The lease.
+    pub lease: LeaseId,
+    /// The chunk's items.
+    pub items: ItemRange,
+    /// Until when, unless renewed.
+    pub until: LedgerTime,
+    /// The job's problem, as an object.
+    pub problem: Digest,
+    /// The stage, as an object.
+    pub definition: Digest,
+    /// True when nothing else should run beside it.
+    pub alone: bool,
+}
+
+/// What became of a lease that was to be renewed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Renewal {
+    /// It lasts until then.
+    Until(LedgerTime),
+    /// It has ended: stop working on it.
+    Lost,
+}
+
+/// What became of a reported chunk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Completion {
+    /// This is the chunk's result now.
+    Accepted,
+    /// It was before, by this very lease: the first answer was lost.
+    AlreadyAccepted,
+    /// The lease had ended: drop the result.
+    Stale,
+    /// Another result was accepted for the same items: one of two workers computes wrongly.
+    HashDiffers,
+}
+
+/// Why a chunk comes back without a result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum GiveBack {
+    /// The worker leaves or has too much: no failure.
+    Drained,
+    /// It tried and could not: counts as a suspicion at once.
+    Failed {
+        /// What happened.
+        reason: String,
+    },
+}
+
+/// A lease that ended without a word from its worker.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Expired {
+    /// The lease.
+    pub lease: LeaseId,
+    /// Who had it.
+    pub worker: WorkerId,
+    /// Suspicions against the chunk, this one included.
+    pub suspicions: u32,
+}
+
+/// What a worker says about itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WorkerSeen {
+    /// Who.
+    pub worker: WorkerId,
+    /// Version of its program.
+    pub version: String,
+    /// Its numerics revision.
+    pub numerics_revision: u32,
+    /// The instruction set that it tracks with.
+    pub instruction_set: String,
+    /// Threads that it tracks with.
+    pub threads: u32,
+    /// How it is connected: `grpc`, for instance.
+    pub transport: String,
+    /// True when it takes no more chunks.
+    pub draining: bool,
+}
+
+/// A worker's row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WorkerRow {
+    /// What it said last.
+    pub says: WorkerSeen,
+    /// When it was first here.
+    pub first_seen: LedgerTime,
+    /// When it was last here.
+    pub last_seen: LedgerTime,
+    /// Items that it finished.
+    pub items_done: u64,
+    /// Chunks that it has now.
+    pub leased_chunks: u64,
+}
+
+/// What one worker did for one job.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contribution {
+    /// Who.
+    pub worker: WorkerId,
+    /// How it is connected; empty when it never said.
+    pub transport: String,
+    /// Items that it finished.
+    pub items: u64,
+    /// CPU time of the tracking, in microseconds.
+    pub cpu_micros: u64,
+}
