@@ -2,4 +2,5 @@
 #![forbid(unsafe_code)]
 
 pub mod chunks;
+pub mod client;
 pub mod ledger;

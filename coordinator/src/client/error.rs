@@ -1,0 +1,90 @@
+//! What can go wrong on the command line, and the exit codes that say so.
+
+use std::path::PathBuf;
+
+/// How a command ends, as programs see it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Exit {
+    /// Solved, and every path accounted for.
+    Solved = 0,
+    /// Solved, but some paths failed or a count is not settled.
+    Unsettled = 1,
+    /// Bad input or usage.
+    BadInput = 2,
+    /// The service could not be reached or gave up.
+    Unavailable = 3,
+    /// The job was cancelled.
+    Cancelled = 4,
+    /// Interrupted from the keyboard.
+    Interrupted = 130,
+}
+
+/// Why a command did not do what was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum ClientError {
+    /// Parsed, but not there yet.
+    #[error("not in this version: {what}")]
+    NotInThisVersion {
+        /// The option or command.
+        what: String,
+    },
+    /// A file could not be read or written.
+    #[error("{action} {path}: {source}", path = path.display())]
+    File {
+        /// "cannot read" or "cannot write".
+        action: &'static str,
+        /// Which file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// What a file or an option says is wrong.
+    #[error("{origin}: {message}")]
+    Input {
+        /// The file or option.
+        origin: String,
+        /// Where and what was expected.
+        message: String,
+    },
+    /// The coordinator refused the request.
+    #[error("the coordinator refused: {0}")]
+    Refused(String),
+    /// Nobody answers.
+    #[error(
+        "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
+    )]
+    Unreachable {
+        /// Where it was looked for.
+        address: String,
+        /// What the connection said.
+        reason: String,
+    },
+    /// It answered, and failed.
+    #[error("the coordinator gave up: {0}")]
+    GaveUp(String),
+    /// A part of `cognate solve` did not come up or died.
+    #[error("{0}")]
+    Local(String),
+    /// Somebody stopped the job.
+    #[error("the job was cancelled")]
+    Cancelled,
+    /// Ctrl-C.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl ClientError {
+    /// The exit code of this error.
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::NotInThisVersion { .. }
+            | Self::File { .. }
+            | Self::Input { .. }
+            | Self::Refused(_) => Exit::BadInput,
+            Self::Unreachable { .. } | Self::GaveUp(_) | Self::Local(_) => Exit::Unavailable,
+            Self::Cancelled => Exit::Cancelled,
+            Self::Interrupted => Exit::Interrupted,
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! The command-line client: arguments, one connection, commands, output.
+
+pub mod error;
+pub mod output;

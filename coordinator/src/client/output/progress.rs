@@ -1,0 +1,161 @@
+//! Progress while a job runs: a bar on a terminal, a line every few seconds elsewhere, nothing when asked for JSON.
+
+use super::text::{count, counted, rate, seconds};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// Between two plain lines: long enough for a log file, short enough to see life.
+const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
+
+/// Where a job stands, in the words of the display.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Standing {
+    /// What is being done now, like "tracking" or "stage 2: tracking again".
+    pub phase: String,
+    /// Paths (items of the open stages) that have ended.
+    pub done: u64,
+    /// Paths that are known to be asked for so far.
+    pub total: u64,
+    /// Workers that hold leases or poll.
+    pub workers: u64,
+    /// Paths that failed so far.
+    pub failed: u64,
+}
+
+/// How progress is shown.
+enum Display {
+    Bar(ProgressBar),
+    Plain {
+        last: Option<Instant>,
+        shown: Option<Standing>,
+    },
+    Silent,
+}
+
+/// Progress of one job on standard error.
+pub struct Progress {
+    display: Display,
+    began: Instant,
+}
+
+impl Progress {
+    /// The display that fits: `quiet` (JSON was asked for) shows a bar on a terminal and nothing elsewhere.
+    pub fn new(quiet: bool, now: Instant) -> Self {
+        let term = console::Term::stderr();
+        let display = if term.is_term() {
+            let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::term(term, 12));
+            bar.set_style(style());
+            bar.enable_steady_tick(Duration::from_millis(120));
+            Display::Bar(bar)
+        } else if quiet {
+            Display::Silent
+        } else {
+            Display::Plain {
+                last: None,
+                shown: None,
+            }
+        };
+        Self {
+            display,
+            began: now,
+        }
+    }
+
+    /// Shows where the job stands.
+    pub fn show(&mut self, standing: &Standing, now: Instant) {
+        let began = self.began;
+        match &mut self.display {
+            Display::Bar(bar) => {
+                bar.set_length(standing.total);
+                bar.set_position(standing.done);
+                bar.set_prefix(standing.phase.clone());
+                bar.set_message(notes(standing));
+            }
+            Display::Plain { last, shown } => {
+                // The first line waits too: a job that takes a second needs none.
+                let since = last.unwrap_or(began);
+                if now.duration_since(since) >= PLAIN_INTERVAL && shown.as_ref() != Some(standing) {
+                    eprintln!("{}", plain_line(standing, now.duration_since(began)));
+                    *last = Some(now);
+                    *shown = Some(standing.clone());
+                }
+            }
+            Display::Silent => {}
+        }
+    }
+
+    /// A line above the bar, or simply a line.
+    pub fn say(&self, line: &str) {
+        match &self.display {
+            Display::Bar(bar) => bar.suspend(|| eprintln!("{line}")),
+            Display::Plain { .. } => eprintln!("{line}"),
+            Display::Silent => {}
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(self) {
+        if let Display::Bar(bar) = self.display {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn style() -> ProgressStyle {
+    ProgressStyle::with_template(
+        "{spinner:.cyan} {prefix} {wide_bar:.cyan/dim} {human_pos}/{human_len} {msg} {elapsed} ",
+    )
+    .expect("the template is constant and well formed")
+    .progress_chars("━╸─")
+}
+
+fn notes(standing: &Standing) -> String {
+    let mut notes = counted(standing.workers, "worker");
+    if standing.failed > 0 {
+        notes.push_str(&format!(", {} failed", count(standing.failed)));
+    }
+    notes
+}
+
+fn plain_line(standing: &Standing, elapsed: Duration) -> String {
+    let elapsed = elapsed.as_secs_f64();
+    let mut line = format!(
+        "{}: {} of {}",
+        standing.phase,
+        count(standing.done),
+        counted(standing.total, "path")
+    );
+    if standing.done > 0 && elapsed > 0.0 {
+        line.push_str(&format!(
+            ", {} paths/s",
+            rate(standing.done as f64 / elapsed)
+        ));
+    }
+    line.push_str(&format!(", {}, {}", notes(standing), seconds(elapsed)));
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plain_line_says_where_the_job_stands() {
+        let standing = Standing {
+            phase: "tracking".into(),
+            done: 12_000,
+            total: 143_360,
+            workers: 2,
+            failed: 3,
+        };
+        assert_eq!(
+            plain_line(&standing, Duration::from_secs(60)),
+            "tracking: 12,000 of 143,360 paths, 200 paths/s, 2 workers, 3 failed, 1 min 00 s"
+        );
+    }
+
+    #[test]
+    fn the_template_is_well_formed() {
+        style();
+    }
+}

@@ -1,0 +1,440 @@
+//! The answer for people: paths by verdict that add up, solutions, time, workers, warnings.
+
+use super::summary::Summary;
+use super::text::{Look, complex, count, counted, cut, magnitude, rate, real, seconds, wrapped};
+use num_complex::Complex64;
+use std::fmt::Write as _;
+
+/// A solution as a table shows it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolutionRow {
+    /// Names and values, in the order of the system's variables.
+    pub variables: Vec<(String, Complex64)>,
+    /// Multiplicity as a solution of the tracked system.
+    pub multiplicity: u32,
+    /// Fixed by complex conjugation; `None` where that was not asked.
+    pub real: Option<bool>,
+    /// Whether the Jacobian is singular there.
+    pub singular: bool,
+    /// Largest residual.
+    pub residual: f64,
+    /// Condition number.
+    pub condition: f64,
+    /// Estimated relative error.
+    pub accuracy: f64,
+}
+
+/// Solutions shown before a table says how many more there are.
+pub const SOLUTIONS_SHOWN: usize = 8;
+
+/// Workers named in a table; `--format json` names all.
+const WORKERS_SHOWN: usize = 8;
+
+/// Width of the column of names.
+const LABEL: usize = 22;
+
+/// Significant figures of a coordinate in a table; files have all of them.
+const FIGURES: usize = 6;
+
+/// One line: a name, a number, what it means.
+struct Lines {
+    text: String,
+    look: Look,
+    number: usize,
+}
+
+impl Lines {
+    fn heading(&mut self, title: &str, number: &str, note: &str) {
+        let cell = format!("{number:>width$}", width = self.number);
+        let title = self.look.bold(&format!("{title:<LABEL$}"));
+        let line = format!("  {title}{}", self.look.bold(&cell));
+        self.with_note(line, note);
+    }
+
+    fn line(&mut self, name: &str, number: &str, note: &str) {
+        let cell = format!("{number:>width$}", width = self.number);
+        let line = format!("    {name:<width$}{cell}", width = LABEL - 2);
+        self.with_note(line, note);
+    }
+
+    /// The note starts in its own column, and goes on below itself.
+    fn with_note(&mut self, line: String, note: &str) {
+        let column = 2 + LABEL + self.number + 2;
+        let room = self.look.width.saturating_sub(column).max(20);
+        let notes = wrapped(note, room);
+        match notes.split_first() {
+            None => {
+                let _ = writeln!(self.text, "{}", line.trim_end());
+            }
+            Some((first, rest)) => {
+                let _ = writeln!(self.text, "{line}  {}", self.look.dim(first));
+                for more in rest {
+                    let _ = writeln!(self.text, "{}{}", " ".repeat(column), self.look.dim(more));
+                }
+            }
+        }
+    }
+
+    fn blank(&mut self) {
+        self.text.push('\n');
+    }
+}
+
+/// The whole table; `name` says what was solved, `solutions` are the first of them.
+pub fn summary(name: &str, summary: &Summary, solutions: &[SolutionRow], look: Look) -> String {
+    let paths = &summary.paths;
+    let mut lines = Lines {
+        text: String::new(),
+        look,
+        number: count(paths.total).len().max(6),
+    };
+    lines.text.push_str(&headline(name, summary, look));
+    lines.blank();
+    paths_block(&mut lines, summary);
+    lines.blank();
+    solutions_block(&mut lines, summary);
+    lines.blank();
+    time_block(&mut lines, summary);
+    lines.text.push_str(&warnings(summary, look));
+    if !solutions.is_empty() {
+        lines.blank();
+        let total = summary.solutions.distinct;
+        lines.text.push_str(&solution_list(solutions, total, look));
+    }
+    lines.text
+}
+
+/// One or two lines that answer the question.
+fn headline(name: &str, summary: &Summary, look: Look) -> String {
+    let s = &summary.solutions;
+    let mut answer = counted(s.distinct, "solution");
+    match s.real {
+        Some(n) if s.distinct == 0 && n == 0 => {}
+        Some(n) if n == s.distinct && n > 1 => answer.push_str(", all real"),
+        Some(n) => {
+            let _ = write!(answer, ", {} real", count(n));
+        }
+        None => {}
+    }
+    if s.singular > 0 {
+        let _ = write!(answer, ", {} singular", count(s.singular));
+    }
+    let open = summary.open_questions();
+    let failed = paths_failed(summary) > 0;
+    let answer = match (open.is_empty(), failed) {
+        (true, _) => look.good(&answer),
+        (false, false) => look.warn(&answer),
+        (false, true) => look.bad(&answer),
+    };
+    let p = &summary.problem;
+    let what = format!(
+        "{}, {}, {} start, seed {}",
+        counted(p.variables, "variable"),
+        counted(p.equations, "equation"),
+        p.start,
+        p.seed
+    );
+    let mut text = format!("{}: {answer}\n", look.bold(name));
+    for line in wrapped(&what, look.width) {
+        let _ = writeln!(text, "{}", look.dim(&line));
+    }
+    for question in open {
+        for (i, line) in wrapped(&question, look.width - 15).iter().enumerate() {
+            let lead = if i == 0 {
+                "not settled: "
+            } else {
+                "             "
+            };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    text
+}
+
+fn paths_failed(summary: &Summary) -> u64 {
+    summary.paths.failed.unwrap_or(0)
+}
+
+fn paths_block(lines: &mut Lines, summary: &Summary) {
+    let p = &summary.paths;
+    let undecided = "not decided in this version; such paths are counted in the next class";
+    let classes = [
+        ("failed", p.failed, "given up; `cognate explain` says why"),
+        ("at infinity", p.at_infinity, "no solution there"),
+        ("excess", p.excess, "no solution before randomisation"),
+        (
+            "positive-dimensional",
+            p.positive_dimensional,
+            "on a curve, surface, ... of solutions",
+        ),
+        (
+            "singular",
+            p.singular,
+            "at a multiple or otherwise singular point",
+        ),
+        ("finite", p.finite, "at a nonsingular isolated solution"),
+    ];
+    lines.heading("Paths", "", "each in the first class that holds");
+    for (name, number, meaning) in classes {
+        match number {
+            Some(0) => lines.line(name, "0", ""),
+            Some(n) => lines.line(name, &count(n), meaning),
+            None => lines.line(name, "-", undecided),
+        }
+    }
+    let rule = "-".repeat(count(p.total).len().max(2));
+    lines.line("", &rule, "");
+    let sum: u64 = classes.iter().filter_map(|(_, n, _)| *n).sum();
+    let note = if sum == p.total {
+        String::new()
+    } else {
+        format!("the classes add up to {}: please report this", count(sum))
+    };
+    lines.line("total", &count(p.total), &note);
+    if p.retracked > 0 || p.crossings_found > 0 {
+        let note = match p.crossings_found {
+            0 => String::new(),
+            found => format!(
+                "{} found, {} resolved",
+                counted(found, "path crossing"),
+                count(p.crossings_resolved)
+            ),
+        };
+        lines.line("tracked again", &count(p.retracked), &note);
+    }
+    if p.decided_by_precision_limit > 0 {
+        let note = "verdicts that only the limit of precision gave";
+        lines.line(
+            "by precision limit",
+            &count(p.decided_by_precision_limit),
+            note,
+        );
+    }
+    if p.by_precision.len() > 1 {
+        let mut rungs: Vec<(u64, u64)> = p
+            .by_precision
+            .iter()
+            .filter_map(|(bits, &n)| Some((bits.parse().ok()?, n)))
+            .collect();
+        rungs.sort_unstable();
+        let words: Vec<String> = rungs
+            .iter()
+            .map(|(bits, n)| format!("{} with {bits} bits", count(*n)))
+            .collect();
+        lines.line("precision", "", &words.join(", "));
+    }
+}
+
+fn solutions_block(lines: &mut Lines, summary: &Summary) {
+    let s = &summary.solutions;
+    lines.heading("Solutions", "", "isolated points, equal ones merged");
+    lines.line("nonsingular", &count(s.nonsingular), "");
+    lines.line("singular", &count(s.singular), "");
+    let rule = "-".repeat(count(s.distinct).len().max(2));
+    lines.line("", &rule, "");
+    let note = if s.with_multiplicity == s.distinct {
+        String::new()
+    } else {
+        format!("{} with multiplicity", count(s.with_multiplicity))
+    };
+    lines.line("distinct", &count(s.distinct), &note);
+    match (s.real, &s.real_reason) {
+        (Some(n), _) => lines.line("real", &count(n), ""),
+        (None, reason) => lines.line("real", "-", reason.as_deref().unwrap_or("not asked")),
+    }
+    if let Some(n) = s.certified {
+        lines.line("certified", &count(n), "");
+    }
+    if s.positive_dimensional == Some(true) {
+        lines.line("and also", "", "a positive-dimensional solution set");
+    }
+    for (name, &n) in &s.degenerate {
+        lines.line("degenerate", &count(n), name);
+    }
+    if let Some(n) = summary.classes.count {
+        let note = summary
+            .classes
+            .group_order
+            .map(|order| format!("of a group of {}", counted(order, "element")));
+        lines.line("classes", &count(n), note.as_deref().unwrap_or(""));
+    }
+}
+
+fn time_block(lines: &mut Lines, summary: &Summary) {
+    let t = &summary.time;
+    let mut parts = vec![];
+    if let Some(cpu) = t.cpu_seconds {
+        parts.push(format!("{} of CPU", seconds(cpu)));
+    }
+    if let Some(tracking) = t.tracking_cpu_seconds {
+        parts.push(format!("{} tracking", seconds(tracking)));
+    }
+    if let Some(speed) = t.paths_per_second {
+        parts.push(format!("{} paths/s", rate(speed)));
+    }
+    // Times are words, not counts: they may be wider than the column of numbers.
+    let wall = seconds(t.wall_seconds);
+    lines.heading("Time", &wall, &parts.join(", "));
+    let mut workers: Vec<String> = summary
+        .workers
+        .iter()
+        .take(WORKERS_SHOWN)
+        .map(|w| {
+            format!(
+                "{} {} ({})",
+                cut(&w.id, 24),
+                counted(w.paths, "path"),
+                w.transport
+            )
+        })
+        .collect();
+    let more = summary.workers.len().saturating_sub(WORKERS_SHOWN);
+    if more > 0 {
+        workers.push(format!("and {more} more"));
+    }
+    let number = count(summary.workers.len() as u64);
+    lines.heading("Workers", &number, &workers.join(", "));
+}
+
+fn warnings(summary: &Summary, look: Look) -> String {
+    let mut text = String::new();
+    for warning in &summary.warnings {
+        text.push('\n');
+        for (i, line) in wrapped(warning, look.width.saturating_sub(9).max(20))
+            .iter()
+            .enumerate()
+        {
+            let lead = if i == 0 { "warning: " } else { "         " };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    text
+}
+
+/// The first solutions, one a line, as many variables as fit; `total` is how many there are.
+pub fn solution_list(solutions: &[SolutionRow], total: u64, look: Look) -> String {
+    let mut text = String::new();
+    let Some(first) = solutions.first() else {
+        return text;
+    };
+    let shown = &solutions[..solutions.len().min(SOLUTIONS_SHOWN)];
+    let digits = shown.len().to_string().len().max(1);
+    let kind = |s: &SolutionRow| {
+        let mut kind = match s.real {
+            Some(true) => "real".to_string(),
+            Some(false) => "complex".to_string(),
+            None => String::new(),
+        };
+        if s.singular {
+            kind = format!("{kind} singular").trim().to_string();
+        }
+        if s.multiplicity > 1 {
+            let _ = write!(kind, " x{}", s.multiplicity);
+        }
+        kind.trim().to_string()
+    };
+    let mut columns: Vec<(String, Vec<String>)> = vec![
+        (
+            "#".into(),
+            (1..=shown.len()).map(|i| format!("{i:>digits$}")).collect(),
+        ),
+        ("kind".into(), shown.iter().map(kind).collect()),
+        (
+            "condition".into(),
+            shown.iter().map(|s| magnitude(s.condition)).collect(),
+        ),
+    ];
+    if columns[1].1.iter().all(String::is_empty) {
+        columns.remove(1);
+    }
+    let fixed = columns.len();
+    for (v, (name, _)) in first.variables.iter().enumerate() {
+        let mut cells: Vec<String> = shown
+            .iter()
+            .map(|s| {
+                s.variables
+                    .get(v)
+                    .map_or(String::new(), |(_, z)| coordinate(s, *z))
+            })
+            .collect();
+        // Signs stand in a column of their own.
+        if cells.iter().any(|c| c.starts_with('-')) {
+            for cell in cells.iter_mut().filter(|c| !c.starts_with('-')) {
+                cell.insert(0, ' ');
+            }
+        }
+        columns.push((name.clone(), cells));
+    }
+    let width = |(name, cells): &(String, Vec<String>)| {
+        cells
+            .iter()
+            .chain([name])
+            .map(|c| c.chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: Vec<usize> = columns.iter().map(width).collect();
+    // As many variables as fit, at least one, and room to say how many are left out.
+    let mut used = widths[..fixed].iter().map(|w| w + 2).sum::<usize>();
+    let mut fitting = fixed;
+    for (i, w) in widths.iter().enumerate().skip(fixed) {
+        let mark = if i + 1 < columns.len() { 12 } else { 0 };
+        if i > fixed && used + w + 2 + mark > look.width {
+            break;
+        }
+        used += w + 2;
+        fitting = i + 1;
+    }
+    let left_out = columns.len() - fitting;
+    let mut heading = String::new();
+    for (i, (name, _)) in columns[..fitting].iter().enumerate() {
+        let _ = write!(heading, "  {name:<width$}", width = widths[i]);
+    }
+    if left_out > 0 {
+        let _ = write!(heading, "  +{left_out} more");
+    }
+    let _ = writeln!(text, "{}", look.bold(&cut(heading.trim_end(), look.width)));
+    for r in 0..shown.len() {
+        let mut line = String::new();
+        for (i, (_, cells)) in columns[..fitting].iter().enumerate() {
+            let _ = write!(line, "  {:<width$}", cells[r], width = widths[i]);
+        }
+        let _ = writeln!(text, "{}", cut(line.trim_end(), look.width));
+    }
+    let more = total.saturating_sub(shown.len() as u64);
+    if more > 0 || left_out > 0 {
+        let mut note = String::from("  ");
+        if more > 0 {
+            let _ = write!(note, "and {} more; ", count(more));
+        }
+        note.push_str("--output DIR writes all digits of all of them");
+        for line in wrapped(&note, look.width - 2) {
+            let _ = writeln!(text, "  {}", look.dim(&line));
+        }
+    }
+    text
+}
+
+/// A coordinate without what is only rounding.
+fn coordinate(solution: &SolutionRow, z: Complex64) -> String {
+    // A part below the solution's own error estimate says nothing.
+    let noise = solution.accuracy.clamp(1e-14, 1e-6);
+    let scale = solution
+        .variables
+        .iter()
+        .map(|(_, z)| z.re.abs().max(z.im.abs()))
+        .fold(0.0, f64::max);
+    let keep = |part: f64| {
+        if part.abs() <= noise * scale.max(1.0) {
+            0.0
+        } else {
+            part
+        }
+    };
+    let z = Complex64::new(keep(z.re), keep(z.im));
+    if z.im == 0.0 {
+        real(z.re, FIGURES)
+    } else {
+        complex(z, FIGURES, 0.0)
+    }
+}

@@ -1,0 +1,114 @@
+//! What people see, against files that a person can read: tests/golden/client_output.
+//! UPDATE_GOLDEN=1 rewrites them.
+
+use cognate_coordinator::client::output::summary::Summary;
+use cognate_coordinator::client::output::table::{self, SolutionRow};
+use cognate_coordinator::client::output::text::Look;
+use num_complex::Complex64;
+use std::path::PathBuf;
+
+/// Compares with the golden file, or rewrites it.
+fn check(name: &str, shown: &str) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../tests/golden/client_output")
+        .join(name);
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&path, shown).expect("the golden folder is writable");
+        return;
+    }
+    let expected = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        shown == expected,
+        "{name} differs from the golden file (UPDATE_GOLDEN=1 rewrites it):\n{shown}\n--- expected\n{expected}"
+    );
+}
+
+/// Nothing runs over the edge, at either width.
+fn check_widths(name: &str, render: impl Fn(Look) -> String) {
+    for width in [80, 120] {
+        let shown = render(Look {
+            width,
+            color: false,
+        });
+        for line in shown.lines() {
+            assert!(line.chars().count() <= width, "wider than {width}: {line}");
+        }
+        check(&format!("{name}_{width}.txt"), &shown);
+    }
+}
+
+const PLATFORM: &str = r#"{
+  "problem": {"digest": "5f0c", "variables": 8, "equations": 7, "start": "total-degree", "seed": 42},
+  "paths": {"total": 128, "finite": 40, "singular": 0, "positive_dimensional": 88, "excess": 0, "at_infinity": 0,
+            "failed": 0, "retracked": 3, "crossings_found": 1, "crossings_resolved": 1, "decided_by_precision_limit": 0,
+            "by_precision": {"53": 126, "106": 2}, "highest_precision_bits": 106},
+  "solutions": {"distinct": 40, "nonsingular": 40, "singular": 0, "real": 40, "real_reason": null,
+                "with_multiplicity": 40, "certified": null, "positive_dimensional": true, "degenerate": {"no pose": 0}},
+  "classes": {"count": null, "group_order": null, "complete": null},
+  "time": {"wall_seconds": 0.41, "cpu_seconds": 0.63, "tracking_cpu_seconds": 0.30, "paths_per_second": 312.0},
+  "workers": [{"id": "worker-1", "paths": 64, "transport": "grpc"}, {"id": "worker-2", "paths": 64, "transport": "grpc"}],
+  "warnings": []
+}"#;
+
+const UNSETTLED: &str = r#"{
+  "problem": {"digest": "aa", "variables": 10, "equations": 10, "start": "multihomogeneous", "seed": 7},
+  "paths": {"total": 143360, "finite": 8652, "singular": 20, "positive_dimensional": null, "excess": 0,
+            "at_infinity": 134685, "failed": 3, "retracked": 1200, "crossings_found": 4, "crossings_resolved": 3,
+            "decided_by_precision_limit": 2, "by_precision": {"53": 143360}, "highest_precision_bits": 53},
+  "solutions": {"distinct": 8657, "nonsingular": 8652, "singular": 5, "real": null,
+                "real_reason": "the system is not invariant under complex conjugation; name conjugate variables with --conjugates",
+                "with_multiplicity": 8672, "certified": null, "positive_dimensional": null, "degenerate": {}},
+  "classes": {"count": null, "group_order": null, "complete": null},
+  "time": {"wall_seconds": 7300.0, "cpu_seconds": 29000.0, "tracking_cpu_seconds": 28000.0, "paths_per_second": 19.6},
+  "workers": [{"id": "7c2e2a0e-6a1f-4b7e-9a53-0c1d5c1f0a11", "paths": 143360, "transport": "grpc"}],
+  "warnings": ["Whether 20 singular endpoints lie on a positive-dimensional solution set is not decided in this version; they are counted as singular."],
+  "a field of a newer service": 1
+}"#;
+
+fn real_row(seed: u32) -> SolutionRow {
+    let value = |v: u32| f64::from((seed * 37 + v * 101) % 199) / 99.0 - 1.0;
+    SolutionRow {
+        variables: ["x0", "x1", "x2", "x3", "y0", "y1", "y2", "y3"]
+            .iter()
+            .zip(0..)
+            .map(|(name, v)| (name.to_string(), Complex64::new(value(v), 1e-16)))
+            .collect(),
+        multiplicity: 1,
+        real: Some(true),
+        singular: false,
+        residual: 1e-16,
+        condition: 35.0 + f64::from(seed),
+        accuracy: 1e-15,
+    }
+}
+
+#[test]
+fn a_settled_answer() {
+    let summary = Summary::read(PLATFORM).expect("the contract's example is a summary");
+    let rows: Vec<SolutionRow> = (0..40).map(real_row).collect();
+    check_widths("settled", |look| {
+        table::summary("stewart_gough.bertini", &summary, &rows, look)
+    });
+    assert!(summary.open_questions().is_empty());
+}
+
+#[test]
+fn an_answer_with_open_questions() {
+    let summary = Summary::read(UNSETTLED).expect("a summary with undecided classes is a summary");
+    let mut row = real_row(1);
+    row.real = None;
+    row.singular = true;
+    row.multiplicity = 4;
+    row.variables[1].1.im = -0.5;
+    row.condition = f64::INFINITY;
+    check_widths("unsettled", |look| {
+        table::summary(
+            "nine_point.bertini",
+            &summary,
+            std::slice::from_ref(&row),
+            look,
+        )
+    });
+    assert_eq!(summary.exit() as u8, 1);
+    assert_eq!(summary.open_questions().len(), 3);
+}
