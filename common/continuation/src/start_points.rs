@@ -103,7 +103,7 @@ impl StoredPoints {
         let size = dimension
             .checked_mul(16)
             .ok_or(DamagedPoints("its dimension is absurd"))?;
-        if body.len() % size != 0 {
+        if !body.len().is_multiple_of(size) {
             return Err(DamagedPoints("its length is no multiple of its dimension"));
         }
         let coordinates = body

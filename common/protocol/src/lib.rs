@@ -1,2 +1,27 @@
 //! The wire: generated messages, checked conversions, digests.
+//!
+//! [`v1`] is generated from `proto/`; [`from_proto`] checks every field on its
+//! way in, [`to_proto`] cannot fail. [`submission`] is what a client asks for,
+//! [`digest`] names a system by its content, [`records`] is the form in which
+//! results are stored and hashed.
 #![forbid(unsafe_code)]
+
+pub mod digest;
+pub mod error;
+pub mod from_proto;
+pub mod limits;
+pub mod records;
+pub mod submission;
+pub mod to_proto;
+
+/// Messages and services, generated from `proto/`.
+#[allow(missing_docs, clippy::all, rustdoc::all)]
+pub mod v1 {
+    tonic::include_proto!("cognate.v1");
+}
+
+/// The encoded descriptor set of all messages and services, for reflection.
+pub const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/cognate.v1.bin"));
+
+/// Grows when coordinators and workers of two versions cannot work together.
+pub const PROTOCOL_VERSION: u32 = 1;

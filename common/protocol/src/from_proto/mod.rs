@@ -1,0 +1,49 @@
+//! Checked conversion inwards: every field, every length, every index.
+
+pub mod path;
+pub mod problem;
+
+use crate::error::ProtocolError;
+use cognate_continuation::start_points::Digest;
+use num_complex::Complex64;
+
+/// A digest, 32 bytes long.
+pub fn digest(field: &str, bytes: &[u8]) -> Result<Digest, ProtocolError> {
+    bytes.try_into().map(Digest).map_err(|_| {
+        ProtocolError::invalid(
+            field,
+            format!("{} bytes", bytes.len()),
+            "a digest of 32 bytes",
+        )
+    })
+}
+
+/// A number that a message leaves out where it has none.
+fn required<T>(field: &str, value: Option<T>) -> Result<T, ProtocolError> {
+    value.ok_or_else(|| ProtocolError::missing(field))
+}
+
+/// Pairs of doubles as complex numbers, not necessarily finite.
+fn pairs(field: &str, doubles: &[f64]) -> Result<Vec<Complex64>, ProtocolError> {
+    if !doubles.len().is_multiple_of(2) {
+        return Err(ProtocolError::invalid(
+            field,
+            format!("{} doubles", doubles.len()),
+            "real and imaginary part of every coordinate",
+        ));
+    }
+    let pairs = doubles.chunks_exact(2);
+    Ok(pairs.map(|z| Complex64::new(z[0], z[1])).collect())
+}
+
+/// The first coordinate that is not finite.
+fn finite(field: &str, values: &[Complex64]) -> Result<(), ProtocolError> {
+    match values.iter().position(|z| !z.is_finite()) {
+        None => Ok(()),
+        Some(i) => Err(ProtocolError::invalid(
+            format!("{field}[{i}]"),
+            values[i],
+            "finite numbers",
+        )),
+    }
+}

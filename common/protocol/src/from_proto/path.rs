@@ -1,0 +1,252 @@
+//! Stage and PathResult messages to the types of `continuation`.
+
+use super::problem::{complexes, settings};
+use super::{digest, finite, pairs, required};
+use crate::error::{ProtocolError, within_limit};
+use crate::limits;
+use crate::v1;
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_systems::formats::limits as sizes;
+
+/// A stage.
+pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
+    let work = match v1::Work::try_from(m.work) {
+        Ok(v1::Work::Track) => Work::Track,
+        Ok(v1::Work::Unspecified) | Err(_) => {
+            return Err(ProtocolError::invalid(
+                "work",
+                m.work,
+                "a kind of work that this version knows",
+            ));
+        }
+    };
+    let stage = Stage {
+        id: StageId(m.id),
+        work,
+        homotopy: homotopy(required("homotopy", m.homotopy.as_ref())?)
+            .map_err(|e| e.within("homotopy"))?,
+        start_points: start_points(required("start_points", m.start_points.as_ref())?)
+            .map_err(|e| e.within("start_points"))?,
+        settings: complete_settings(required("settings", m.settings.as_ref())?)
+            .map_err(|e| e.within("settings"))?,
+        seed: m.seed,
+        attempt: attempt(m.attempt)?,
+    };
+    match stage.items() {
+        Some(items) if items <= limits::PATHS.value => Ok(stage),
+        items => Err(ProtocolError::Limit {
+            field: "start_points".to_owned(),
+            found: items.unwrap_or(u64::MAX),
+            what: limits::PATHS.what,
+            name: limits::PATHS.name,
+            value: limits::PATHS.value,
+        }),
+    }
+}
+
+/// Settings of which every field is there.
+pub fn complete_settings(m: &v1::Settings) -> Result<Settings, ProtocolError> {
+    settings(m)?.complete().map_err(ProtocolError::missing)
+}
+
+fn attempt(attempt: u32) -> Result<u16, ProtocolError> {
+    u16::try_from(attempt)
+        .map_err(|_| ProtocolError::invalid("attempt", attempt, "a number below 65536"))
+}
+
+fn homotopy(m: &v1::Homotopy) -> Result<HomotopyKind, ProtocolError> {
+    use v1::homotopy::Kind;
+    let values = |field: &str, values: &[v1::Complex]| {
+        within_limit(field, values.len(), sizes::PARAMETERS)?;
+        complexes(field, values)
+    };
+    Ok(match required("kind", m.kind.as_ref())? {
+        Kind::StraightLine(h) => HomotopyKind::StraightLine {
+            parameters: values("straight_line.parameters", &h.parameters)?,
+        },
+        Kind::PathVariable(h) => HomotopyKind::PathVariable {
+            parameters: values("path_variable.parameters", &h.parameters)?,
+        },
+        Kind::Parameter(h) => {
+            within_limit("parameter.targets", h.targets.len(), limits::TARGETS)?;
+            let start = values("parameter.start", &h.start)?;
+            let targets = h
+                .targets
+                .iter()
+                .enumerate()
+                .map(|(i, target)| {
+                    let field = format!("parameter.targets[{i}]");
+                    if target.values.len() != start.len() {
+                        return Err(ProtocolError::invalid(
+                            field,
+                            format!("{} values", target.values.len()),
+                            format!("{} values, as at the start", start.len()),
+                        ));
+                    }
+                    complexes(&field, &target.values)
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+            HomotopyKind::Parameter { start, targets }
+        }
+    })
+}
+
+fn start_points(m: &v1::StartPoints) -> Result<StartPoints, ProtocolError> {
+    use v1::start_points::Kind;
+    Ok(match required("kind", m.kind.as_ref())? {
+        Kind::TotalDegree(p) => {
+            let field = "total_degree.degrees";
+            within_limit(field, p.degrees.len(), sizes::EQUATIONS)?;
+            degrees(field, &p.degrees, 1)?;
+            StartPoints::TotalDegree {
+                degrees: p.degrees.clone(),
+            }
+        }
+        Kind::Multihomogeneous(p) => {
+            let field = "multihomogeneous.degrees";
+            within_limit(field, p.degrees.len(), sizes::EQUATIONS)?;
+            let groups = p.dimensions.len();
+            within_limit("multihomogeneous.dimensions", groups, sizes::VARIABLES)?;
+            for (i, row) in p.degrees.iter().enumerate() {
+                let field = format!("{field}[{i}]");
+                degrees(&field, &row.degrees, 0)?;
+                if row.degrees.len() != groups {
+                    return Err(ProtocolError::invalid(
+                        field,
+                        format!("{} degrees", row.degrees.len()),
+                        format!("one for each of the {groups} groups"),
+                    ));
+                }
+            }
+            StartPoints::Multihomogeneous {
+                degrees: p.degrees.iter().map(|row| row.degrees.clone()).collect(),
+                dimensions: p.dimensions.clone(),
+            }
+        }
+        Kind::Stored(p) => StartPoints::Stored {
+            object: digest("stored.object", &p.object)?,
+            count: p.count,
+        },
+        Kind::Selected(p) => {
+            let base = required("selected.base", p.base.as_deref())?;
+            // A selection of a selection would let a message recurse as deep as it likes.
+            if matches!(base.kind, Some(Kind::Selected(_))) {
+                return Err(ProtocolError::invalid(
+                    "selected.base",
+                    "a selection",
+                    "start points that are no selection",
+                ));
+            }
+            let field = "selected.indices";
+            within_limit(field, p.indices.len(), limits::SELECTED_PATHS)?;
+            if !p.indices.is_sorted_by(|a, b| a < b) {
+                return Err(ProtocolError::invalid(
+                    field,
+                    "not in order",
+                    "ascending indices",
+                ));
+            }
+            StartPoints::Selected {
+                base: Box::new(start_points(base).map_err(|e| e.within("selected.base"))?),
+                indices: p.indices.clone(),
+            }
+        }
+    })
+}
+
+fn degrees(field: &str, degrees: &[u32], least: u32) -> Result<(), ProtocolError> {
+    for &degree in degrees {
+        if degree < least {
+            return Err(ProtocolError::invalid(
+                field,
+                degree,
+                "degrees of at least 1",
+            ));
+        }
+        within_limit(field, degree as usize, sizes::DEGREE)?;
+    }
+    Ok(())
+}
+
+/// The result of one path.
+///
+/// What is known of a failed path may be anything; the endpoint of any other
+/// is finite, and what is not known of it is infinite, never NaN.
+pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
+    let outcome = outcome(m.outcome)?;
+    within_limit("endpoint", m.endpoint.len() / 2, limits::COORDINATES)?;
+    let endpoint = pairs("endpoint", &m.endpoint)?;
+    if endpoint.is_empty() {
+        return Err(ProtocolError::missing("endpoint"));
+    }
+    let t = required("t", m.t.as_ref())?;
+    let t = num_complex::Complex64::new(t.re, t.im);
+    if !matches!(outcome, PathOutcome::Failed(_)) {
+        finite("endpoint", &endpoint)?;
+        finite("t", &[t])?;
+        for (field, value) in [
+            ("residual", m.residual),
+            ("condition", m.condition),
+            ("accuracy", m.accuracy),
+        ] {
+            if value.is_nan() || value < 0.0 {
+                return Err(ProtocolError::invalid(field, value, "at least 0"));
+            }
+        }
+    }
+    if m.winding_number == Some(0) {
+        return Err(ProtocolError::invalid("winding_number", 0, "at least 1"));
+    }
+    within_limit("infinity_turns", m.infinity_turns.len(), sizes::VARIABLES)?;
+    within_limit(
+        "precision_bits",
+        m.precision_bits as usize,
+        limits::PRECISION_BITS,
+    )?;
+    let counts = m.counts.unwrap_or_default();
+    Ok(PathResult {
+        origin: PathIndex(m.origin),
+        attempt: attempt(m.attempt)?,
+        outcome,
+        endpoint: Coordinates::Double(endpoint),
+        t,
+        residual: m.residual,
+        condition: m.condition,
+        accuracy: m.accuracy,
+        winding_number: m.winding_number,
+        infinity_turns: m.infinity_turns.clone(),
+        precision_bits: m.precision_bits,
+        counts: Counts {
+            steps: counts.steps,
+            rejections: counts.rejections,
+            evaluations: counts.evaluations,
+            exchanges: counts.exchanges,
+            turns: counts.turns,
+        },
+    })
+}
+
+fn outcome(outcome: i32) -> Result<PathOutcome, ProtocolError> {
+    use v1::PathOutcome as M;
+    Ok(match M::try_from(outcome) {
+        Ok(M::Regular) => PathOutcome::Regular,
+        Ok(M::Singular) => PathOutcome::Singular,
+        Ok(M::InvalidStartPoint) => PathOutcome::Failed(Failure::InvalidStartPoint),
+        Ok(M::StepTooSmall) => PathOutcome::Failed(Failure::StepTooSmall),
+        Ok(M::TooManySteps) => PathOutcome::Failed(Failure::TooManySteps),
+        Ok(M::EndgameUnsettled) => PathOutcome::Failed(Failure::EndgameUnsettled),
+        Ok(M::KilledItsWorker) => PathOutcome::Failed(Failure::KilledItsWorker),
+        Ok(M::Unspecified) | Err(_) => {
+            return Err(ProtocolError::invalid(
+                "outcome",
+                outcome,
+                "an outcome that this version knows",
+            ));
+        }
+    })
+}

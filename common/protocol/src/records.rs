@@ -1,0 +1,260 @@
+//! Records: path results as bytes that are stored and hashed.
+//!
+//! One layout, written by hand so that it is the same for ever: magic with the
+//! version, number of records, then each record with its length before it; all
+//! numbers little endian. A NaN is written as the one NaN, so that two machines
+//! agree. The hash is over these bytes before any compression; neither time nor
+//! worker is in them.
+
+use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use num_complex::Complex64;
+
+const MAGIC: &[u8; 8] = b"CGNRES01";
+
+/// Bytes that hold no records.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the object of path results is damaged at byte {at}: {what}")]
+pub struct DamagedRecords {
+    /// Where reading stopped.
+    pub at: usize,
+    /// What is wrong there.
+    pub what: &'static str,
+}
+
+/// The records of these results.
+pub fn encode<'a>(results: impl IntoIterator<Item = &'a PathResult>) -> Vec<u8> {
+    let mut w = Writer(Vec::with_capacity(4096));
+    w.0.extend_from_slice(MAGIC);
+    w.u64(0);
+    let mut count = 0u64;
+    for result in results {
+        let start = w.0.len();
+        w.u32(0);
+        w.record(result);
+        let length = u32::try_from(w.0.len() - start - 4)
+            .expect("a path has far fewer than 2^28 coordinates");
+        w.0[start..start + 4].copy_from_slice(&length.to_le_bytes());
+        count += 1;
+    }
+    w.0[8..16].copy_from_slice(&count.to_le_bytes());
+    w.0
+}
+
+/// The hash of records.
+pub fn hash(records: &[u8]) -> Digest {
+    crate::digest::of_bytes(records)
+}
+
+/// Reads what [`encode`] wrote.
+pub fn decode(records: &[u8]) -> Result<Vec<PathResult>, DamagedRecords> {
+    let mut r = Reader {
+        bytes: records,
+        at: 0,
+    };
+    if r.take(8)? != MAGIC {
+        return Err(r.damaged("it does not begin with the right magic"));
+    }
+    let count = r.u64()?;
+    let mut results = Vec::new();
+    for _ in 0..count {
+        let length = r.u32()? as usize;
+        let end = r.at + length;
+        if end > records.len() {
+            return Err(r.damaged("a record is longer than what is there"));
+        }
+        results.push(r.record()?);
+        if r.at != end {
+            return Err(r.damaged("a record has another length than it says"));
+        }
+    }
+    if r.at != records.len() {
+        return Err(r.damaged("there is more than the records"));
+    }
+    Ok(results)
+}
+
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn u32(&mut self, value: u32) {
+        self.0.extend_from_slice(&value.to_le_bytes());
+    }
+
+    fn u64(&mut self, value: u64) {
+        self.0.extend_from_slice(&value.to_le_bytes());
+    }
+
+    fn f64(&mut self, value: f64) {
+        let bits = if value.is_nan() {
+            0x7ff8_0000_0000_0000
+        } else {
+            value.to_bits()
+        };
+        self.u64(bits);
+    }
+
+    fn complex(&mut self, z: Complex64) {
+        self.f64(z.re);
+        self.f64(z.im);
+    }
+
+    fn length(&mut self, length: usize) {
+        self.u32(u32::try_from(length).expect("a path has far fewer than 2^32 coordinates"));
+    }
+
+    fn record(&mut self, result: &PathResult) {
+        let PathResult {
+            origin,
+            attempt,
+            outcome,
+            endpoint,
+            t,
+            residual,
+            condition,
+            accuracy,
+            winding_number,
+            infinity_turns,
+            precision_bits,
+            counts,
+        } = result;
+        self.u64(origin.0);
+        self.0.extend_from_slice(&attempt.to_le_bytes());
+        self.0.push(match outcome {
+            PathOutcome::Regular => 1,
+            PathOutcome::Singular => 2,
+            PathOutcome::Failed(Failure::InvalidStartPoint) => 16,
+            PathOutcome::Failed(Failure::StepTooSmall) => 17,
+            PathOutcome::Failed(Failure::TooManySteps) => 18,
+            PathOutcome::Failed(Failure::EndgameUnsettled) => 19,
+            PathOutcome::Failed(Failure::KilledItsWorker) => 20,
+        });
+        // The kind of the coordinates: other arithmetics get other numbers.
+        let Coordinates::Double(values) = endpoint;
+        self.0.push(0);
+        self.length(values.len());
+        values.iter().for_each(|&z| self.complex(z));
+        self.complex(*t);
+        self.f64(*residual);
+        self.f64(*condition);
+        self.f64(*accuracy);
+        // A winding number is at least 1, so 0 stands for none.
+        self.u32(winding_number.unwrap_or(0));
+        self.length(infinity_turns.len());
+        for turns in infinity_turns {
+            self.0.extend_from_slice(&turns.to_le_bytes());
+        }
+        self.u32(*precision_bits);
+        let Counts {
+            steps,
+            rejections,
+            evaluations,
+            exchanges,
+            turns,
+        } = counts;
+        for count in [steps, rejections, evaluations, exchanges, turns] {
+            self.u32(*count);
+        }
+    }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn damaged(&self, what: &'static str) -> DamagedRecords {
+        DamagedRecords { at: self.at, what }
+    }
+
+    fn take(&mut self, length: usize) -> Result<&'a [u8], DamagedRecords> {
+        let end = self.at.checked_add(length);
+        let bytes = end.and_then(|end| self.bytes.get(self.at..end));
+        let bytes = bytes.ok_or_else(|| self.damaged("it ends too soon"))?;
+        self.at += length;
+        Ok(bytes)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], DamagedRecords> {
+        Ok(self
+            .take(N)?
+            .try_into()
+            .expect("as many bytes as asked for"))
+    }
+
+    fn u32(&mut self) -> Result<u32, DamagedRecords> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Result<u64, DamagedRecords> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    fn f64(&mut self) -> Result<f64, DamagedRecords> {
+        self.array().map(f64::from_le_bytes)
+    }
+
+    fn complex(&mut self) -> Result<Complex64, DamagedRecords> {
+        Ok(Complex64::new(self.f64()?, self.f64()?))
+    }
+
+    /// A length of items of this many bytes each, which must still be there.
+    fn length(&mut self, size: usize) -> Result<usize, DamagedRecords> {
+        let length = self.u32()? as usize;
+        if length * size > self.bytes.len() - self.at {
+            return Err(self.damaged("a list is longer than what is there"));
+        }
+        Ok(length)
+    }
+
+    fn record(&mut self) -> Result<PathResult, DamagedRecords> {
+        let origin = PathIndex(self.u64()?);
+        let attempt = self.array().map(u16::from_le_bytes)?;
+        let outcome = match self.array::<1>()?[0] {
+            1 => PathOutcome::Regular,
+            2 => PathOutcome::Singular,
+            16 => PathOutcome::Failed(Failure::InvalidStartPoint),
+            17 => PathOutcome::Failed(Failure::StepTooSmall),
+            18 => PathOutcome::Failed(Failure::TooManySteps),
+            19 => PathOutcome::Failed(Failure::EndgameUnsettled),
+            20 => PathOutcome::Failed(Failure::KilledItsWorker),
+            _ => return Err(self.damaged("an outcome that this version does not know")),
+        };
+        if self.array::<1>()? != [0] {
+            return Err(self.damaged("coordinates of a kind that this version does not know"));
+        }
+        let coordinates = self.length(16)?;
+        let endpoint = (0..coordinates)
+            .map(|_| self.complex())
+            .collect::<Result<_, _>>()?;
+        let t = self.complex()?;
+        let (residual, condition, accuracy) = (self.f64()?, self.f64()?, self.f64()?);
+        let winding_number = Some(self.u32()?).filter(|&w| w > 0);
+        let groups = self.length(4)?;
+        let infinity_turns = (0..groups)
+            .map(|_| self.array().map(i32::from_le_bytes))
+            .collect::<Result<_, _>>()?;
+        Ok(PathResult {
+            origin,
+            attempt,
+            outcome,
+            endpoint: Coordinates::Double(endpoint),
+            t,
+            residual,
+            condition,
+            accuracy,
+            winding_number,
+            infinity_turns,
+            precision_bits: self.u32()?,
+            counts: Counts {
+                steps: self.u32()?,
+                rejections: self.u32()?,
+                evaluations: self.u32()?,
+                exchanges: self.u32()?,
+                turns: self.u32()?,
+            },
+        })
+    }
+}

@@ -1,0 +1,165 @@
+//! Submission: what a client asks for, after the checks at the door.
+
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::tracker::settings::{Preset, Settings};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+
+/// A problem and how it is to be solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Submission {
+    /// What is to be solved.
+    pub source: Source,
+    /// How.
+    pub options: Options,
+}
+
+/// Where the system comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A checked system.
+    System(Box<System>),
+    /// A file that has still to be read.
+    Text {
+        /// The file's name, for messages.
+        name: String,
+        /// Its content.
+        content: Vec<u8>,
+    },
+}
+
+/// How a problem is to be solved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Which start system.
+    pub start: StartKind,
+    /// Variable groups by name, instead of those of the system.
+    pub groups: Option<Vec<Vec<String>>>,
+    /// Pairs of conjugate variables by name, beside those of the system.
+    pub conjugates: Vec<(String, String)>,
+    /// Seed of everything random; `None`: from the problem's digest.
+    pub seed: Option<u64>,
+    /// How paths are tracked.
+    pub settings: SettingsChoice,
+    /// The arithmetic asked for.
+    pub precision: PrecisionChoice,
+    /// Where the start solutions solve the system; empty where there are none.
+    pub start_parameters: Vec<Complex64>,
+    /// Where solutions are wanted; every one has a value for each parameter.
+    pub target_parameters: Vec<Vec<Complex64>>,
+    /// Where paths begin, for [`StartKind::Given`].
+    pub start_solutions: Option<StartSolutions>,
+    /// A name for people; may be empty.
+    pub name: String,
+}
+
+/// Which start system.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StartKind {
+    /// The coordinator chooses.
+    #[default]
+    Auto,
+    /// x_i^(d_i) = 1.
+    TotalDegree,
+    /// Products of linear forms, group by group.
+    Multihomogeneous,
+    /// Start solutions are given.
+    Given,
+}
+
+/// The arithmetic asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PrecisionChoice {
+    /// As much as each path needs.
+    #[default]
+    Adaptive,
+    /// Hardware doubles only.
+    Double,
+    /// This many bits for every path.
+    Bits(u32),
+}
+
+/// Start solutions, coordinates in the order of the system's variables.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StartSolutions {
+    /// Sent along.
+    Points(StoredPoints),
+    /// Uploaded before.
+    Object(Digest),
+}
+
+macro_rules! settings_choice {
+    ($($field:ident: $type:ty, $from:literal ..= $to:literal;)*) => {
+        /// A preset, and what is to be different from it.
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct SettingsChoice {
+            /// Where absent fields come from; `None`: the default, or what the file says.
+            pub preset: Option<Preset>,
+            $(
+                #[doc = concat!("[`Settings::", stringify!($field), "`], if it is to be different.")]
+                pub $field: Option<$type>,
+            )*
+        }
+
+        impl SettingsChoice {
+            /// `base` with everything that this choice names.
+            pub fn over(&self, base: Settings) -> Settings {
+                Settings { $($field: self.$field.unwrap_or(base.$field),)* }
+            }
+
+            /// A choice that names every field.
+            pub fn all(settings: &Settings) -> Self {
+                let Settings { $($field,)* } = settings.clone();
+                Self { preset: None, $($field: Some($field),)* }
+            }
+
+            pub(crate) fn from_message(
+                m: &crate::v1::Settings,
+                preset: Option<Preset>,
+            ) -> Result<Self, crate::error::ProtocolError> {
+                $(
+                    // A range does not contain NaN.
+                    if let Some(value) = m.$field && !($from..=$to).contains(&value) {
+                        return Err(crate::error::ProtocolError::invalid(
+                            stringify!($field),
+                            value,
+                            concat!("a number from ", stringify!($from), " to ", stringify!($to)),
+                        ));
+                    }
+                )*
+                Ok(Self { preset, $($field: m.$field,)* })
+            }
+
+            pub(crate) fn to_message(&self, preset: crate::v1::Preset) -> crate::v1::Settings {
+                crate::v1::Settings { preset: preset.into(), $($field: self.$field,)* }
+            }
+
+            /// The settings, if every field is named; else the first that is not.
+            pub fn complete(&self) -> Result<Settings, &'static str> {
+                Ok(Settings { $($field: self.$field.ok_or(stringify!($field))?,)* })
+            }
+        }
+    };
+}
+
+// The ranges keep out what makes no sense; they do not say what is wise.
+settings_choice! {
+    tolerance: f64, 1e-300..=1e-2;
+    predictor_tolerance: f64, 1e-300..=1.0;
+    max_step: f64, 1e-12..=1.0;
+    min_step: f64, 1e-300..=1e-2;
+    max_steps: u32, 1..=1_000_000_000;
+    endgame_boundary: f64, 1e-300..=1.0;
+    endgame_radius: f64, 1e-300..=1.0;
+    endgame_min_radius: f64, 1e-300..=1.0;
+    max_winding_number: u32, 1..=100_000;
+    singular_condition: f64, 1.0..=1e300;
+    endgame_tolerance: f64, 1e-300..=1.0;
+}
+
+impl SettingsChoice {
+    /// The settings where no file has a say.
+    pub fn resolve(&self) -> Settings {
+        self.over(self.preset.unwrap_or_default().settings())
+    }
+}

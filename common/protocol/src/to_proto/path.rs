@@ -1,0 +1,119 @@
+//! Stage and PathResult to their messages.
+
+use super::{complex, complexes, digest, pairs};
+use crate::submission::SettingsChoice;
+use crate::v1;
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::work::{Stage, Work};
+
+/// A stage.
+pub fn stage(stage: &Stage) -> v1::Stage {
+    v1::Stage {
+        id: stage.id.0,
+        work: match stage.work {
+            Work::Track => v1::Work::Track,
+        }
+        .into(),
+        homotopy: Some(homotopy(&stage.homotopy)),
+        start_points: Some(start_points(&stage.start_points)),
+        settings: Some(super::problem::settings(&SettingsChoice::all(
+            &stage.settings,
+        ))),
+        seed: stage.seed,
+        attempt: stage.attempt.into(),
+    }
+}
+
+fn homotopy(homotopy: &HomotopyKind) -> v1::Homotopy {
+    use v1::homotopy::Kind;
+    v1::Homotopy {
+        kind: Some(match homotopy {
+            HomotopyKind::StraightLine { parameters } => Kind::StraightLine(v1::StraightLine {
+                parameters: complexes(parameters),
+            }),
+            HomotopyKind::Parameter { start, targets } => Kind::Parameter(v1::ParameterHomotopy {
+                start: complexes(start),
+                targets: targets
+                    .iter()
+                    .map(|values| v1::ParameterValues {
+                        values: complexes(values),
+                    })
+                    .collect(),
+            }),
+            HomotopyKind::PathVariable { parameters } => Kind::PathVariable(v1::PathVariable {
+                parameters: complexes(parameters),
+            }),
+        }),
+    }
+}
+
+fn start_points(points: &StartPoints) -> v1::StartPoints {
+    use v1::start_points::Kind;
+    v1::StartPoints {
+        kind: Some(match points {
+            StartPoints::TotalDegree { degrees } => Kind::TotalDegree(v1::TotalDegree {
+                degrees: degrees.clone(),
+            }),
+            StartPoints::Multihomogeneous {
+                degrees,
+                dimensions,
+            } => Kind::Multihomogeneous(v1::Multihomogeneous {
+                degrees: degrees
+                    .iter()
+                    .map(|row| v1::GroupDegrees {
+                        degrees: row.clone(),
+                    })
+                    .collect(),
+                dimensions: dimensions.clone(),
+            }),
+            StartPoints::Stored { object, count } => Kind::Stored(v1::Stored {
+                object: digest(*object),
+                count: *count,
+            }),
+            StartPoints::Selected { base, indices } => Kind::Selected(Box::new(v1::Selected {
+                base: Some(Box::new(start_points(base))),
+                indices: indices.clone(),
+            })),
+        }),
+    }
+}
+
+/// The result of one path.
+pub fn path_result(r: &PathResult) -> v1::PathResult {
+    v1::PathResult {
+        origin: r.origin.0,
+        attempt: r.attempt.into(),
+        outcome: outcome(r.outcome).into(),
+        endpoint: pairs(r.endpoint.to_double()),
+        t: Some(complex(&r.t)),
+        residual: r.residual,
+        condition: r.condition,
+        accuracy: r.accuracy,
+        winding_number: r.winding_number,
+        infinity_turns: r.infinity_turns.clone(),
+        precision_bits: r.precision_bits,
+        counts: Some(v1::Counts {
+            steps: r.counts.steps,
+            rejections: r.counts.rejections,
+            evaluations: r.counts.evaluations,
+            exchanges: r.counts.exchanges,
+            turns: r.counts.turns,
+        }),
+    }
+}
+
+fn outcome(outcome: PathOutcome) -> v1::PathOutcome {
+    use v1::PathOutcome as M;
+    match outcome {
+        PathOutcome::Regular => M::Regular,
+        PathOutcome::Singular => M::Singular,
+        PathOutcome::Failed(Failure::InvalidStartPoint) => M::InvalidStartPoint,
+        PathOutcome::Failed(Failure::StepTooSmall) => M::StepTooSmall,
+        PathOutcome::Failed(Failure::TooManySteps) => M::TooManySteps,
+        PathOutcome::Failed(Failure::EndgameUnsettled) => M::EndgameUnsettled,
+        PathOutcome::Failed(Failure::KilledItsWorker) => M::KilledItsWorker,
+    }
+}

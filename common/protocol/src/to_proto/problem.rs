@@ -1,0 +1,225 @@
+//! Submission to Problem message, System to System message.
+
+use super::{complexes, digest, pairs};
+use crate::submission::{
+    Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+};
+use crate::v1;
+use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::settings::Preset;
+use cognate_systems::expression::{Function, Node, NodeId};
+use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System};
+
+/// What a client asks for.
+pub fn submission(submission: &Submission) -> v1::Problem {
+    v1::Problem {
+        source: Some(match &submission.source {
+            Source::System(s) => v1::problem::Source::System(system(s)),
+            Source::Text { name, content } => v1::problem::Source::Text(v1::Text {
+                name: name.clone(),
+                content: bytes::Bytes::copy_from_slice(content),
+            }),
+        }),
+        options: Some(options(&submission.options)),
+    }
+}
+
+/// How a problem is to be solved.
+pub fn options(options: &Options) -> v1::Options {
+    use v1::precision::Kind;
+    v1::Options {
+        start: match options.start {
+            StartKind::Auto => v1::StartKind::Auto,
+            StartKind::TotalDegree => v1::StartKind::TotalDegree,
+            StartKind::Multihomogeneous => v1::StartKind::Multihomogeneous,
+            StartKind::Given => v1::StartKind::Given,
+        }
+        .into(),
+        groups: options
+            .groups
+            .iter()
+            .flatten()
+            .map(|names| v1::NameList {
+                names: names.clone(),
+            })
+            .collect(),
+        conjugates: options
+            .conjugates
+            .iter()
+            .map(|(first, second)| v1::NamePair {
+                first: first.clone(),
+                second: second.clone(),
+            })
+            .collect(),
+        seed: options.seed,
+        settings: Some(settings(&options.settings)),
+        precision: Some(v1::Precision {
+            kind: Some(match options.precision {
+                PrecisionChoice::Adaptive => Kind::Adaptive(true),
+                PrecisionChoice::Double => Kind::Double(true),
+                PrecisionChoice::Bits(bits) => Kind::Bits(bits),
+            }),
+        }),
+        start_parameters: complexes(&options.start_parameters),
+        target_parameters: options
+            .target_parameters
+            .iter()
+            .map(|values| v1::ParameterValues {
+                values: complexes(values),
+            })
+            .collect(),
+        start_solutions: options
+            .start_solutions
+            .as_ref()
+            .map(|s| v1::StartSolutions {
+                source: Some(match s {
+                    StartSolutions::Points(p) => v1::start_solutions::Source::Points(points(p)),
+                    StartSolutions::Object(object) => {
+                        v1::start_solutions::Source::Object(digest(*object))
+                    }
+                }),
+            }),
+        name: options.name.clone(),
+    }
+}
+
+/// A choice of settings.
+pub fn settings(choice: &SettingsChoice) -> v1::Settings {
+    choice.to_message(match choice.preset {
+        None => v1::Preset::Unspecified,
+        Some(Preset::Careful) => v1::Preset::Careful,
+        Some(Preset::Default) => v1::Preset::Default,
+        Some(Preset::Fast) => v1::Preset::Fast,
+        Some(Preset::Reckless) => v1::Preset::Reckless,
+    })
+}
+
+/// Points.
+pub fn points(points: &StoredPoints) -> v1::Points {
+    v1::Points {
+        dimension: small(points.dimension),
+        coordinates: pairs(&points.coordinates),
+    }
+}
+
+/// Indices of a checked system are small.
+fn small(index: usize) -> u32 {
+    u32::try_from(index).expect("a checked system has fewer than 2^32 of anything")
+}
+
+fn indices(list: &[usize]) -> Vec<u32> {
+    list.iter().copied().map(small).collect()
+}
+
+fn nodes(list: &[NodeId]) -> Vec<u32> {
+    list.iter().map(|n| n.0).collect()
+}
+
+/// A system, node by node as it is.
+pub fn system(system: &System) -> v1::System {
+    let names = system.equation_names.iter().cloned();
+    v1::System {
+        nodes: system.expressions.nodes().iter().map(node).collect(),
+        variables: system.variables.clone(),
+        parameters: system.parameters.clone(),
+        groups: system
+            .groups
+            .iter()
+            .map(|g| v1::VariableGroup {
+                variables: indices(&g.variables),
+                homogeneous: g.homogeneous,
+            })
+            .collect(),
+        equations: system
+            .equations
+            .iter()
+            .zip(names.chain(std::iter::repeat(String::new())))
+            .map(|(n, name)| v1::Equation { node: n.0, name })
+            .collect(),
+        path_variable: system.path_variable.map(small),
+        conjugates: system
+            .conjugates
+            .iter()
+            .map(|&(a, b)| v1::ConjugatePair {
+                first: small(a),
+                second: small(b),
+            })
+            .collect(),
+        degenerate: system
+            .degenerate
+            .iter()
+            .map(|(name, set)| v1::DegenerateSet {
+                name: name.clone(),
+                set: Some(match set {
+                    DegenerateSet::Nonzero(n) => v1::degenerate_set::Set::Nonzero(n.0),
+                    DegenerateSet::Equations(list) => {
+                        v1::degenerate_set::Set::Equations(v1::NodeList { nodes: nodes(list) })
+                    }
+                }),
+            })
+            .collect(),
+        symmetry: system
+            .symmetry
+            .iter()
+            .map(|generator| v1::SymmetryGenerator {
+                action: Some(match generator {
+                    SymmetryGenerator::Permutation(images) => {
+                        v1::symmetry_generator::Action::Permutation(v1::Permutation {
+                            images: indices(images),
+                        })
+                    }
+                    SymmetryGenerator::Map(list) => {
+                        v1::symmetry_generator::Action::Map(v1::NodeList { nodes: nodes(list) })
+                    }
+                }),
+            })
+            .collect(),
+    }
+}
+
+fn node(node: &Node) -> v1::Node {
+    use v1::node::Kind;
+    let binary = |a: &NodeId, b: &NodeId| v1::Binary {
+        left: a.0,
+        right: b.0,
+    };
+    let kind = match node {
+        Node::Constant(z) => Kind::Constant(v1::ExactComplex {
+            re: z.re.to_string(),
+            im: if z.im.is_zero() {
+                String::new()
+            } else {
+                z.im.to_string()
+            },
+        }),
+        Node::Variable(v) => Kind::Variable(*v),
+        Node::Parameter(p) => Kind::Parameter(*p),
+        Node::Add(a, b) => Kind::Add(binary(a, b)),
+        Node::Subtract(a, b) => Kind::Subtract(binary(a, b)),
+        Node::Multiply(a, b) => Kind::Multiply(binary(a, b)),
+        Node::Divide(a, b) => Kind::Divide(binary(a, b)),
+        Node::Negate(a) => Kind::Negate(a.0),
+        Node::Power(a, exponent) => Kind::Power(v1::Power {
+            base: a.0,
+            exponent: *exponent,
+        }),
+        Node::Root(a, exponent) => Kind::Root(v1::Root {
+            base: a.0,
+            exponent: exponent.to_string(),
+        }),
+        Node::Function(function, a) => Kind::Function(v1::FunctionCall {
+            function: match function {
+                Function::SquareRoot => v1::Function::SquareRoot,
+                Function::Exponential => v1::Function::Exponential,
+                Function::Logarithm => v1::Function::Logarithm,
+                Function::Sine => v1::Function::Sine,
+                Function::Cosine => v1::Function::Cosine,
+                Function::Tangent => v1::Function::Tangent,
+                Function::Pi => v1::Function::Pi,
+            }
+            .into(),
+            argument: a.0,
+        }),
+    };
+    v1::Node { kind: Some(kind) }
+}
