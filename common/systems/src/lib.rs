@@ -1,6 +1,9 @@
 //! What is solved: expressions, systems, straight-line programs and their evaluation.
 #![forbid(unsafe_code)]
 
+pub mod evaluation;
 pub mod expression;
 pub mod formats;
+pub mod named;
+pub mod straight_line_program;
 pub mod system;

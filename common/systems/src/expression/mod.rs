@@ -6,6 +6,7 @@
 //! could have been done before.
 
 pub mod build;
+pub mod differentiate;
 pub mod display;
 pub mod exact;
 pub mod fault;

@@ -1,0 +1,141 @@
+//! Nanoseconds per path of one `linearize` ([J | H | H_t]), by system and width.
+
+mod mechanisms;
+
+use cognate_numeric::lanes::Lanes;
+use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch};
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::scalar::{Complex, Real};
+use cognate_systems::evaluation::{Evaluate, Interpreter};
+use cognate_systems::named;
+use mechanisms::{Plain, nine_points, platform};
+use std::time::Instant;
+
+struct Evaluations<'a, R: Real> {
+    interpreter: &'a Interpreter,
+    x: Vec<Complex<R>>,
+    p: Vec<Complex<R>>,
+    dp: Vec<Complex<R>>,
+    out: &'a mut Matrix<R>,
+    scratch: &'a mut <Interpreter as Evaluate<R>>::Scratch,
+    count: usize,
+}
+
+impl<R: Real<Context = ()>> Job for Evaluations<'_, R> {
+    type Output = ();
+    #[inline(always)]
+    fn run(mut self) {
+        for _ in 0..self.count {
+            self.interpreter
+                .linearize(&self.x, &self.p, &self.dp, self.out, self.scratch);
+            // The next point depends on this one, so that no call can be dropped.
+            let change = self.out.entries[0].clone();
+            self.x[0].re.mul_add(&change.re, &R::from_f64((), 1e-30));
+        }
+    }
+}
+
+fn measure<R: Real<Context = ()>>(interpreter: &Interpreter) -> f64 {
+    let shape = interpreter.shape();
+    let mut stream = RandomStream::new(2, Purpose::Test, 0);
+    let mut point = |count: usize| -> Vec<Complex<R>> {
+        (0..count)
+            .map(|_| {
+                let mut z = Complex::zero(());
+                for lane in 0..R::WIDTH {
+                    z.set_lane(lane, stream.disc());
+                }
+                z
+            })
+            .collect()
+    };
+    let (x, p, dp) = (
+        point(shape.variables),
+        point(shape.parameters),
+        point(shape.parameters),
+    );
+    let mut out = Matrix::zeros((), shape.equations, shape.variables + 2);
+    let mut scratch = interpreter.scratch(());
+    let count = (40_000_000 / interpreter.flops() / R::WIDTH).max(1);
+    let mut best = f64::INFINITY;
+    for _ in 0..15 {
+        let job = Evaluations {
+            interpreter,
+            x: x.clone(),
+            p: p.clone(),
+            dp: dp.clone(),
+            out: &mut out,
+            scratch: &mut scratch,
+            count,
+        };
+        let start = Instant::now();
+        dispatch(job);
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    best * 1e9 / (count * R::WIDTH) as f64
+}
+
+fn main() {
+    println!("instruction set: {}", InstructionSet::detect().name());
+    println!(
+        "{:<12} {:>7} {:>6} {:>6} {:>5} {:>7} | {:>8} {:>8} {:>8} {:>8} | {:>8}",
+        "system",
+        "instr",
+        "flops",
+        "slots",
+        "runs",
+        "KiB/16",
+        "f64",
+        "W=1",
+        "W=8",
+        "W=16",
+        "Gflop/s"
+    );
+    let from_named = |n: named::Named| Plain {
+        variables: n.system.variable_count(),
+        parameters: n.system.parameters.len(),
+        expressions: n.system.expressions,
+        equations: n.system.equations,
+    };
+    for (name, plain) in [
+        ("nine-point", nine_points()),
+        ("platform", platform()),
+        ("katsura-10", from_named(named::katsura(10))),
+        ("cyclic-7", from_named(named::cyclic(7))),
+        ("noon-10", from_named(named::noon(10))),
+    ] {
+        let interpreter = Interpreter::compile(
+            &plain.expressions,
+            &plain.equations,
+            plain.variables,
+            plain.parameters,
+        );
+        let program = interpreter.linearize_program();
+        let times = [
+            measure::<f64>(&interpreter),
+            measure::<Lanes<1>>(&interpreter),
+            measure::<Lanes<8>>(&interpreter),
+            measure::<Lanes<16>>(&interpreter),
+        ];
+        println!(
+            "{:<12} {:>7} {:>6} {:>6} {:>5} {:>7.1} | {:>8.1} {:>8.1} {:>8.1} {:>8.1} | {:>8.2}",
+            name,
+            program.instruction_count(),
+            program.flops(),
+            program.temporaries(),
+            program.runs().len(),
+            interpreter.scratch_bytes::<Lanes<16>>() as f64 / 1024.0,
+            times[0],
+            times[1],
+            times[2],
+            times[3],
+            interpreter.flops() as f64 / times[3],
+        );
+        if std::env::args().any(|a| a == "--operations") {
+            for operation in cognate_systems::straight_line_program::instruction::Operation::ALL {
+                println!("    {operation:?}: {}", program.count_of(operation));
+            }
+        }
+    }
+}

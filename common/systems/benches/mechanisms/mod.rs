@@ -1,0 +1,112 @@
+//! Two mechanisms as systems to measure on: nine points, and a platform with six legs.
+
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_systems::expression::{Expressions, NodeId};
+
+/// What `Interpreter::compile` takes.
+pub struct Plain {
+    /// The arena.
+    pub expressions: Expressions,
+    /// F.
+    pub equations: Vec<NodeId>,
+    /// Number of variables.
+    pub variables: usize,
+    /// Number of parameters.
+    pub parameters: usize,
+}
+
+/// The nine-point path synthesis of four-bars (Roth and Freudenstein; Wampler,
+/// Morgan, Sommese 1992): 8 equations of degree 7 in x, X, a, A, y, Y, b, B,
+/// the 16 parameters d_j, D_j.
+pub fn nine_points() -> Plain {
+    let mut e = Expressions::new();
+    let v: Vec<NodeId> = (0..8).map(|i| e.variable(i)).collect();
+    let [x, xx, a, aa, y, yy, b, bb] = v[..] else {
+        unreachable!("eight variables")
+    };
+    let (n, nn) = (e.multiply(a, xx), e.multiply(aa, x));
+    let (m, mm) = (e.multiply(b, yy), e.multiply(bb, y));
+    let differences = [(x, a), (xx, aa), (y, b), (yy, bb)].map(|(p, q)| e.subtract(p, q));
+    let equations = (0..8)
+        .map(|j| {
+            let (d, dd) = (e.parameter(2 * j), e.parameter(2 * j + 1));
+            let ddd = e.multiply(d, dd);
+            let mut dyad = |x: NodeId, xx: NodeId, n: NodeId, nn: NodeId, u: NodeId, uu: NodeId| {
+                let p = e.multiply(dd, x);
+                let alpha = e.subtract(p, nn);
+                let p = e.multiply(d, xx);
+                let beta = e.subtract(p, n);
+                let (p, q) = (e.multiply(dd, u), e.multiply(d, uu));
+                let p = e.add(p, q);
+                (alpha, beta, e.add(p, ddd))
+            };
+            let (alpha, beta, kappa) = dyad(x, xx, n, nn, differences[0], differences[1]);
+            let (alpha2, beta2, kappa2) = dyad(y, yy, m, mm, differences[2], differences[3]);
+            let mut determinant = |p: NodeId, q: NodeId, r: NodeId, s: NodeId| {
+                let (pq, rs) = (e.multiply(p, q), e.multiply(r, s));
+                e.subtract(pq, rs)
+            };
+            let g = determinant(beta, kappa2, beta2, kappa);
+            let h = determinant(alpha2, kappa, alpha, kappa2);
+            let k = determinant(alpha, beta2, alpha2, beta);
+            let (gh, sum) = (e.multiply(g, h), e.add(g, h));
+            let rest = e.multiply(sum, k);
+            e.add(gh, rest)
+        })
+        .collect();
+    Plain {
+        expressions: e,
+        equations,
+        variables: 8,
+        parameters: 16,
+    }
+}
+
+/// A general Stewart-Gough platform in Study coordinates x0..x3, y0..y3: six
+/// leg quadrics with random coefficients, the Study quadric, and a patch.
+pub fn platform() -> Plain {
+    let mut e = Expressions::new();
+    let v: Vec<NodeId> = (0..8).map(|i| e.variable(i)).collect();
+    let mut stream = RandomStream::new(1, Purpose::Test, 0);
+    let mut random = || Rational::from((stream.below(2001) as i64 - 1000, 1000));
+    let mut equations = Vec::new();
+    for leg in 0..7 {
+        // Which products of coordinates occur in one leg: see the leg equation
+        // of the survey, where each rotation entry is a quadric of x, each
+        // translation entry bilinear in x and y.
+        let mut sum = e.integer(0);
+        for i in 0..8 {
+            for j in i..8 {
+                let study = leg == 6;
+                let occurs = if study {
+                    j == i + 4
+                } else {
+                    (j < 4) || (i < 4 && j != i + 4) || i == j
+                };
+                if !occurs {
+                    continue;
+                }
+                let c = if study { Rational::from(1) } else { random() };
+                let c = e.constant(ComplexRational::real(c));
+                let product = e.multiply(v[i], v[j]);
+                let term = e.multiply(c, product);
+                sum = e.add(sum, term);
+            }
+        }
+        equations.push(sum);
+    }
+    let mut patch = e.integer(-1);
+    for &v in &v {
+        let c = e.constant(ComplexRational::new(random(), random()));
+        let term = e.multiply(c, v);
+        patch = e.add(patch, term);
+    }
+    equations.push(patch);
+    Plain {
+        expressions: e,
+        equations,
+        variables: 8,
+        parameters: 0,
+    }
+}

@@ -1,0 +1,222 @@
+//! Constants of a program: exact numbers, and roots and elementary functions of them.
+//!
+//! They are rounded once, when scratch space is made, from their exact
+//! meaning to the precision of that scratch space.
+
+use crate::expression::{Expressions, Function, Node, NodeId};
+use cognate_numeric::rational::ComplexRational;
+use cognate_numeric::scalar::{Complex, Real};
+use rug::Float;
+use std::collections::HashMap;
+
+/// A number that the program knows.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Constant {
+    /// A rational number.
+    Exact(ComplexRational),
+    /// A node of the pool's own arena, built with roots or elementary functions.
+    Algebraic(NodeId),
+}
+
+/// All constants of one evaluator, each of them once.
+#[derive(Clone, Debug, Default)]
+pub struct ConstantPool {
+    arena: Expressions,
+    constants: Vec<Constant>,
+    index: HashMap<Constant, u32>,
+    imported: HashMap<NodeId, NodeId>,
+}
+
+impl ConstantPool {
+    /// All of them, by number.
+    pub fn constants(&self) -> &[Constant] {
+        &self.constants
+    }
+
+    /// The number of a constant, which is put in if it is new.
+    pub(crate) fn insert(&mut self, constant: Constant) -> u32 {
+        if let Some(&number) = self.index.get(&constant) {
+            return number;
+        }
+        let number =
+            u32::try_from(self.constants.len()).expect("a pool has fewer than 2^32 constants");
+        self.constants.push(constant.clone());
+        self.index.insert(constant, number);
+        number
+    }
+
+    /// The number of 0.
+    pub(crate) fn zero(&mut self) -> u32 {
+        self.insert(Constant::Exact(ComplexRational::default()))
+    }
+
+    /// A pool with the same constants, for nodes of another arena.
+    pub(crate) fn for_another_arena(&self) -> Self {
+        Self {
+            imported: HashMap::new(),
+            ..self.clone()
+        }
+    }
+
+    /// What a constant node is. Algebraic ones are copied into the pool's
+    /// arena; one pool serves one arena.
+    pub(crate) fn describe(&mut self, expressions: &Expressions, id: NodeId) -> Constant {
+        match expressions.node(id) {
+            Node::Constant(c) => Constant::Exact(c.clone()),
+            _ => {
+                let copy = self
+                    .arena
+                    .import(expressions, id, &mut self.imported, &mut |_, _| {
+                        unreachable!("a constant contains no variable and no parameter")
+                    });
+                match self.arena.node(copy) {
+                    Node::Constant(c) => Constant::Exact(c.clone()),
+                    _ => Constant::Algebraic(copy),
+                }
+            }
+        }
+    }
+
+    /// Every constant, rounded to nearest for this context.
+    pub fn round<R: Real>(&self, context: R::Context) -> Vec<Complex<R>> {
+        let bits = R::bits(context);
+        self.constants
+            .iter()
+            .map(|constant| match constant {
+                Constant::Exact(c) => Complex::from_rational(context, c),
+                Constant::Algebraic(id) => {
+                    Complex::from_rational(context, &algebraic(&self.arena, *id, bits))
+                }
+            })
+            .collect()
+    }
+}
+
+/// An algebraic constant, exact to more than `bits` bits of each part.
+///
+/// The working precision is doubled until two of them round alike. What never
+/// does so and shrinks with the precision is an exact 0.
+pub fn algebraic(arena: &Expressions, id: NodeId, bits: u32) -> ComplexRational {
+    let mut working = bits.max(53) + 64;
+    let mut coarse = evaluate(arena, id, working);
+    let agree = |a: &Float, b: &Float| Float::with_val(bits + 2, a) == Float::with_val(bits + 2, b);
+    // 16 times the bits are enough for every cancellation short of an exact one.
+    for _ in 0..4 {
+        working *= 2;
+        let fine = evaluate(arena, id, working);
+        if agree(coarse.real(), fine.real()) && agree(coarse.imag(), fine.imag()) {
+            return ComplexRational::new(rational(fine.real()), rational(fine.imag()));
+        }
+        coarse = fine;
+    }
+    let fine = evaluate(arena, id, working + 64);
+    let settle = |a: &Float, b: &Float| {
+        let tiny = b
+            .get_exp()
+            .is_some_and(|e| i64::from(e) < -i64::from(working / 2));
+        if tiny && !agree(a, b) {
+            rug::Rational::new()
+        } else {
+            rational(b)
+        }
+    };
+    ComplexRational::new(
+        settle(coarse.real(), fine.real()),
+        settle(coarse.imag(), fine.imag()),
+    )
+}
+
+/// Infinities and what is not a number have no rational; 0 stands for them,
+/// and the formats refuse the expressions that give them.
+fn rational(x: &Float) -> rug::Rational {
+    x.to_rational().unwrap_or_default()
+}
+
+/// One evaluation with every operation at this many bits, principal branches.
+fn evaluate(arena: &Expressions, id: NodeId, working: u32) -> rug::Complex {
+    let mut values: HashMap<NodeId, rug::Complex> = HashMap::new();
+    let new = |re: &rug::Rational, im: &rug::Rational| rug::Complex::with_val(working, (re, im));
+    for node in crate::expression::differentiate::below(arena, &[id]) {
+        let value = match arena.node(node) {
+            Node::Constant(c) => new(&c.re, &c.im),
+            Node::Add(a, b) => rug::Complex::with_val(working, &values[a] + &values[b]),
+            Node::Subtract(a, b) => rug::Complex::with_val(working, &values[a] - &values[b]),
+            Node::Multiply(a, b) => rug::Complex::with_val(working, &values[a] * &values[b]),
+            Node::Divide(a, b) => rug::Complex::with_val(working, &values[a] / &values[b]),
+            Node::Negate(a) => rug::Complex::with_val(working, -&values[a]),
+            Node::Power(a, e) => {
+                rug::Complex::with_val(working, rug::ops::Pow::pow(&values[a], *e))
+            }
+            Node::Root(a, exponent) => {
+                let half = rug::Rational::from((1, 2));
+                if *exponent == half {
+                    values[a].clone().sqrt()
+                } else {
+                    let power = rug::Complex::with_val(working, (exponent, 0));
+                    rug::ops::Pow::pow(values[a].clone(), power)
+                }
+            }
+            Node::Function(function, a) => {
+                let x = values[a].clone();
+                match function {
+                    Function::SquareRoot => x.sqrt(),
+                    Function::Exponential => x.exp(),
+                    Function::Logarithm => x.ln(),
+                    Function::Sine => x.sin(),
+                    Function::Cosine => x.cos(),
+                    Function::Tangent => x.tan(),
+                    Function::Pi => rug::Complex::with_val(
+                        working,
+                        Float::with_val(working, rug::float::Constant::Pi),
+                    ),
+                }
+            }
+            Node::Variable(_) | Node::Parameter(_) => {
+                unreachable!("a constant contains no variable and no parameter")
+            }
+        };
+        values.insert(node, value);
+    }
+    values.remove(&id).expect("the last node is the wanted one")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rug::Rational;
+
+    #[test]
+    fn roots_and_functions_are_rounded_to_nearest() {
+        let mut e = Expressions::new();
+        let three = e.integer(3);
+        let root = e.root(three, Rational::from((1, 2)));
+        let mut pool = ConstantPool::default();
+        let described = pool.describe(&e, root);
+        pool.insert(described);
+        let value = pool.round::<f64>(())[0].re;
+        let mut expected = 3.0;
+        Real::sqrt(&mut expected);
+        assert_eq!(value, expected);
+        let zero = e.integer(0);
+        let pi = e.function(Function::Pi, zero);
+        let described = pool.describe(&e, pi);
+        pool.insert(described);
+        assert_eq!(pool.round::<f64>(())[1].re, std::f64::consts::PI);
+    }
+
+    #[test]
+    fn what_cancels_exactly_is_zero() {
+        let mut e = Expressions::new();
+        let two = e.integer(2);
+        let root = e.root(two, Rational::from((1, 2)));
+        let square = e.power(root, 2);
+        let difference = e.subtract(square, two);
+        assert!(algebraic(&e, difference, 53).is_zero());
+        // (-1)^(1/3) is the principal root, with both parts.
+        let minus = e.integer(-1);
+        let cube_root = e.root(minus, Rational::from((1, 3)));
+        let w = algebraic(&e, cube_root, 53);
+        assert_eq!(f64::from_rational((), &w.re), 0.5);
+        assert!((w.im.to_f64() - 0.866_025_403_784_438_6).abs() < 1e-15);
+    }
+}
