@@ -1,0 +1,619 @@
+//! The session against a simulated coordinator: single rules first, then seeded random lives
+//! with slow networks, lost answers, outages and frozen processes.
+
+use super::*;
+use crate::transport::tests::lease;
+use cognate_numeric::random::{Purpose, RandomStream};
+
+fn at(milliseconds: u64) -> Moment {
+    Moment(Duration::from_millis(milliseconds))
+}
+
+fn milliseconds(count: u64) -> Duration {
+    Duration::from_millis(count)
+}
+
+fn limits() -> Limits {
+    Limits {
+        chunks_at_once: 2,
+        unacknowledged: 4,
+        poll: milliseconds(20_000),
+        heartbeat: milliseconds(10_000),
+        end: None,
+        wind_up: milliseconds(30_000),
+        idle_timeout: None,
+        give_up_after: None,
+        drain_patience: milliseconds(5_000),
+        backoff: Backoff::default(),
+    }
+}
+
+fn grant(chunk: u64, lasts: u64) -> Grant {
+    Grant {
+        lease: lease(chunk),
+        lasts: milliseconds(lasts),
+    }
+}
+
+/// A session that has pulled chunks 1 and 2 at 0 ms, leased for 1 s.
+fn with_two_chunks(limits: Limits) -> Session<&'static str> {
+    let mut session = Session::new(limits, at(0));
+    let pull = Command::Pull {
+        sequence: 1,
+        free: 2,
+        wait: milliseconds(20_000),
+    };
+    assert_eq!(session.poll(at(0)), [pull]);
+    session.handle(Input::Pulled(vec![grant(1, 1000), grant(2, 1000)]), at(5));
+    let track = [Command::Track(lease(1)), Command::Track(lease(2))];
+    assert_eq!(session.poll(at(5)), track);
+    session
+}
+
+#[test]
+fn a_chunk_is_pulled_tracked_reported_and_forgotten() {
+    let mut session = with_two_chunks(limits());
+    session.handle(Input::Tracked(lease(1), "one"), at(100));
+    let pull = Command::Pull {
+        sequence: 2,
+        free: 1,
+        wait: milliseconds(20_000),
+    };
+    let report = Command::Report(lease(1), Arc::new("one"));
+    assert_eq!(session.poll(at(100)), [report, pull]);
+    session.handle(Input::Reported(lease(1), Verdict::Accepted), at(110));
+    assert_eq!(session.poll(at(110)), []);
+    assert_eq!(session.held(), 1);
+}
+
+#[test]
+fn leases_are_renewed_and_a_lost_one_is_left_alone() {
+    let mut session = with_two_chunks(limits());
+    assert_eq!(session.wake_at(), Some(at(250)), "a quarter of the lease");
+    assert_eq!(
+        session.poll(at(250)),
+        [Command::Renew(vec![lease(1), lease(2)])]
+    );
+    let answer = vec![
+        (lease(1), Renewal::Held(milliseconds(1000))),
+        (lease(2), Renewal::Lost),
+    ];
+    session.handle(Input::Renewed(answer), at(300));
+    let commands = session.poll(at(300));
+    assert_eq!(commands[0], Command::Abandon(lease(2)));
+    assert!(matches!(commands[1], Command::Pull { free: 1, .. }));
+    assert_eq!(
+        session.wake_at(),
+        Some(at(500)),
+        "counted from when the renewal was made"
+    );
+}
+
+#[test]
+fn a_worker_that_cannot_renew_fences_itself_before_the_lease_ends() {
+    let mut session = with_two_chunks(limits());
+    let mut now = at(5);
+    let mut abandoned = 0;
+    while abandoned < 2 {
+        now = session.wake_at().unwrap();
+        for command in session.poll(now) {
+            match command {
+                Command::Renew(_) => session.handle(Input::RenewFailed, now),
+                Command::Pull { .. } => session.handle(Input::PullFailed, now),
+                Command::Abandon(_) => abandoned += 1,
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+    assert_eq!(
+        now,
+        at(900),
+        "nine tenths of the lease, counted from when the pull was made"
+    );
+}
+
+#[test]
+fn a_finished_chunk_is_reported_even_after_its_lease() {
+    let mut session = with_two_chunks(limits());
+    session.handle(Input::Tracked(lease(1), "one"), at(10));
+    session.poll(at(10));
+    session.handle(Input::ReportFailed(lease(1)), at(10));
+    session.handle(Input::PullFailed, at(10));
+    let late = at(60_000);
+    let commands = session.poll(late);
+    assert!(commands.contains(&Command::Report(lease(1), Arc::new("one"))));
+    assert!(commands.contains(&Command::Abandon(lease(2))));
+    assert!(
+        !commands
+            .iter()
+            .any(|command| matches!(command, Command::Renew(_)))
+    );
+}
+
+#[test]
+fn a_grant_that_was_long_under_way_is_confirmed_before_it_is_begun() {
+    let mut session = Session::<()>::new(limits(), at(0));
+    session.poll(at(0));
+    session.handle(Input::Pulled(vec![grant(1, 1000)]), at(15_000));
+    let commands = session.poll(at(15_000));
+    assert_eq!(commands[0], Command::Renew(vec![lease(1)]));
+    assert!(!commands.contains(&Command::Track(lease(1))));
+    let held = Renewal::Held(milliseconds(1000));
+    session.handle(Input::Renewed(vec![(lease(1), held)]), at(15_002));
+    assert_eq!(session.poll(at(15_002)), [Command::Track(lease(1))]);
+}
+
+#[test]
+fn a_pull_without_an_answer_is_made_again_under_its_number() {
+    let mut session = Session::<()>::new(limits(), at(0));
+    session.poll(at(0));
+    session.handle(Input::PullFailed, at(1));
+    assert_eq!(session.poll(at(1)), [], "not at once");
+    let again = session.wake_at().unwrap();
+    let sequences = |commands: &[Command<()>]| match commands {
+        [Command::Pull { sequence, .. }] => *sequence,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(sequences(&session.poll(again)), 1);
+    session.handle(Input::Pulled(Vec::new()), again);
+    let next = session.wake_at().unwrap();
+    assert!(
+        next > again,
+        "an empty answer is no reason to ask in a loop"
+    );
+    assert_eq!(sequences(&session.poll(next)), 2);
+}
+
+#[test]
+fn a_busy_worker_is_heard_of() {
+    let mut session = with_two_chunks(limits());
+    let mut now = at(5);
+    for _ in 0..1000 {
+        now = session.wake_at().unwrap();
+        for command in session.poll(now) {
+            match command {
+                Command::Renew(leases) => {
+                    let held = Renewal::Held(milliseconds(1000));
+                    let answer = leases.into_iter().map(|lease| (lease, held)).collect();
+                    session.handle(Input::Renewed(answer), now);
+                }
+                Command::Pull { free, wait, .. } => {
+                    assert_eq!((free, wait), (0, Duration::ZERO));
+                    assert_eq!(now, at(10_000));
+                    return;
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+    panic!("no heartbeat until {now:?}");
+}
+
+#[test]
+fn pulling_stops_while_too_many_results_wait_for_their_verdict() {
+    let limits = Limits {
+        unacknowledged: 2,
+        ..limits()
+    };
+    let mut session = with_two_chunks(limits);
+    session.handle(Input::Tracked(lease(1), "one"), at(10));
+    let commands = session.poll(at(10));
+    assert!(
+        commands
+            .iter()
+            .any(|c| matches!(c, Command::Pull { free: 1, .. }))
+    );
+    session.handle(Input::Tracked(lease(2), "two"), at(11));
+    session.handle(Input::Pulled(Vec::new()), at(12));
+    let commands = session.poll(at(500));
+    assert!(
+        !commands.iter().any(|c| matches!(c, Command::Pull { .. })),
+        "{commands:?}"
+    );
+}
+
+#[test]
+fn draining_gives_back_what_is_unfinished_and_reports_the_rest() {
+    let mut session = with_two_chunks(limits());
+    session.handle(Input::Tracked(lease(1), "one"), at(10));
+    session.poll(at(10));
+    session.handle(Input::Drain, at(20));
+    assert_eq!(
+        session.poll(at(20)),
+        [
+            Command::CancelPull,
+            Command::Abandon(lease(2)),
+            Command::GiveBack(lease(2), GiveBack::Draining),
+        ]
+    );
+    // A grant that crossed the drain goes back, too.
+    session.handle(Input::Pulled(vec![grant(3, 1000)]), at(21));
+    assert_eq!(
+        session.poll(at(21)),
+        [Command::GiveBack(lease(3), GiveBack::Draining)]
+    );
+    session.handle(Input::GaveBack(lease(2)), at(22));
+    session.handle(Input::GaveBack(lease(3)), at(22));
+    assert_eq!(session.poll(at(22)), [], "a report is still under way");
+    session.handle(Input::Reported(lease(1), Verdict::Accepted), at(23));
+    assert_eq!(session.poll(at(23)), [Command::Leave]);
+    session.handle(Input::Left, at(24));
+    assert_eq!(session.poll(at(24)), [Command::Exit(Ending::Stopped)]);
+    assert_eq!(session.wake_at(), None);
+}
+
+#[test]
+fn draining_does_not_wait_for_a_dead_coordinator() {
+    let mut session = with_two_chunks(limits());
+    session.handle(Input::Drain, at(20));
+    session.poll(at(20));
+    let mut now = at(20);
+    loop {
+        now = session.wake_at().unwrap_or(now);
+        let commands = session.poll(now);
+        if commands.contains(&Command::Exit(Ending::Stopped)) {
+            break;
+        }
+        for command in commands {
+            match command {
+                Command::GiveBack(lease, _) => session.handle(Input::GiveBackFailed(lease), now),
+                Command::Leave => {}
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+    assert!(now <= at(5_020));
+}
+
+#[test]
+fn an_untrackable_chunk_is_given_back_with_its_reason() {
+    let mut session = with_two_chunks(limits());
+    session.handle(
+        Input::Untrackable(lease(1), "no program".to_owned()),
+        at(10),
+    );
+    let commands = session.poll(at(10));
+    let failed = GiveBack::Failed("no program".to_owned());
+    assert_eq!(commands[0], Command::GiveBack(lease(1), failed));
+    assert!(
+        matches!(commands[1], Command::Pull { free: 1, .. }),
+        "the worker goes on"
+    );
+    // Its tracking may still end; nothing is reported then.
+    session.handle(Input::Tracked(lease(1), "late"), at(11));
+    assert_eq!(session.poll(at(11)), []);
+}
+
+#[test]
+fn ends_are_kept() {
+    let idle = Limits {
+        idle_timeout: Some(milliseconds(700)),
+        ..limits()
+    };
+    check_end(idle, false, Ending::Idle, at(700));
+    let wall = Limits {
+        end: Some(at(60_000)),
+        ..limits()
+    };
+    check_end(wall, false, Ending::WallTime, at(30_000));
+    let unreachable = Limits {
+        give_up_after: Some(milliseconds(3_000)),
+        ..limits()
+    };
+    check_end(unreachable, true, Ending::Unreachable, at(3_000));
+}
+
+/// A worker that never gets a chunk, from a coordinator that is dead or has none.
+fn check_end(limits: Limits, dead: bool, expected: Ending, when: Moment) {
+    let mut session = Session::<()>::new(limits, at(0));
+    let mut now = at(0);
+    loop {
+        for command in session.poll(now) {
+            match command {
+                Command::Pull { .. } if dead => session.handle(Input::PullFailed, now),
+                Command::Pull { .. } | Command::CancelPull => {}
+                Command::Leave => session.handle(Input::Left, now),
+                Command::Exit(ending) => {
+                    assert_eq!((ending, now), (expected, when));
+                    return;
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+        now = session.wake_at().map_or(now, |wake| wake.max(now));
+    }
+}
+
+#[test]
+fn a_refused_worker_ends_with_the_reason() {
+    let mut session = Session::<()>::new(limits(), at(0));
+    session.poll(at(0));
+    session.handle(Input::Refused("old".to_owned()), at(3));
+    assert_eq!(session.poll(at(3)), [Command::Leave]);
+    session.handle(Input::Left, at(4));
+    let refused = Ending::Refused("old".to_owned());
+    assert_eq!(session.poll(at(4)), [Command::Exit(refused)]);
+}
+
+// ---- a whole life under a simulated coordinator ----
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Row {
+    Ready,
+    Leased { until: Moment },
+    Accepted,
+}
+
+/// The coordinator's books, kept as the ledger keeps them.
+struct Books {
+    rows: Vec<(Row, u64)>,
+    lasts: Duration,
+    accepted: u64,
+    stale: u64,
+}
+
+impl Books {
+    fn named(chunk: usize, epoch: u64) -> LeaseId {
+        LeaseId {
+            epoch,
+            ..lease(chunk as u64)
+        }
+    }
+
+    fn expire(&mut self, now: Moment) {
+        for (row, _) in &mut self.rows {
+            if matches!(*row, Row::Leased { until } if until <= now) {
+                *row = Row::Ready;
+            }
+        }
+    }
+
+    fn holds(&self, lease: &LeaseId) -> bool {
+        let (row, epoch) = self.rows[lease.chunk as usize];
+        matches!(row, Row::Leased { .. }) && epoch == lease.epoch
+    }
+
+    fn answer(&mut self, call: &Command<u64>, now: Moment) -> Input<u64> {
+        self.expire(now);
+        let until = now + self.lasts;
+        match call {
+            Command::Pull { free, .. } => {
+                let mut grants = Vec::new();
+                for (chunk, (row, epoch)) in self.rows.iter_mut().enumerate() {
+                    if *row == Row::Ready && grants.len() < *free {
+                        *row = Row::Leased { until };
+                        *epoch += 1;
+                        grants.push(Grant {
+                            lease: Self::named(chunk, *epoch),
+                            lasts: self.lasts,
+                        });
+                    }
+                }
+                Input::Pulled(grants)
+            }
+            Command::Renew(leases) => {
+                let renewals = leases.iter().map(|lease| {
+                    if self.holds(lease) {
+                        self.rows[lease.chunk as usize].0 = Row::Leased { until };
+                        (lease.clone(), Renewal::Held(self.lasts))
+                    } else {
+                        (lease.clone(), Renewal::Lost)
+                    }
+                });
+                Input::Renewed(renewals.collect())
+            }
+            Command::Report(lease, content) => {
+                assert_eq!(**content, lease.chunk, "the results are those of the chunk");
+                let (row, epoch) = &mut self.rows[lease.chunk as usize];
+                let verdict = match *row {
+                    Row::Leased { .. } if *epoch == lease.epoch => {
+                        *row = Row::Accepted;
+                        self.accepted += 1;
+                        Verdict::Accepted
+                    }
+                    Row::Accepted if *epoch == lease.epoch => Verdict::AlreadyAccepted,
+                    _ => {
+                        self.stale += 1;
+                        Verdict::Stale
+                    }
+                };
+                Input::Reported(lease.clone(), verdict)
+            }
+            Command::GiveBack(lease, _) => {
+                if self.holds(lease) {
+                    self.rows[lease.chunk as usize].0 = Row::Ready;
+                }
+                Input::GaveBack(lease.clone())
+            }
+            Command::Leave => Input::Left,
+            other => panic!("no call: {other:?}"),
+        }
+    }
+}
+
+fn failure(call: &Command<u64>) -> Input<u64> {
+    match call {
+        Command::Pull { .. } => Input::PullFailed,
+        Command::Renew(_) => Input::RenewFailed,
+        Command::Report(lease, _) => Input::ReportFailed(lease.clone()),
+        Command::GiveBack(lease, _) => Input::GiveBackFailed(lease.clone()),
+        Command::Leave => Input::Left,
+        other => panic!("no call: {other:?}"),
+    }
+}
+
+/// What will happen, by time: calls that arrive at the coordinator, answers that arrive at the worker.
+enum Future {
+    Arrives(Command<u64>),
+    Happens(Input<u64>),
+}
+
+#[derive(Default)]
+struct Tally {
+    fenced: u64,
+    stale: u64,
+}
+
+/// One life: `chunks` chunks until all are accepted, then a drain.
+fn live(seed: u64, trouble: bool, tally: &mut Tally) {
+    let mut random = RandomStream::new(seed, Purpose::Test, 0);
+    let chunks = 1 + random.below(12) as usize;
+    let mut books = Books {
+        rows: vec![(Row::Ready, 0); chunks],
+        lasts: milliseconds(400 + random.below(2000)),
+        accepted: 0,
+        stale: 0,
+    };
+    let mut session = Session::new(limits(), at(0));
+    let mut future: BTreeMap<(Moment, u64), Future> = BTreeMap::new();
+    let mut number = 0u64;
+    let mut now = at(0);
+    let mut tracking: BTreeMap<LeaseId, Moment> = BTreeMap::new();
+    let mut begun = std::collections::BTreeSet::new();
+    let mut drained = false;
+    let (mut pulls, mut renewals) = (0, 0);
+    // Trouble lasts for a minute: every third stretch of 1.5 s is an outage, replies are lost,
+    // the process is frozen. Afterwards everything must come to rest.
+    let troubled = |moment: Moment| trouble && moment < at(60_000);
+    let outage = |moment: Moment| {
+        let stretch = moment.0.as_millis() as u64 / 1500;
+        troubled(moment) && RandomStream::new(seed, Purpose::Test, 1 + stretch).below(3) == 0
+    };
+    for turn in 0.. {
+        assert!(turn < 200_000, "seed {seed}: the life does not end");
+        for command in session.poll(now) {
+            let mut later = |delay: u64, what: Future| {
+                number += 1;
+                future.insert((now + milliseconds(delay), number), what);
+            };
+            match command {
+                Command::Track(lease) => {
+                    let duration = random.below(if trouble { 3000 } else { 300 });
+                    later(
+                        duration,
+                        Future::Happens(Input::Tracked(lease.clone(), lease.chunk)),
+                    );
+                    tracking.insert(lease.clone(), now + milliseconds(duration));
+                    assert!(begun.insert(lease), "seed {seed}: a lease is begun once");
+                }
+                Command::Abandon(lease) => {
+                    // It may have ended in the same moment.
+                    tally.fenced += u64::from(tracking.remove(&lease).is_some());
+                    assert!(
+                        begun.contains(&lease),
+                        "seed {seed}: only what was begun is abandoned"
+                    );
+                    assert!(
+                        trouble || drained,
+                        "seed {seed}: without trouble nothing is abandoned"
+                    );
+                }
+                Command::CancelPull => assert!(drained),
+                Command::Exit(_) => {
+                    assert!(drained, "seed {seed}: only a drained worker ends");
+                    assert_eq!(books.accepted, chunks as u64, "seed {seed}");
+                    assert!(books.rows.iter().all(|(row, _)| *row == Row::Accepted));
+                    tally.stale += books.stale;
+                    return;
+                }
+                call => {
+                    match &call {
+                        Command::Pull { free, .. } => {
+                            pulls += 1;
+                            assert!(!drained && pulls == 1, "seed {seed}: one pull at a time");
+                            assert!(*free + tracking.len() <= 2, "seed {seed}");
+                        }
+                        Command::Renew(_) => {
+                            renewals += 1;
+                            assert_eq!(renewals, 1, "seed {seed}: one renewal at a time");
+                        }
+                        _ => {}
+                    }
+                    later(
+                        random.below(if trouble { 120 } else { 10 }),
+                        Future::Arrives(call),
+                    );
+                }
+            }
+        }
+        // What runs is leased: nobody else can have got it, by any clock.
+        for (lease, end) in &tracking {
+            assert!(
+                books.holds(lease) || *end <= now,
+                "seed {seed}: {lease} runs though it is another's"
+            );
+        }
+        if !drained && books.accepted == chunks as u64 && !troubled(now) {
+            drained = true;
+            session.handle(Input::Drain, now);
+            continue;
+        }
+        let wake = session.wake_at();
+        assert!(
+            wake.is_none_or(|wake| wake > now),
+            "seed {seed}: {wake:?} is not after {now:?}"
+        );
+        let next_event = future.keys().next().map(|key| key.0);
+        let Some(next) = wake.into_iter().chain(next_event).min() else {
+            panic!("seed {seed}: nothing will ever happen");
+        };
+        now = now.max(next);
+        if troubled(now) && random.below(40) == 0 {
+            // The process is frozen: it wakes late, and everything has gone on without it.
+            now = now + milliseconds(random.below(4000));
+        }
+        books.expire(now);
+        while let Some(entry) = future.first_entry() {
+            let when = entry.key().0;
+            if when > now {
+                break;
+            }
+            match entry.remove() {
+                Future::Happens(input) => {
+                    if let Input::Tracked(lease, _) = &input
+                        && tracking.remove(lease).is_none()
+                    {
+                        // It was abandoned: its threads stopped.
+                        continue;
+                    }
+                    pulls -= u64::from(matches!(input, Input::Pulled(_) | Input::PullFailed));
+                    renewals -= u64::from(matches!(input, Input::Renewed(_) | Input::RenewFailed));
+                    session.handle(input, now);
+                }
+                Future::Arrives(call) => {
+                    let answer = if outage(when) {
+                        failure(&call)
+                    } else {
+                        books.answer(&call, when)
+                    };
+                    // A reply can be lost although the call was done.
+                    let lost_reply = troubled(when) && random.below(8) == 0;
+                    let answer = if lost_reply { failure(&call) } else { answer };
+                    number += 1;
+                    let delay = milliseconds(random.below(if trouble { 120 } else { 10 }));
+                    future.insert((when + delay, number), Future::Happens(answer));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_chunk_is_accepted_once_in_quiet_lives() {
+    let mut tally = Tally::default();
+    for seed in 0..300 {
+        live(seed, false, &mut tally);
+    }
+    assert_eq!((tally.fenced, tally.stale), (0, 0));
+}
+
+#[test]
+fn every_chunk_is_accepted_once_in_troubled_lives() {
+    let mut tally = Tally::default();
+    for seed in 0..300 {
+        live(seed, true, &mut tally);
+    }
+    // The trouble was real: leases were lost and late reports came.
+    assert!(tally.fenced > 100, "{}", tally.fenced);
+    assert!(tally.stale > 10, "{}", tally.stale);
+}

@@ -1,0 +1,159 @@
+//! Transport: the calls that a worker makes to a coordinator, by whatever way.
+//!
+//! One trait in this crate's own types; only the implementations below know
+//! what a message looks like. Shared memory on one host will be a second one.
+
+use crate::chunk_runner::TrackedChunk;
+use crate::machine::Machine;
+use crate::reports::Verdict;
+use async_trait::async_trait;
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::work::{Stage, StageId};
+use cognate_systems::system::System;
+use std::fmt;
+use std::ops::Range;
+use std::time::Duration;
+
+/// A chunk that was leased, with the epoch of the lease. An older epoch of a chunk is worth nothing.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LeaseId {
+    /// The job.
+    pub job: String,
+    /// The stage within the job.
+    pub stage: StageId,
+    /// The chunk within the stage.
+    pub chunk: u64,
+    /// How often the chunk has been leased.
+    pub epoch: u64,
+}
+
+impl fmt::Display for LeaseId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            job,
+            stage,
+            chunk,
+            epoch,
+        } = self;
+        write!(f, "{job}/{}/{chunk}/{epoch}", stage.0)
+    }
+}
+
+/// A chunk to track.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lease {
+    /// Its name.
+    pub id: LeaseId,
+    /// Digest of the system to solve.
+    pub problem: Digest,
+    /// Digest of the stage: under it, the stage is the same on every day.
+    pub stage: Digest,
+    /// The items of the stage.
+    pub items: Range<u64>,
+    /// How long the lease lasts, unless it is renewed.
+    pub lasts: Duration,
+}
+
+/// What a pull brought.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pulled {
+    /// Chunks to track, perhaps none.
+    pub leases: Vec<Lease>,
+    /// Why this worker gets no work, ever.
+    pub refused: Option<String>,
+    /// The coordinator is stopping; it may come back.
+    pub draining: bool,
+}
+
+/// What became of a lease that was to be renewed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Renewal {
+    /// It lasts so long from now.
+    Held(Duration),
+    /// It belongs to another worker by now, or its job has ended.
+    Lost,
+}
+
+/// Why a chunk goes back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum GiveBack {
+    /// The worker is stopping; no failure of the chunk.
+    Draining,
+    /// The chunk cannot be tracked here, and why.
+    Failed(String),
+}
+
+/// Who this worker is; sent with its pulls.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Announcement {
+    /// The worker's name.
+    pub worker: String,
+    /// Drawn anew by each process.
+    pub session: String,
+    /// What it runs on.
+    pub machine: Machine,
+    /// Threads that track.
+    pub threads: usize,
+    /// Lanes of each thread; `None`: chosen for each stage.
+    pub lane_width: Option<usize>,
+}
+
+/// Why a call has no answer.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TransportError {
+    /// No coordinator answered in time, or it asks to try again.
+    #[error("{0}")]
+    Unavailable(String),
+    /// The coordinator does not have it, or will not do it; asking again changes nothing.
+    #[error("{0}")]
+    Refused(String),
+    /// The answer was none of this protocol.
+    #[error("the coordinator's answer makes no sense: {0}")]
+    Malformed(String),
+}
+
+/// The calls of a worker. Each may be made again after a lost answer.
+#[async_trait]
+pub trait Transport: Send + Sync {
+    /// Asks for up to `free` chunks; the coordinator may wait up to `wait` for some. The same
+    /// `sequence` again asks for the same answer.
+    async fn pull(
+        &self,
+        sequence: u64,
+        free: usize,
+        wait: Duration,
+    ) -> Result<Pulled, TransportError>;
+    /// Keeps leases; one renewal for each, in order.
+    async fn renew(&self, leases: &[LeaseId]) -> Result<Vec<Renewal>, TransportError>;
+    /// Hands in a finished chunk.
+    async fn report(
+        &self,
+        lease: &LeaseId,
+        chunk: &TrackedChunk,
+    ) -> Result<Verdict, TransportError>;
+    /// Gives chunks back.
+    async fn give_back(&self, leases: &[LeaseId], why: &GiveBack) -> Result<(), TransportError>;
+    /// Says goodbye: the session ends, and whatever it still holds is free.
+    async fn leave(&self) -> Result<(), TransportError>;
+    /// The system of a problem.
+    async fn system(&self, problem: Digest) -> Result<System, TransportError>;
+    /// A stage of a job.
+    async fn stage(&self, job: &str, stage: StageId) -> Result<Stage, TransportError>;
+    /// Stored start points.
+    async fn points(&self, object: Digest) -> Result<StoredPoints, TransportError>;
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A lease of one job and stage.
+    pub(crate) fn lease(chunk: u64) -> LeaseId {
+        LeaseId {
+            job: "job".to_owned(),
+            stage: StageId(0),
+            chunk,
+            epoch: 1,
+        }
+    }
+}
