@@ -1,2 +1,25 @@
-//! What the endpoints mean.
+//! What the endpoints mean: from all paths' results to one solution set.
+//!
+//! In reading order: [`point_shape`] says which coordinate is whose;
+//! [`classification`] gives each path a verdict by rules on its own facts;
+//! [`unique_points`] finds the endpoints that are one point; [`path_crossing`]
+//! names the paths that must be tracked again; [`real`] decides whether a
+//! solution can be called real; [`solution_set`] puts it together, with counts
+//! that add up. Nothing here tracks a path: everything can be decided again
+//! from stored results, with other tolerances.
 #![forbid(unsafe_code)]
+
+pub mod classification;
+pub mod degenerate;
+pub mod field;
+pub mod involution;
+pub mod path_crossing;
+pub mod point_shape;
+pub mod real;
+pub mod solution;
+pub mod solution_set;
+pub mod summary;
+pub mod unique_points;
+
+#[cfg(test)]
+mod test_results;

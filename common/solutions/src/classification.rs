@@ -1,0 +1,211 @@
+//! The rules that give one path its verdict: pure functions of its own facts.
+//!
+//! Tolerances are arguments, so that a verdict can be decided again from
+//! stored results. The first class that holds is the path's class.
+
+use crate::point_shape::{PointShape, largest, modulus};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::tracker::outcome::PathOutcome;
+use serde::{Deserialize, Serialize};
+
+/// Every number that decides a verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tolerances {
+    /// A homogenising coordinate is 0 within this many times the endpoint's estimated error.
+    pub infinity_factor: f64,
+    /// ... or within this, whatever the estimate says: five hundred roundings of a
+    /// coordinate of size 1. Solutions of norm up to 1e12 stay solutions in doubles.
+    pub infinity_floor: f64,
+    /// The same where the endpoint is singular and the coordinate was seen to turn around 0:
+    /// errors of singular endpoints are estimated less well.
+    pub singular_infinity_floor: f64,
+    /// Within this factor of the border on either side, the verdict rests on the
+    /// precision alone and is counted as such.
+    pub infinity_band: f64,
+    /// Two endpoints coincide within this many times the sum of their estimated errors.
+    pub coincidence_factor: f64,
+    /// ... or within this. Two regular solutions this near have condition numbers
+    /// above 1e9, past what the tracker calls regular.
+    pub coincidence_floor: f64,
+    /// The same for singular endpoints, whose errors are estimated less well.
+    pub singular_coincidence_factor: f64,
+    /// See `singular_coincidence_factor`.
+    pub singular_coincidence_floor: f64,
+    /// An expression of a degenerate set is 0 within this many times the error that
+    /// the endpoint's estimated error makes in it.
+    pub degenerate_factor: f64,
+    /// Smallest relative error that is assumed for an endpoint there.
+    pub degenerate_floor: f64,
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Self {
+            infinity_factor: 10.0,
+            infinity_floor: 1e-13,
+            singular_infinity_floor: 1e-10,
+            infinity_band: 10.0,
+            coincidence_factor: 10.0,
+            coincidence_floor: 1e-10,
+            singular_coincidence_factor: 50.0,
+            singular_coincidence_floor: 1e-8,
+            degenerate_factor: 10.0,
+            degenerate_floor: 1e-13,
+        }
+    }
+}
+
+/// What a path's end is, in the order in which the classes are asked.
+///
+/// Two classes of the contract have no rule yet. No path is `excess`: systems
+/// are tracked as they are given, none is randomised. Whether a singular
+/// endpoint lies on a positive-dimensional set is not decided; such paths stand
+/// in `Singular`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Verdict {
+    /// Not tracked to the end.
+    Failed,
+    /// The homogenising coordinate of an affine group is 0.
+    AtInfinity,
+    /// Finite, with a singular Jacobian.
+    Singular,
+    /// Finite, nonsingular and so isolated.
+    Finite,
+}
+
+/// A verdict and how it was reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decision {
+    /// The class.
+    pub verdict: Verdict,
+    /// True when finite or infinite was decided only by the limit of the precision:
+    /// too near the border, or two indications that disagree.
+    pub by_precision_limit: bool,
+}
+
+/// The verdict of one path.
+pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances) -> Decision {
+    let point = result.endpoint.to_double();
+    let singular = match result.outcome {
+        PathOutcome::Failed(_) => return Decision::clear(Verdict::Failed),
+        // A result that holds no point is as good as none.
+        _ if !shape.holds(point) => return Decision::clear(Verdict::Failed),
+        PathOutcome::Singular => true,
+        PathOutcome::Regular => false,
+    };
+    let bound_above = |floor| error_bound(result.accuracy, tolerances.infinity_factor, floor);
+    let mut at_infinity = false;
+    let mut by_precision_limit = false;
+    let affine = shape.spans().filter(|span| !span.group.homogeneous);
+    for (k, span) in affine.enumerate() {
+        let group = &point[span.range];
+        let coordinate = modulus(group[0]) / largest(group);
+        let turns = result.infinity_turns.get(k).filter(|_| singular);
+        let bound = bound_above(match turns {
+            Some(&turns) if turns > 0 => tolerances.singular_infinity_floor,
+            _ => tolerances.infinity_floor,
+        });
+        let vanishes = coordinate <= bound;
+        match turns {
+            // How often the coordinate turns around 0 is a whole number: it says
+            // without tolerance whether the coordinate vanishes, unless something
+            // else lies within the radius. Both must agree for infinity.
+            Some(&turns) => {
+                at_infinity |= vanishes && turns > 0;
+                by_precision_limit |= vanishes != (turns > 0);
+            }
+            None => {
+                at_infinity |= vanishes;
+                by_precision_limit |= coordinate > bound / tolerances.infinity_band
+                    && coordinate < bound * tolerances.infinity_band;
+            }
+        }
+    }
+    let verdict = match (at_infinity, singular) {
+        (true, _) => Verdict::AtInfinity,
+        (false, true) => Verdict::Singular,
+        (false, false) => Verdict::Finite,
+    };
+    Decision {
+        verdict,
+        by_precision_limit,
+    }
+}
+
+/// How far a coordinate of size 1 may be off, from an estimated error.
+pub fn error_bound(accuracy: f64, factor: f64, floor: f64) -> f64 {
+    // An unknown error (not a number, infinite) must not make everything 0.
+    let estimate = if accuracy.is_finite() {
+        factor * accuracy
+    } else {
+        0.0
+    };
+    estimate.max(floor).min(1e-3)
+}
+
+impl Decision {
+    fn clear(verdict: Verdict) -> Self {
+        Self {
+            verdict,
+            by_precision_limit: false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_results::{affine_shape, failed, regular, singular};
+
+    fn verdict(result: &PathResult) -> (Verdict, bool) {
+        let shape = affine_shape(result.endpoint.to_double().len() - 1);
+        let decision = classify(result, &shape, &Tolerances::default());
+        (decision.verdict, decision.by_precision_limit)
+    }
+
+    #[test]
+    fn size_alone_is_not_infinity() {
+        for norm in [1.0, 1e4, 1e6, 1e8, 1e11] {
+            let result = regular(0, &[(1.0 / norm, 0.0), (1.0, 0.0), (0.3, -0.2)]);
+            assert_eq!(verdict(&result), (Verdict::Finite, false), "norm {norm}");
+        }
+        let result = regular(0, &[(3e-17, 1e-17), (1.0, 0.0)]);
+        assert_eq!(verdict(&result), (Verdict::AtInfinity, false));
+    }
+
+    #[test]
+    fn near_the_border_the_precision_decides_and_says_so() {
+        for x0 in [5e-13, 5e-14] {
+            let result = regular(0, &[(x0, 0.0), (1.0, 0.0)]);
+            assert!(verdict(&result).1);
+        }
+    }
+
+    #[test]
+    fn singular_endpoints_need_both_indications() {
+        let point = |x0: f64| [(x0, 0.0), (1.0, 0.0)];
+        assert_eq!(
+            verdict(&singular(0, &point(1e-11), 2, &[1])),
+            (Verdict::AtInfinity, false)
+        );
+        assert_eq!(
+            verdict(&singular(0, &point(1e-11), 2, &[0])),
+            (Verdict::Singular, true)
+        );
+        assert_eq!(
+            verdict(&singular(0, &point(1e-3), 2, &[1])),
+            (Verdict::Singular, true)
+        );
+        assert_eq!(
+            verdict(&singular(0, &point(0.5), 2, &[0])),
+            (Verdict::Singular, false)
+        );
+    }
+
+    #[test]
+    fn failures_and_damaged_results_fail() {
+        assert_eq!(verdict(&failed(0)), (Verdict::Failed, false));
+        let result = regular(0, &[(f64::NAN, 0.0), (1.0, 0.0)]);
+        assert_eq!(verdict(&result), (Verdict::Failed, false));
+    }
+}

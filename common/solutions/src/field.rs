@@ -1,0 +1,308 @@
+//! Field: the arithmetic that expressions are evaluated in, and the one sweep that does it.
+//!
+//! Two fields for deciding whether a system is invariant under an involution:
+//! integers modulo a prime (exact), and many bits where constants are not
+//! rational. One more, with a bound beside each value, is in `degenerate`.
+
+use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_systems::expression::{Expressions, Function, Node, NodeId};
+use rug::ops::{NegAssign, Pow};
+use rug::{Complex, Float, Integer};
+
+/// An arithmetic for expressions. `None` means that a value does not exist in it.
+pub trait Field {
+    /// An element.
+    type Value: Clone;
+    /// An exact number.
+    fn constant(&self, value: &ComplexRational) -> Option<Self::Value>;
+    /// `a + b`.
+    fn add(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
+    /// `-a`.
+    fn negate(&self, a: &Self::Value) -> Self::Value;
+    /// `a * b`.
+    fn multiply(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
+    /// `a / b`, unless `b` is 0.
+    fn divide(&self, a: &Self::Value, b: &Self::Value) -> Option<Self::Value>;
+    /// A rational power, principal branch.
+    fn root(&self, a: &Self::Value, exponent: &Rational) -> Option<Self::Value>;
+    /// An elementary function.
+    fn function(&self, function: Function, a: &Self::Value) -> Option<Self::Value>;
+}
+
+/// The values of some nodes; `None` when one of them does not exist in the field.
+///
+/// Children have smaller numbers than parents, so one ascending sweep does it.
+pub fn evaluate<F: Field>(
+    field: &F,
+    expressions: &Expressions,
+    roots: &[NodeId],
+    variables: &[F::Value],
+    parameters: &[F::Value],
+) -> Option<Vec<F::Value>> {
+    let count = roots.iter().map(|r| r.0 as usize + 1).max().unwrap_or(0);
+    let mut needed = vec![false; count];
+    for root in roots {
+        needed[root.0 as usize] = true;
+    }
+    for id in (0..count).rev() {
+        if needed[id] {
+            for child in expressions.children(NodeId(id as u32)) {
+                needed[child.0 as usize] = true;
+            }
+        }
+    }
+    let mut values: Vec<Option<F::Value>> = vec![None; count];
+    for id in 0..count {
+        if !needed[id] {
+            continue;
+        }
+        let of = |n: &NodeId| values[n.0 as usize].as_ref();
+        let value = match expressions.node(NodeId(id as u32)) {
+            Node::Constant(c) => field.constant(c)?,
+            Node::Variable(v) => variables.get(*v as usize)?.clone(),
+            Node::Parameter(p) => parameters.get(*p as usize)?.clone(),
+            Node::Add(a, b) => field.add(of(a)?, of(b)?),
+            Node::Subtract(a, b) => field.add(of(a)?, &field.negate(of(b)?)),
+            Node::Multiply(a, b) => field.multiply(of(a)?, of(b)?),
+            Node::Divide(a, b) => field.divide(of(a)?, of(b)?)?,
+            Node::Negate(a) => field.negate(of(a)?),
+            Node::Power(a, exponent) => power(field, of(a)?, *exponent)?,
+            Node::Root(a, exponent) => field.root(of(a)?, exponent)?,
+            Node::Function(f, a) => field.function(*f, of(a)?)?,
+        };
+        values[id] = Some(value);
+    }
+    roots.iter().map(|r| values[r.0 as usize].clone()).collect()
+}
+
+/// By repeated squaring.
+fn power<F: Field>(field: &F, base: &F::Value, exponent: u32) -> Option<F::Value> {
+    let mut result = field.constant(&ComplexRational::real(1))?;
+    let mut square = base.clone();
+    let mut left = exponent;
+    while left > 0 {
+        if left & 1 == 1 {
+            result = field.multiply(&result, &square);
+        }
+        left >>= 1;
+        if left > 0 {
+            square = field.multiply(&square, &square);
+        }
+    }
+    Some(result)
+}
+
+/// Integers modulo a prime in which -1 has a square root, taken as i.
+#[derive(Clone, Copy, Debug)]
+pub struct PrimeField {
+    prime: u64,
+    i: u64,
+}
+
+/// Primes that are 1 modulo 4, so that -1 has a square root.
+pub const PRIMES: [u64; 2] = [2_305_843_009_213_693_921, 2_305_843_009_213_693_693];
+
+impl PrimeField {
+    /// The field of this prime.
+    pub fn new(prime: u64) -> Self {
+        let field = Self { prime, i: 0 };
+        // a^((p-1)/4) is a root of -1 for every second a.
+        let i = (2..)
+            .map(|a| field.raise(a, (prime - 1) / 4))
+            .find(|&r| field.times(r, r) == prime - 1)
+            .expect("half of all numbers are no squares");
+        Self { prime, i }
+    }
+
+    /// The same field with the other square root of -1 for i: every value becomes its conjugate.
+    pub fn conjugate(self) -> Self {
+        Self {
+            prime: self.prime,
+            i: self.prime - self.i,
+        }
+    }
+
+    /// The prime.
+    pub fn prime(&self) -> u64 {
+        self.prime
+    }
+
+    fn times(&self, a: u64, b: u64) -> u64 {
+        (u128::from(a) * u128::from(b) % u128::from(self.prime)) as u64
+    }
+
+    fn raise(&self, mut base: u64, mut exponent: u64) -> u64 {
+        let mut result = 1;
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = self.times(result, base);
+            }
+            base = self.times(base, base);
+            exponent >>= 1;
+        }
+        result
+    }
+
+    fn rational(&self, value: &Rational) -> Option<u64> {
+        let part = |n: &Integer| {
+            let mut rest = Integer::from(n % self.prime);
+            if rest < 0 {
+                rest += self.prime;
+            }
+            rest.to_u64()
+        };
+        self.divide(&part(value.numer())?, &part(value.denom())?)
+    }
+}
+
+impl Field for PrimeField {
+    type Value = u64;
+
+    fn constant(&self, value: &ComplexRational) -> Option<u64> {
+        let (re, im) = (self.rational(&value.re)?, self.rational(&value.im)?);
+        Some(self.add(&re, &self.times(im, self.i)))
+    }
+    fn add(&self, a: &u64, b: &u64) -> u64 {
+        (a + b) % self.prime
+    }
+    fn negate(&self, a: &u64) -> u64 {
+        (self.prime - a) % self.prime
+    }
+    fn multiply(&self, a: &u64, b: &u64) -> u64 {
+        self.times(*a, *b)
+    }
+    fn divide(&self, a: &u64, b: &u64) -> Option<u64> {
+        (*b != 0).then(|| self.times(*a, self.raise(*b, self.prime - 2)))
+    }
+    fn root(&self, _: &u64, _: &Rational) -> Option<u64> {
+        None
+    }
+    fn function(&self, _: Function, _: &u64) -> Option<u64> {
+        None
+    }
+}
+
+/// Complex numbers of many bits, which round.
+#[derive(Clone, Copy, Debug)]
+pub struct ManyBits(pub u32);
+
+impl ManyBits {
+    /// A number on the positive side of every branch cut: no zero is negative.
+    fn clean(mut value: Complex) -> Complex {
+        if value.real().is_zero() && value.real().is_sign_negative() {
+            value.mut_real().neg_assign();
+        }
+        if value.imag().is_zero() && value.imag().is_sign_negative() {
+            value.mut_imag().neg_assign();
+        }
+        value
+    }
+}
+
+impl Field for ManyBits {
+    type Value = Complex;
+
+    fn constant(&self, value: &ComplexRational) -> Option<Complex> {
+        Some(Complex::with_val(self.0, (&value.re, &value.im)))
+    }
+    fn add(&self, a: &Complex, b: &Complex) -> Complex {
+        Complex::with_val(self.0, a + b)
+    }
+    fn negate(&self, a: &Complex) -> Complex {
+        Self::clean(Complex::with_val(self.0, -a))
+    }
+    fn multiply(&self, a: &Complex, b: &Complex) -> Complex {
+        Complex::with_val(self.0, a * b)
+    }
+    fn divide(&self, a: &Complex, b: &Complex) -> Option<Complex> {
+        (!b.is_zero()).then(|| Complex::with_val(self.0, a / b))
+    }
+    fn root(&self, a: &Complex, exponent: &Rational) -> Option<Complex> {
+        if a.is_zero() {
+            return (*exponent > 0).then(|| a.clone());
+        }
+        let exponent = Float::with_val(self.0, exponent);
+        Some(Self::clean(Complex::with_val(
+            self.0,
+            Self::clean(a.clone()).pow(exponent),
+        )))
+    }
+    fn function(&self, function: Function, a: &Complex) -> Option<Complex> {
+        let a = Self::clean(a.clone());
+        let value = match function {
+            Function::SquareRoot => a.sqrt(),
+            Function::Exponential => a.exp(),
+            Function::Logarithm => {
+                if a.is_zero() {
+                    return None;
+                }
+                a.ln()
+            }
+            Function::Sine => a.sin(),
+            Function::Cosine => a.cos(),
+            Function::Tangent => a.tan(),
+            Function::Pi => Complex::with_val(self.0, rug::float::Constant::Pi),
+        };
+        let value = Self::clean(value);
+        (value.real().is_finite() && value.imag().is_finite()).then_some(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rug::integer::IsPrime;
+
+    #[test]
+    fn the_primes_are_primes_with_a_root_of_minus_one() {
+        for prime in PRIMES {
+            assert_ne!(Integer::from(prime).is_probably_prime(40), IsPrime::No);
+            let field = PrimeField::new(prime);
+            assert_eq!(field.times(field.i, field.i), prime - 1);
+            let third = field.constant(&ComplexRational::new((-1, 3), 0)).unwrap();
+            assert_eq!(field.times(third, 3), prime - 1);
+            let conjugate = field.conjugate();
+            let z = ComplexRational::new(2, 5);
+            assert_eq!(
+                field.constant(&z.conjugate()),
+                conjugate.constant(&z),
+                "the other root of -1 conjugates"
+            );
+        }
+    }
+
+    #[test]
+    fn fields_agree_with_each_other_and_with_known_values() {
+        let mut e = Expressions::new();
+        let x = e.variable(0);
+        let p = e.parameter(0);
+        let third = e.constant(ComplexRational::new((1, 3), (2, 7)));
+        let product = e.multiply(third, x);
+        let quotient = e.divide(product, p);
+        let cube = e.power(quotient, 3);
+        let root = e.subtract(cube, x);
+        let at = [ComplexRational::new(2, -1)];
+        let with = [ComplexRational::new(5, 0)];
+        let exact = cognate_systems::expression::exact::value(&e, root, &at, &with).unwrap();
+        let field = PrimeField::new(PRIMES[0]);
+        let lift = |z: &[ComplexRational]| vec![field.constant(&z[0]).unwrap()];
+        let value = evaluate(&field, &e, &[root], &lift(&at), &lift(&with)).unwrap();
+        assert_eq!(Some(value[0]), field.constant(&exact));
+        let bits = ManyBits(300);
+        let lift = |z: &[ComplexRational]| vec![bits.constant(&z[0]).unwrap()];
+        let value = evaluate(&bits, &e, &[root], &lift(&at), &lift(&with)).unwrap();
+        let difference = Complex::with_val(300, &value[0] - bits.constant(&exact).unwrap());
+        assert!(Float::with_val(53, difference.abs_ref()) < 1e-80);
+    }
+
+    #[test]
+    fn roots_of_negative_numbers_take_the_principal_branch() {
+        let mut e = Expressions::new();
+        let two = e.integer(-2);
+        let root = e.root(two, (1, 2).into());
+        let field = ManyBits(100);
+        let value = evaluate(&field, &e, &[root], &[], &[]).unwrap();
+        assert!(value[0].imag().to_f64() > 1.41 && value[0].real().to_f64().abs() < 1e-20);
+        assert!(evaluate(&PrimeField::new(PRIMES[0]), &e, &[root], &[], &[]).is_none());
+    }
+}

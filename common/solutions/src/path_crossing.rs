@@ -1,0 +1,146 @@
+//! Path crossings: two paths with one regular endpoint, so that one of them has jumped.
+//!
+//! To a regular solution leads exactly one path, finite or at infinity. All
+//! paths that meet in one are tracked again, with the same gamma and tighter
+//! settings. [`CrossingBook`] remembers which meetings were seen and whether
+//! they came apart.
+
+use crate::classification::{Decision, Tolerances, Verdict, error_bound};
+use crate::point_shape::PointShape;
+use crate::unique_points::{Neighbourhood, clusters};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::tracker::outcome::PathOutcome;
+use serde::{Deserialize, Serialize};
+
+/// Within what distance another endpoint is the same as this one: half of the sum.
+pub fn radius(result: &PathResult, tolerances: &Tolerances) -> f64 {
+    let (factor, floor) = match result.outcome {
+        PathOutcome::Singular => (
+            tolerances.singular_coincidence_factor,
+            tolerances.singular_coincidence_floor,
+        ),
+        _ => (tolerances.coincidence_factor, tolerances.coincidence_floor),
+    };
+    error_bound(result.accuracy, factor, floor)
+}
+
+/// Groups of paths, by their places among `results`, whose endpoints coincide.
+/// Only paths for which `chosen` holds take part.
+pub fn coincidences(
+    results: &[PathResult],
+    shape: &PointShape,
+    tolerances: &Tolerances,
+    seed: u64,
+    chosen: impl Fn(usize) -> bool,
+) -> Vec<Vec<usize>> {
+    let places: Vec<usize> = (0..results.len()).filter(|&k| chosen(k)).collect();
+    let points: Vec<Neighbourhood<'_>> = places
+        .iter()
+        .map(|&k| Neighbourhood {
+            point: results[k].endpoint.to_double(),
+            radius: radius(&results[k], tolerances),
+        })
+        .collect();
+    clusters(&points, shape, seed)
+        .into_iter()
+        .map(|members| members.into_iter().map(|m| places[m]).collect())
+        .collect()
+}
+
+/// Groups of two or more paths, by their places, that end at one regular point.
+pub fn crossings(
+    results: &[PathResult],
+    decisions: &[Decision],
+    shape: &PointShape,
+    tolerances: &Tolerances,
+    seed: u64,
+) -> Vec<Vec<usize>> {
+    let mut all = coincidences(results, shape, tolerances, seed, |k| {
+        results[k].outcome == PathOutcome::Regular && decisions[k].verdict != Verdict::Failed
+    });
+    all.retain(|members| members.len() > 1);
+    all
+}
+
+/// Which crossings were seen in a solve, and which are left.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CrossingBook {
+    seen: Vec<Vec<u64>>,
+    left: Vec<Vec<u64>>,
+}
+
+impl CrossingBook {
+    /// Takes all crossings that there are now, by path indices, ascending in each.
+    pub fn update(&mut self, now: Vec<Vec<u64>>) {
+        for crossing in &now {
+            if !self.seen.iter().any(|old| share_two(old, crossing)) {
+                self.seen.push(crossing.clone());
+            }
+        }
+        self.left = now;
+    }
+
+    /// How many were ever seen; paths that meet again are one crossing.
+    pub fn found(&self) -> u64 {
+        self.seen.len() as u64
+    }
+
+    /// How many of them came apart.
+    pub fn resolved(&self) -> u64 {
+        let open = |old: &&Vec<u64>| self.left.iter().any(|now| share_two(old, now));
+        self.found() - self.seen.iter().filter(open).count() as u64
+    }
+
+    /// The paths that still meet another.
+    pub fn paths(&self) -> impl Iterator<Item = u64> + '_ {
+        self.left.iter().flatten().copied()
+    }
+}
+
+/// True when two ascending lists have two members in common.
+fn share_two(a: &[u64], b: &[u64]) -> bool {
+    let common = a.iter().filter(|path| b.binary_search(path).is_ok());
+    common.take(2).count() == 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::classification::classify;
+    use crate::test_results::{affine_shape, failed, regular, singular};
+
+    #[test]
+    fn only_regular_endpoints_cross() {
+        let shape = affine_shape(1);
+        let tolerances = Tolerances::default();
+        let results = [
+            regular(0, &[(1.0, 0.0), (0.5, 0.0)]),
+            failed(1),
+            regular(2, &[(0.0, 2.0), (0.0, 1.0)]), // the same point, scaled
+            singular(3, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0]),
+            regular(4, &[(1.0, 0.0), (0.5, 1e-6)]),
+            regular(5, &[(1e-17, 0.0), (1.0, 0.0)]),
+            regular(6, &[(0.0, 0.0), (1.0, 0.0)]), // at infinity too
+        ];
+        let decisions: Vec<Decision> = results
+            .iter()
+            .map(|r| classify(r, &shape, &tolerances))
+            .collect();
+        let found = crossings(&results, &decisions, &shape, &tolerances, 1);
+        assert_eq!(found, [vec![0, 2], vec![5, 6]]);
+    }
+
+    #[test]
+    fn a_crossing_counts_once_and_is_resolved_when_its_paths_part() {
+        let mut book = CrossingBook::default();
+        book.update(vec![vec![1, 2], vec![5, 6, 7]]);
+        assert_eq!((book.found(), book.resolved()), (2, 0));
+        book.update(vec![vec![6, 7]]);
+        assert_eq!((book.found(), book.resolved()), (2, 1));
+        book.update(vec![vec![6, 8]]);
+        assert_eq!((book.found(), book.resolved()), (3, 2));
+        assert_eq!(book.paths().collect::<Vec<_>>(), [6, 8]);
+        book.update(vec![]);
+        assert_eq!((book.found(), book.resolved()), (3, 3));
+    }
+}

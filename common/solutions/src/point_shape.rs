@@ -1,0 +1,215 @@
+//! PointShape: which coordinate of an endpoint belongs to which variable.
+//!
+//! Endpoints come in homogeneous coordinates, group after group (see
+//! `Coordinates`); this is the one place that knows how to read them.
+
+use cognate_systems::system::{System, VariableGroup};
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// The groups of a system, as the coordinates of its endpoints are laid out.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PointShape {
+    groups: Vec<VariableGroup>,
+    variables: usize,
+}
+
+/// The coordinates of one group.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Span<'a> {
+    /// Where its coordinates stand.
+    pub range: Range<usize>,
+    /// The group: an affine one has its homogenising coordinate first.
+    pub group: &'a VariableGroup,
+}
+
+/// |z|, without libm.
+pub fn modulus(z: Complex64) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
+/// The largest modulus among some numbers.
+pub fn largest(values: &[Complex64]) -> f64 {
+    values
+        .iter()
+        .map(|z| z.norm_sqr())
+        .fold(0.0, f64::max)
+        .sqrt()
+}
+
+impl PointShape {
+    /// The shape of a system's endpoints.
+    pub fn of(system: &System) -> Self {
+        Self {
+            groups: system.groups.clone(),
+            variables: system.variables.len(),
+        }
+    }
+
+    /// How many coordinates an endpoint has.
+    pub fn coordinates(&self) -> usize {
+        self.variables + self.groups.iter().filter(|g| !g.homogeneous).count()
+    }
+
+    /// The groups with their places, in order.
+    pub fn spans(&self) -> impl Iterator<Item = Span<'_>> {
+        let mut start = 0;
+        self.groups.iter().map(move |group| {
+            let length = group.variables.len() + usize::from(!group.homogeneous);
+            let range = start..start + length;
+            start += length;
+            Span { range, group }
+        })
+    }
+
+    /// The value of each variable: affine groups divided by their homogenising
+    /// coordinate, homogeneous groups scaled so that their largest coordinate is 1.
+    pub fn to_variables(&self, point: &[Complex64]) -> Vec<Complex64> {
+        let mut values = vec![Complex64::new(0.0, 0.0); self.variables];
+        for span in self.spans() {
+            let group = &point[span.range.clone()];
+            let (divisor, rest) = if span.group.homogeneous {
+                (group[largest_index(group)], group)
+            } else {
+                (group[0], &group[1..])
+            };
+            for (&variable, &z) in span.group.variables.iter().zip(rest) {
+                // Exactly 1, not nearly: z/z rounds.
+                values[variable] = if z == divisor {
+                    Complex64::new(1.0, 0.0)
+                } else {
+                    z / divisor
+                };
+            }
+        }
+        values
+    }
+
+    /// The other way: coordinates of the point at which the variables have these values.
+    pub fn to_coordinates(&self, values: &[Complex64]) -> Vec<Complex64> {
+        let mut point = Vec::with_capacity(self.coordinates());
+        for span in self.spans() {
+            let start = point.len();
+            if !span.group.homogeneous {
+                point.push(Complex64::new(1.0, 0.0));
+            }
+            point.extend(span.group.variables.iter().map(|&v| values[v]));
+            let scale = largest(&point[start..]);
+            if scale > 0.0 {
+                for z in &mut point[start..] {
+                    *z /= scale;
+                }
+            }
+        }
+        point
+    }
+
+    /// How far apart two points are, group by group up to scaling: the largest
+    /// difference of coordinates after both are divided by the coordinate that
+    /// is largest in the first.
+    pub fn distance(&self, a: &[Complex64], b: &[Complex64]) -> f64 {
+        let mut distance = 0.0f64;
+        for span in self.spans() {
+            let (a, b) = (&a[span.range.clone()], &b[span.range]);
+            let pivot = largest_index(a);
+            for (x, y) in a.iter().zip(b) {
+                let difference = modulus(x / a[pivot] - y / b[pivot]);
+                if !difference.is_finite() {
+                    return f64::INFINITY;
+                }
+                distance = distance.max(difference);
+            }
+        }
+        distance
+    }
+
+    /// True for coordinates that can be a point: as many as there should be,
+    /// all finite, and no group all 0.
+    pub fn holds(&self, point: &[Complex64]) -> bool {
+        point.len() == self.coordinates()
+            && point.iter().all(|z| z.re.is_finite() && z.im.is_finite())
+            && self.spans().all(|span| largest(&point[span.range]) > 0.0)
+    }
+}
+
+/// Where the largest coordinate stands; the first of equals.
+fn largest_index(values: &[Complex64]) -> usize {
+    let mut best = 0;
+    for (index, z) in values.iter().enumerate() {
+        if z.norm_sqr() > values[best].norm_sqr() {
+            best = index;
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn complex(re: f64, im: f64) -> Complex64 {
+        Complex64::new(re, im)
+    }
+
+    fn shape() -> PointShape {
+        PointShape {
+            groups: vec![
+                VariableGroup {
+                    variables: vec![2, 0],
+                    homogeneous: false,
+                },
+                VariableGroup {
+                    variables: vec![1, 3],
+                    homogeneous: true,
+                },
+            ],
+            variables: 4,
+        }
+    }
+
+    #[test]
+    fn coordinates_and_variables_are_each_others_inverse() {
+        let shape = shape();
+        let point = [
+            complex(0.0, 0.5),
+            complex(1.0, 0.0),
+            complex(0.25, 0.0),
+            complex(0.0, 1.0),
+            complex(0.5, 0.0),
+        ];
+        let values = shape.to_variables(&point);
+        assert_eq!(values[2], complex(0.0, -2.0));
+        assert_eq!(values[0], complex(0.0, -0.5));
+        assert_eq!(values[1], complex(1.0, 0.0));
+        assert_eq!(values[3], complex(0.0, -0.5));
+        let back = shape.to_coordinates(&values);
+        assert!(shape.holds(&back));
+        assert!(shape.distance(&point, &back) < 1e-15);
+    }
+
+    #[test]
+    fn distance_ignores_factors_per_group_only() {
+        let shape = shape();
+        let point: Vec<_> = (1..=5).map(|k| complex(0.1 * f64::from(k), -0.3)).collect();
+        let mut scaled = point.clone();
+        scaled[..3].iter_mut().for_each(|z| *z *= complex(0.0, 7.0));
+        scaled[3..]
+            .iter_mut()
+            .for_each(|z| *z *= complex(-1e-3, 1.0));
+        assert!(shape.distance(&point, &scaled) < 1e-15);
+        scaled[2] *= 1.5;
+        assert!(shape.distance(&point, &scaled) > 0.1);
+    }
+
+    #[test]
+    fn what_is_no_point_is_seen() {
+        let shape = shape();
+        let mut point = vec![complex(1.0, 0.0); 5];
+        assert!(shape.holds(&point));
+        assert!(!shape.holds(&point[..4]));
+        point[1] = complex(f64::NAN, 0.0);
+        assert!(!shape.holds(&point));
+        assert!(!shape.holds(&[complex(0.0, 0.0); 5]));
+    }
+}

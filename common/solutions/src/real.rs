@@ -1,0 +1,70 @@
+//! Whether one solution is real: a fixed point, up to factors, of the system's involution.
+
+use crate::involution::Involution;
+use crate::point_shape::PointShape;
+use num_complex::Complex64;
+
+/// True when the point and its image coincide by the same measure by which two
+/// endpoints do: the image of a solution is a solution, so nearer than two
+/// solutions can be means equal.
+pub fn is_real(
+    point: &[Complex64],
+    radius: f64,
+    shape: &PointShape,
+    involution: &Involution,
+) -> bool {
+    let image = involution.image(&shape.to_variables(point));
+    shape.distance(point, &shape.to_coordinates(&image)) <= 2.0 * radius
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_results::affine_shape;
+    use cognate_systems::system::{System, VariableGroup};
+
+    fn complex(re: f64, im: f64) -> Complex64 {
+        Complex64::new(re, im)
+    }
+
+    #[test]
+    fn conjugate_pairs_are_exchanged_and_scaling_is_ignored() {
+        let shape = affine_shape(2);
+        let pair = Involution {
+            partner: vec![1, 0],
+        };
+        let own = Involution {
+            partner: vec![0, 1],
+        };
+        let scale = complex(0.3, -0.8);
+        let point = [scale, scale * complex(0.5, 0.6), scale * complex(0.5, -0.6)];
+        assert!(is_real(&point, 1e-12, &shape, &pair));
+        assert!(!is_real(&point, 1e-12, &shape, &own));
+        let point = [scale, scale * 0.5, scale * -2.0];
+        assert!(is_real(&point, 1e-12, &shape, &own));
+        assert!(!is_real(&point, 1e-12, &shape, &pair));
+    }
+
+    #[test]
+    fn a_projective_point_is_real_with_any_factor() {
+        let shape = PointShape::of(&System {
+            variables: vec!["x".into(), "y".into()],
+            groups: vec![VariableGroup {
+                variables: vec![0, 1],
+                homogeneous: true,
+            }],
+            ..System::default()
+        });
+        let own = Involution {
+            partner: vec![0, 1],
+        };
+        let factor = complex(0.6, 0.8);
+        assert!(is_real(&[factor, factor * -0.25], 1e-12, &shape, &own));
+        assert!(!is_real(
+            &[factor, complex(-0.25, 0.0)],
+            1e-12,
+            &shape,
+            &own
+        ));
+    }
+}

@@ -1,0 +1,123 @@
+//! Solution: an isolated finite point, the paths that reached it, and the evidence.
+//!
+//! Serialised it is a line of `solutions.jsonl`, field by field as the contract has it.
+
+use num_complex::Complex64;
+use serde::de::{MapAccess, Visitor};
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// Names and values of variables, in the system's order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NamedValues(pub Vec<(String, Complex64)>);
+
+/// One isolated finite solution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Solution {
+    /// Values of the variables; a homogeneous group scaled so that its largest is 1.
+    pub variables: NamedValues,
+    /// How many paths end here: the multiplicity as a solution of the tracked system.
+    pub multiplicity: u64,
+    /// Winding numbers of the cycles that the paths form, ascending.
+    pub cycles: Vec<u32>,
+    /// Fixed by the system's involution; `None` where that is not asked.
+    pub real: Option<bool>,
+    /// The Jacobian is singular.
+    pub singular: bool,
+    /// Largest |F_i|, each equation and each group scaled to 1.
+    #[serde(with = "finite")]
+    pub residual: f64,
+    /// Condition number of the Jacobian.
+    #[serde(with = "finite")]
+    pub condition: f64,
+    /// Estimated error, relative to the largest coordinate.
+    #[serde(with = "finite")]
+    pub accuracy: f64,
+    /// Highest precision that a path to it used.
+    pub precision_bits: u32,
+    /// Its symmetry class, where a symmetry group is known.
+    pub class: Option<u64>,
+    /// The paths that end here, ascending.
+    pub paths: Vec<u64>,
+    /// A certificate, where one was made.
+    pub certificate: Option<String>,
+}
+
+impl Serialize for NamedValues {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, z) in &self.0 {
+            map.serialize_entry(name, &[z.re, z.im])?;
+        }
+        map.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for NamedValues {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct InOrder;
+        impl<'de> Visitor<'de> for InOrder {
+            type Value = NamedValues;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("names with real and imaginary parts")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<NamedValues, A::Error> {
+                let mut values = Vec::new();
+                while let Some((name, [re, im])) = map.next_entry::<String, [f64; 2]>()? {
+                    values.push((name, Complex64::new(re, im)));
+                }
+                Ok(NamedValues(values))
+            }
+        }
+        deserializer.deserialize_map(InOrder)
+    }
+}
+
+/// A double that may be infinite, as JSON cannot: null stands for it.
+mod finite {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        Some(value).filter(|v| v.is_finite()).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_as_the_contract_has_it() {
+        let solution = Solution {
+            variables: NamedValues(vec![
+                ("y".into(), Complex64::new(1.0, -0.5)),
+                ("a".into(), Complex64::new(0.25, 0.0)),
+            ]),
+            multiplicity: 2,
+            cycles: vec![2],
+            real: None,
+            singular: true,
+            residual: 1e-16,
+            condition: f64::INFINITY,
+            accuracy: 1e-9,
+            precision_bits: 53,
+            class: None,
+            paths: vec![3, 17],
+            certificate: None,
+        };
+        let line = serde_json::to_string(&solution).unwrap();
+        assert_eq!(
+            line,
+            "{\"variables\":{\"y\":[1.0,-0.5],\"a\":[0.25,0.0]},\"multiplicity\":2,\
+             \"cycles\":[2],\"real\":null,\"singular\":true,\"residual\":1e-16,\
+             \"condition\":null,\"accuracy\":1e-9,\"precision_bits\":53,\"class\":null,\
+             \"paths\":[3,17],\"certificate\":null}"
+        );
+        let back: Solution = serde_json::from_str(&line).unwrap();
+        assert_eq!(back, solution);
+    }
+}

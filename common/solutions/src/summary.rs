@@ -1,0 +1,119 @@
+//! The counts of a solve: the blocks `paths`, `solutions` and `classes` of the summary.
+//!
+//! Field by field as the contract has them; null stands for what this version
+//! does not decide.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Every path counted once, in the first class that holds.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PathCounts {
+    /// Paths of the first tracking stage.
+    pub total: u64,
+    /// Nonsingular and isolated.
+    pub finite: u64,
+    /// Singular.
+    pub singular: u64,
+    /// On a positive-dimensional set; null until that can be decided.
+    pub positive_dimensional: Option<u64>,
+    /// No solutions of the system before randomisation; none where nothing is randomised.
+    pub excess: Option<u64>,
+    /// The homogenising coordinate of an affine group is 0.
+    pub at_infinity: u64,
+    /// Not tracked to the end.
+    pub failed: u64,
+    /// How often a path was tracked again.
+    pub retracked: u64,
+    /// Meetings of paths in one regular endpoint.
+    pub crossings_found: u64,
+    /// ... of which came apart when tracked again.
+    pub crossings_resolved: u64,
+    /// Finite or infinite only by the limit of the precision.
+    pub decided_by_precision_limit: u64,
+    /// Paths by the highest precision that they used, in bits.
+    pub by_precision: BTreeMap<u32, u64>,
+    /// The highest precision of all, in bits.
+    pub highest_precision_bits: u32,
+}
+
+impl PathCounts {
+    /// The classes together: `total`, always.
+    pub fn sum(&self) -> u64 {
+        self.finite
+            + self.singular
+            + self.positive_dimensional.unwrap_or(0)
+            + self.excess.unwrap_or(0)
+            + self.at_infinity
+            + self.failed
+    }
+}
+
+/// Isolated finite points after merging.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SolutionCounts {
+    /// All of them.
+    pub distinct: u64,
+    /// With a regular Jacobian.
+    pub nonsingular: u64,
+    /// With a singular one.
+    pub singular: u64,
+    /// Fixed by the involution; null where it is not asked.
+    pub real: Option<u64>,
+    /// Why it is not asked.
+    pub real_reason: Option<String>,
+    /// Sum of the multiplicities.
+    pub with_multiplicity: u64,
+    /// With a certificate; null where none was asked for.
+    pub certified: Option<u64>,
+    /// Whether there is a positive-dimensional solution set; null until that can be decided.
+    pub positive_dimensional: Option<bool>,
+    /// Solutions in each named set of endpoints that are no answers.
+    pub degenerate: BTreeMap<String, u64>,
+}
+
+/// Orbits under a symmetry group.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClassCounts {
+    /// How many orbits.
+    pub count: Option<u64>,
+    /// Order of the group.
+    pub group_order: Option<u64>,
+    /// Orbits of which every member was found.
+    pub complete: Option<u64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_as_the_contract_has_them() {
+        let paths = PathCounts {
+            total: 128,
+            by_precision: [(106, 2), (53, 126)].into(),
+            excess: Some(0),
+            ..PathCounts::default()
+        };
+        assert_eq!(
+            serde_json::to_string(&paths).unwrap(),
+            "{\"total\":128,\"finite\":0,\"singular\":0,\"positive_dimensional\":null,\
+             \"excess\":0,\"at_infinity\":0,\"failed\":0,\"retracked\":0,\"crossings_found\":0,\
+             \"crossings_resolved\":0,\"decided_by_precision_limit\":0,\
+             \"by_precision\":{\"53\":126,\"106\":2},\"highest_precision_bits\":0}"
+        );
+        let back: PathCounts =
+            serde_json::from_str(&serde_json::to_string(&paths).unwrap()).unwrap();
+        assert_eq!(back, paths);
+        assert_eq!(
+            serde_json::to_string(&SolutionCounts::default()).unwrap(),
+            "{\"distinct\":0,\"nonsingular\":0,\"singular\":0,\"real\":null,\"real_reason\":null,\
+             \"with_multiplicity\":0,\"certified\":null,\"positive_dimensional\":null,\
+             \"degenerate\":{}}"
+        );
+        assert_eq!(
+            serde_json::to_string(&ClassCounts::default()).unwrap(),
+            "{\"count\":null,\"group_order\":null,\"complete\":null}"
+        );
+    }
+}

@@ -1,0 +1,63 @@
+//! Synthetic results for this crate's tests.
+
+use crate::point_shape::PointShape;
+use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_systems::system::{System, VariableGroup};
+use num_complex::Complex64;
+
+/// One affine group of this many variables.
+pub fn affine_shape(variables: usize) -> PointShape {
+    PointShape::of(&System {
+        variables: (0..variables).map(|v| format!("x{v}")).collect(),
+        groups: vec![VariableGroup {
+            variables: (0..variables).collect(),
+            homogeneous: false,
+        }],
+        ..System::default()
+    })
+}
+
+/// A regular endpoint.
+pub fn regular(path: u64, point: &[(f64, f64)]) -> PathResult {
+    PathResult {
+        origin: PathIndex(path),
+        attempt: 0,
+        outcome: PathOutcome::Regular,
+        endpoint: Coordinates::Double(
+            point
+                .iter()
+                .map(|&(re, im)| Complex64::new(re, im))
+                .collect(),
+        ),
+        t: Complex64::new(0.0, 0.0),
+        residual: 1e-16,
+        condition: 10.0,
+        accuracy: 1e-15,
+        winding_number: None,
+        infinity_turns: Vec::new(),
+        precision_bits: 53,
+        counts: Counts::default(),
+    }
+}
+
+/// A singular endpoint.
+pub fn singular(path: u64, point: &[(f64, f64)], winding: u32, turns: &[i32]) -> PathResult {
+    PathResult {
+        outcome: PathOutcome::Singular,
+        condition: 1e14,
+        accuracy: 1e-10,
+        winding_number: Some(winding),
+        infinity_turns: turns.to_vec(),
+        ..regular(path, point)
+    }
+}
+
+/// A failed path in a space of one variable.
+pub fn failed(path: u64) -> PathResult {
+    PathResult {
+        outcome: PathOutcome::Failed(Failure::StepTooSmall),
+        t: Complex64::new(0.25, 0.0),
+        ..regular(path, &[(1.0, 0.0), (0.5, 0.0)])
+    }
+}

@@ -1,0 +1,172 @@
+//! UniquePoints: which endpoints are one point, to within their own errors.
+//!
+//! In n log n: each point gets one number that does not change with its
+//! scaling ([`projection`]); points are sorted by it and only neighbours are
+//! compared in full. The answer depends on the points alone, not on how they
+//! were split among workers.
+
+pub mod projection;
+
+use crate::point_shape::PointShape;
+use num_complex::Complex64;
+use projection::Projection;
+
+/// A point and how near another must be to be the same.
+#[derive(Clone, Copy, Debug)]
+pub struct Neighbourhood<'a> {
+    /// Homogeneous coordinates, laid out by a `PointShape`.
+    pub point: &'a [Complex64],
+    /// Two points are one when their distance is at most the sum of their radii.
+    pub radius: f64,
+}
+
+/// Puts points that coincide together. Every point is in exactly one cluster;
+/// members are ascending, and so are the clusters by their first members.
+pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> Vec<Vec<usize>> {
+    let projection = Projection::new(shape, seed);
+    let reach: Vec<(f64, f64)> = points
+        .iter()
+        .map(|p| {
+            let value = projection.value(shape, p.point);
+            let margin = projection.slope() * p.radius + projection.rounding();
+            (value - margin, value + margin)
+        })
+        .collect();
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| reach[a].0.total_cmp(&reach[b].0).then(a.cmp(&b)));
+
+    let mut sets = DisjointSets::new(points.len());
+    // One point of each cluster whose interval may still meet the next ones'.
+    let mut open: Vec<usize> = Vec::new();
+    for &new in &order {
+        open.retain(|&old| reach[old].1 >= reach[new].0);
+        let mut met = None;
+        for (place, &old) in open.iter().enumerate() {
+            let near = points[old].radius + points[new].radius;
+            if shape.distance(points[old].point, points[new].point) <= near {
+                sets.join(old, new);
+                met.get_or_insert(place);
+            }
+        }
+        match met {
+            // The one that reaches further goes on to stand for the cluster.
+            Some(place) if reach[open[place]].1 < reach[new].1 => open[place] = new,
+            Some(_) => {}
+            None => open.push(new),
+        }
+    }
+    sets.clusters()
+}
+
+/// Sets that only ever grow together.
+struct DisjointSets {
+    parent: Vec<usize>,
+}
+
+impl DisjointSets {
+    fn new(count: usize) -> Self {
+        Self {
+            parent: (0..count).collect(),
+        }
+    }
+
+    fn root(&mut self, mut member: usize) -> usize {
+        while self.parent[member] != member {
+            self.parent[member] = self.parent[self.parent[member]];
+            member = self.parent[member];
+        }
+        member
+    }
+
+    /// The smallest member is the root, so that roots do not depend on the order of joining.
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+
+    fn clusters(mut self) -> Vec<Vec<usize>> {
+        let mut place = vec![usize::MAX; self.parent.len()];
+        let mut clusters: Vec<Vec<usize>> = Vec::new();
+        for member in 0..self.parent.len() {
+            let root = self.root(member);
+            if place[root] == usize::MAX {
+                place[root] = clusters.len();
+                clusters.push(Vec::new());
+            }
+            clusters[place[root]].push(member);
+        }
+        clusters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_results::affine_shape;
+    use cognate_numeric::random::{Purpose, RandomStream};
+
+    /// By comparing all pairs.
+    fn naive(points: &[Neighbourhood<'_>], shape: &PointShape) -> Vec<Vec<usize>> {
+        let mut sets = DisjointSets::new(points.len());
+        for a in 0..points.len() {
+            for b in 0..a {
+                let near = points[a].radius + points[b].radius;
+                if shape.distance(points[a].point, points[b].point) <= near {
+                    sets.join(a, b);
+                }
+            }
+        }
+        sets.clusters()
+    }
+
+    #[test]
+    fn agrees_with_comparing_all_pairs() {
+        let shape = affine_shape(3);
+        let mut random = RandomStream::new(5, Purpose::Test, 1);
+        let centres: Vec<Vec<Complex64>> = (0..40)
+            .map(|_| (0..4).map(|_| random.disc()).collect())
+            .collect();
+        let mut points = Vec::new();
+        for _ in 0..300 {
+            // Scaled at random, moved by less than the radius.
+            let centre = &centres[random.below(40) as usize];
+            let factor = random.unit() * (0.1 + random.uniform());
+            let point: Vec<Complex64> = centre
+                .iter()
+                .map(|z| z * factor * (1.0 + random.disc() * 1e-11))
+                .collect();
+            points.push(point);
+        }
+        let radii: Vec<f64> = (0..points.len())
+            .map(|k| if k % 17 == 0 { 1e-6 } else { 1e-10 })
+            .collect();
+        let neighbourhoods: Vec<Neighbourhood<'_>> = points
+            .iter()
+            .zip(&radii)
+            .map(|(point, &radius)| Neighbourhood { point, radius })
+            .collect();
+        let expected = naive(&neighbourhoods, &shape);
+        assert!(expected.len() <= 40);
+        for seed in 0..5 {
+            assert_eq!(clusters(&neighbourhoods, &shape, seed), expected);
+        }
+    }
+
+    #[test]
+    fn many_paths_to_one_point_are_no_quadratic_work() {
+        let shape = affine_shape(2);
+        let point = [
+            Complex64::new(0.0, 0.0),
+            Complex64::new(1.0, 0.0),
+            Complex64::new(0.0, 1.0),
+        ];
+        let all = vec![
+            Neighbourhood {
+                point: &point,
+                radius: 1e-9
+            };
+            200_000
+        ];
+        assert_eq!(clusters(&all, &shape, 1).len(), 1);
+    }
+}
