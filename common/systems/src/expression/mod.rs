@@ -55,7 +55,7 @@ pub enum Node {
     Subtract(NodeId, NodeId),
     /// Product.
     Multiply(NodeId, NodeId),
-    /// Quotient; the denominator contains no variable.
+    /// Quotient; in equations the denominator contains no variable.
     Divide(NodeId, NodeId),
     /// Negation.
     Negate(NodeId),
@@ -237,12 +237,10 @@ impl Expressions {
         self.insert(Node::Multiply(a, b))
     }
 
-    /// `a / b`; `b` must contain no variable and must not be exactly 0 (the formats check both).
+    /// `a / b`; `b` must not be exactly 0 (the formats check that).
+    ///
+    /// In equations `b` contains no variable; only rational maps of a symmetry may have one there.
     pub fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        assert!(
-            self.dependence(b) != Dependence::Variables,
-            "a denominator that contains a variable is refused where it is read"
-        );
         if let Some(y) = self.as_constant(b).cloned() {
             if let Some(x) = self.as_constant(a) {
                 let quotient = x

@@ -128,6 +128,14 @@ impl<'a> Tokens<'a> {
         }
     }
 
+    /// Reads on from byte `start`; places stay those of the whole text.
+    pub fn starting_at(text: &'a str, start: usize, comment: Option<char>) -> Self {
+        Self {
+            rest: &text[start..],
+            ..Self::new(text, comment)
+        }
+    }
+
     /// The next token, which stays.
     pub fn peek(&mut self) -> Token<'a> {
         if let Some(token) = self.peeked {

@@ -35,6 +35,8 @@ pub const OPERATIONS: Limit = limit("OPERATIONS", "numbers, names and operations
 pub const NESTING: Limit = limit("NESTING", "levels of nesting", 10_000);
 /// Arrays and objects that are open at one place of a JSON text.
 pub const JSON_NESTING: Limit = limit("JSON_NESTING", "levels of nesting in JSON", 32);
+/// Values of a JSON text; one takes about 64 bytes.
+pub const JSON_VALUES: Limit = limit("JSON_VALUES", "values in JSON", 4_000_000);
 /// Absolute value of an exponent, numerator and denominator of a rational one.
 pub const EXPONENT: Limit = limit("EXPONENT", "as exponent", 100_000);
 /// Degree of an equation.

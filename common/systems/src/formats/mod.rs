@@ -5,10 +5,20 @@
 
 pub mod bertini;
 pub(crate) mod definitions;
+pub mod degenerate;
 pub mod error;
+pub mod json;
+pub(crate) mod json_value;
 pub mod limits;
+pub mod options;
+pub mod phcpack;
+pub mod points;
+pub(crate) mod scope;
+mod sharing;
+pub mod symmetry;
 
 pub use error::{FormatError, Place, Source};
+pub use sharing::WriteError;
 
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::{Dependence, Expressions, Node};
@@ -105,7 +115,24 @@ pub struct Problem {
 pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     let text = decode(name, content, limits::FILE_BYTES)?;
     let source = Source { name, text };
-    bertini::read(&source)
+    match text.trim_start().chars().next() {
+        Some('{') => json::read(&source),
+        Some('0'..='9') => phcpack::read(&source),
+        _ => bertini::read(&source),
+    }
+}
+
+/// Writes a system, and where the notation has a place for them the settings.
+pub fn write(
+    format: Format,
+    system: &System,
+    settings: &FileSettings,
+) -> Result<String, WriteError> {
+    match format {
+        Format::Bertini => bertini::write(system, settings),
+        Format::Phcpack => phcpack::write(system),
+        Format::Json => json::write(system),
+    }
 }
 
 /// The text of a file, if it is text of an acceptable size.

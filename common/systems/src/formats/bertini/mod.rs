@@ -2,6 +2,9 @@
 
 mod definitions;
 mod settings;
+mod write;
+
+pub use write::write;
 
 use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish};
 use crate::expression::fault::{Fault, Problem as What, Span};

@@ -1,0 +1,439 @@
+//! Our own JSON problem, as the contract has it.
+//!
+//! Added to the contract's fields: `homogeneous` may be a list with one entry
+//! for each group, and `path_variable` names the parameter of a user homotopy.
+
+use super::json_value::{self, Value};
+use super::scope::{FieldFault, Scope, at};
+use super::sharing::{self, WriteError};
+use super::{FileSettings, Format, FormatError, Problem, Source, degenerate, finish, symmetry};
+use crate::expression::build::Use;
+use crate::expression::display::Style;
+use crate::expression::fault::{Fault, Problem as What, Span};
+use crate::expression::parse::Dialect;
+use crate::expression::token::shorten;
+use crate::expression::{Dependence, Node, NodeId};
+use crate::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
+use std::collections::{HashMap, HashSet};
+
+/// The fields of a problem.
+const FIELDS: [&str; 10] = [
+    "variables",
+    "groups",
+    "homogeneous",
+    "parameters",
+    "path_variable",
+    "definitions",
+    "equations",
+    "conjugates",
+    "degenerate",
+    "symmetry",
+];
+
+/// Reads a problem in our JSON.
+pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
+    let system = system(source).map_err(|fault| fault.into_error(source))?;
+    let settings = FileSettings {
+        user_homotopy: system.path_variable.is_some(),
+        ..FileSettings::default()
+    };
+    Ok(Problem {
+        system,
+        settings,
+        format: Format::Json,
+        warnings: Vec::new(),
+    })
+}
+
+fn system(source: &Source<'_>) -> Result<System, FieldFault> {
+    let text = source.text;
+    let root = json_value::parse(text, 0, text.len()).map_err(at(""))?;
+    let mut fields: HashMap<&str, &Value<'_>> = HashMap::new();
+    for (name, value) in root
+        .object("a JSON object with a problem")
+        .map_err(at(""))?
+    {
+        let Some(&known) = FIELDS.iter().find(|&&f| f == name.text) else {
+            let end = name.start + name.text.len();
+            let fault = Fault::expected(
+                Span {
+                    start: name.start,
+                    end,
+                },
+                format!("one of the fields {}", FIELDS.join(", ")),
+                format!("\"{}\"", shorten(&name.text)),
+            );
+            return Err(FieldFault::new("", fault));
+        };
+        fields.insert(known, value);
+    }
+    let end = Span {
+        start: root.span.end.saturating_sub(1),
+        end: root.span.end,
+    };
+    let required = |name: &str| {
+        let missing = || {
+            Fault::expected(
+                end,
+                format!("the field \"{name}\""),
+                "the end of the problem",
+            )
+        };
+        fields
+            .get(name)
+            .copied()
+            .ok_or_else(|| FieldFault::new("", missing()))
+    };
+    let mut scope = Scope::default();
+    let mut system = System::default();
+    for (i, value) in array(required("variables")?, "variables")?
+        .iter()
+        .enumerate()
+    {
+        let field = format!("variables[{i}]");
+        let node = scope.builder.expressions.variable(i as u32);
+        system
+            .variables
+            .push(declare(&mut scope, value, &field, "a variable", node)?);
+    }
+    if let Some(value) = fields.get("parameters") {
+        for (i, value) in array(value, "parameters")?.iter().enumerate() {
+            let field = format!("parameters[{i}]");
+            let node = scope.builder.expressions.parameter(i as u32);
+            system
+                .parameters
+                .push(declare(&mut scope, value, &field, "a parameter", node)?);
+        }
+    }
+    if let Some(value) = fields.get("path_variable") {
+        let field = "path_variable";
+        let name = value.text("the name of a parameter").map_err(at(field))?;
+        let index = system.parameters.iter().position(|p| *p == name.text);
+        let missing = || Fault::expected(value.span, "the name of a parameter", value.describe());
+        system.path_variable = Some(index.ok_or_else(|| FieldFault::new(field, missing()))?);
+    }
+    if let Some(value) = fields.get("definitions") {
+        let mut list = Vec::new();
+        for (name, value) in value
+            .object("an object of expressions")
+            .map_err(at("definitions"))?
+        {
+            let field = format!("definitions.{}", name.text);
+            let span = Span {
+                start: name.start,
+                end: name.start + name.text.len(),
+            };
+            let number = scope
+                .declare(name, span, "a definition", None)
+                .map_err(at("definitions"))?;
+            list.push((number, scope.parse(value, field)?));
+        }
+        scope.define(&list)?;
+    }
+    let mut places = Vec::new();
+    for (i, value) in array(required("equations")?, "equations")?
+        .iter()
+        .enumerate()
+    {
+        let written = scope.parse(value, format!("equations[{i}]"))?;
+        system
+            .equations
+            .push(scope.build(&written, Use::Polynomial)?);
+        system.equation_names.push(format!("f{}", i + 1));
+        places.push(written.span());
+    }
+    groups(
+        &mut system,
+        fields.get("groups").copied(),
+        fields.get("homogeneous").copied(),
+    )?;
+    if let Some(value) = fields.get("conjugates") {
+        conjugates(&mut system, value)?;
+    }
+    if let Some(value) = fields.get("degenerate") {
+        system.degenerate = degenerate::sets(value, "degenerate", &mut scope)?;
+    }
+    if let Some(value) = fields.get("symmetry") {
+        system.symmetry = symmetry::generators(value, "symmetry", &system.variables, &mut scope)?;
+    }
+    system.expressions = std::mem::take(&mut scope.builder.expressions);
+    let variables = required("variables")?.span;
+    let equations = required("equations")?.span;
+    finish(system, &places, end).map_err(|mut fault| match &fault.problem {
+        What::ConstantEquation(_) | What::Limit { .. } => {
+            let i = places.iter().position(|p| *p == fault.span);
+            FieldFault::new(
+                i.map_or(String::new(), |i| format!("equations[{i}]")),
+                fault,
+            )
+        }
+        What::NoVariables => {
+            fault.span = variables;
+            FieldFault::new("variables", fault)
+        }
+        What::NoEquations => {
+            fault.span = equations;
+            FieldFault::new("equations", fault)
+        }
+        _ => FieldFault::new("", fault),
+    })
+}
+
+fn array<'v, 'a>(value: &'v Value<'a>, field: &str) -> Result<&'v [Value<'a>], FieldFault> {
+    value.array("an array").map_err(at(field))
+}
+
+fn declare(
+    scope: &mut Scope,
+    value: &Value<'_>,
+    field: &str,
+    kind: &'static str,
+    node: NodeId,
+) -> Result<String, FieldFault> {
+    let name = value.text("a name in quotes").map_err(at(field))?;
+    scope
+        .declare(name, value.span, kind, Some(node))
+        .map_err(at(field))?;
+    Ok(name.text.to_string())
+}
+
+/// The index of the variable that a string names.
+pub(crate) fn variable(value: &Value<'_>, variables: &[String]) -> Result<usize, Fault> {
+    let name = value.text("the name of a variable")?;
+    let index = variables.iter().position(|v| *v == name.text);
+    index.ok_or_else(|| Fault::expected(value.span, "the name of a variable", value.describe()))
+}
+
+fn groups(
+    system: &mut System,
+    groups: Option<&Value<'_>>,
+    homogeneous: Option<&Value<'_>>,
+) -> Result<(), FieldFault> {
+    match groups {
+        None => system.groups.push(VariableGroup {
+            variables: (0..system.variables.len()).collect(),
+            homogeneous: false,
+        }),
+        Some(value) => {
+            let mut seen = vec![false; system.variables.len()];
+            for (i, group) in array(value, "groups")?.iter().enumerate() {
+                let field = format!("groups[{i}]");
+                let mut members = Vec::new();
+                for (j, value) in array(group, &field)?.iter().enumerate() {
+                    let field = format!("{field}[{j}]");
+                    let index = variable(value, &system.variables).map_err(at(&field))?;
+                    if std::mem::replace(&mut seen[index], true) {
+                        let first = "is in a group already".into();
+                        let name = system.variables[index].clone();
+                        let problem = What::DuplicateName { name, first };
+                        return Err(FieldFault::new(field, Fault::new(value.span, problem)));
+                    }
+                    members.push(index);
+                }
+                if members.is_empty() {
+                    let fault = Fault::expected(group.span, "at least one variable", "none");
+                    return Err(FieldFault::new(field, fault));
+                }
+                system.groups.push(VariableGroup {
+                    variables: members,
+                    homogeneous: false,
+                });
+            }
+            if let Some(missing) = seen.iter().position(|s| !s) {
+                let found = format!("`{}` in none", system.variables[missing]);
+                let fault = Fault::expected(value.span, "every variable in a group", found);
+                return Err(FieldFault::new("groups", fault));
+            }
+        }
+    }
+    let Some(value) = homogeneous else {
+        return Ok(());
+    };
+    let field = "homogeneous";
+    if let json_value::Kind::Array(flags) = &value.kind {
+        if flags.len() != system.groups.len() {
+            let expected = format!("one entry for each of the {} groups", system.groups.len());
+            let fault = Fault::expected(value.span, expected, flags.len().to_string());
+            return Err(FieldFault::new(field, fault));
+        }
+        for (group, flag) in system.groups.iter_mut().zip(flags) {
+            group.homogeneous = flag.bool("true or false").map_err(at(field))?;
+        }
+    } else {
+        let flag = value
+            .bool("true, false or a list of them")
+            .map_err(at(field))?;
+        system
+            .groups
+            .iter_mut()
+            .for_each(|group| group.homogeneous = flag);
+    }
+    Ok(())
+}
+
+fn conjugates(system: &mut System, value: &Value<'_>) -> Result<(), FieldFault> {
+    let mut seen = vec![false; system.variables.len()];
+    for (i, pair) in array(value, "conjugates")?.iter().enumerate() {
+        let field = format!("conjugates[{i}]");
+        let members = array(pair, &field)?;
+        let [first, second] = members else {
+            let fault = Fault::expected(pair.span, "two variables", members.len().to_string());
+            return Err(FieldFault::new(field, fault));
+        };
+        let mut index = |value| {
+            let index = variable(value, &system.variables)?;
+            if std::mem::replace(&mut seen[index], true) {
+                let first = "has a conjugate already".into();
+                let name = system.variables[index].clone();
+                return Err(Fault::new(value.span, What::DuplicateName { name, first }));
+            }
+            Ok(index)
+        };
+        let pair = index(first)
+            .and_then(|a| Ok((a, index(second)?)))
+            .map_err(at(&field))?;
+        system.conjugates.push(pair);
+    }
+    Ok(())
+}
+
+/// Writes a system in our JSON, with everything that it has but the names of its equations.
+pub fn write(system: &System) -> Result<String, WriteError> {
+    let quote = json_value::quote;
+    let names = || system.variables.iter().chain(&system.parameters);
+    for name in names() {
+        if let Some(meaning) = Dialect::BERTINI.reserved(name) {
+            let (name, format) = (name.clone(), Format::Json);
+            return Err(WriteError::ReservedName {
+                name,
+                format,
+                meaning,
+            });
+        }
+    }
+    let taken: HashSet<String> = names().cloned().collect();
+    let roots = sharing::roots(system, false);
+    let style = Style::BERTINI;
+    // A rational map may have variables in denominators, a definition may not.
+    let polynomial = polynomial(system);
+    let may_share = |node: NodeId| polynomial[node.0 as usize];
+    let sharing = sharing::share(system, style, &roots, taken, &may_share);
+    let display = sharing::display(system, style, &sharing.names);
+    let expression = |node: &NodeId| match sharing.names.get(node) {
+        Some(name) => quote(name),
+        None => quote(&display.text(*node)),
+    };
+    let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+    let block = |items: Vec<String>, open, close| match items.is_empty() {
+        true => format!("{open}{close}"),
+        false => format!("{open}\n    {}\n  {close}", items.join(",\n    ")),
+    };
+    let variable = |v: &usize| quote(&system.variables[*v]);
+    let quoted = |names: &[String]| list(names.iter().map(|n| quote(n)).collect());
+    let groups = system
+        .groups
+        .iter()
+        .map(|g| list(g.variables.iter().map(variable).collect()));
+    let homogeneous = system.groups.iter().map(|g| g.homogeneous.to_string());
+    let mut fields = vec![
+        ("variables", quoted(&system.variables)),
+        ("groups", list(groups.collect())),
+        ("homogeneous", list(homogeneous.collect())),
+    ];
+    if !system.parameters.is_empty() {
+        fields.push(("parameters", quoted(&system.parameters)));
+    }
+    if let Some(path_variable) = system.path_variable {
+        fields.push(("path_variable", quote(&system.parameters[path_variable])));
+    }
+    if !sharing.order.is_empty() {
+        let definition = |node: &NodeId| {
+            format!(
+                "{}: {}",
+                quote(&sharing.names[node]),
+                quote(&display.text(*node))
+            )
+        };
+        fields.push((
+            "definitions",
+            block(sharing.order.iter().map(definition).collect(), "{", "}"),
+        ));
+    }
+    fields.push((
+        "equations",
+        block(system.equations.iter().map(expression).collect(), "[", "]"),
+    ));
+    if !system.conjugates.is_empty() {
+        let pair = |(a, b): &(usize, usize)| list(vec![variable(a), variable(b)]);
+        fields.push((
+            "conjugates",
+            list(system.conjugates.iter().map(pair).collect()),
+        ));
+    }
+    if !system.degenerate.is_empty() {
+        let set = |(name, set): (&String, &DegenerateSet)| match set {
+            DegenerateSet::Nonzero(node) => {
+                format!("{}: {{\"nonzero\": {}}}", quote(name), expression(node))
+            }
+            DegenerateSet::Equations(nodes) => {
+                let nodes = list(nodes.iter().map(expression).collect());
+                format!("{}: {{\"equations\": {nodes}}}", quote(name))
+            }
+        };
+        fields.push((
+            "degenerate",
+            block(system.degenerate.iter().map(set).collect(), "{", "}"),
+        ));
+    }
+    if !system.symmetry.is_empty() {
+        let image = |(i, image): (usize, String)| format!("{}: {image}", variable(&i));
+        let images = |images: Vec<String>| {
+            images
+                .into_iter()
+                .enumerate()
+                .map(image)
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let generator = |generator: &SymmetryGenerator| match generator {
+            SymmetryGenerator::Permutation(p) => {
+                format!(
+                    "{{\"permutation\": {{{}}}}}",
+                    images(p.iter().map(variable).collect())
+                )
+            }
+            SymmetryGenerator::Map(map) => {
+                format!(
+                    "{{\"map\": {{{}}}}}",
+                    images(map.iter().map(expression).collect())
+                )
+            }
+        };
+        fields.push((
+            "symmetry",
+            block(system.symmetry.iter().map(generator).collect(), "[", "]"),
+        ));
+    }
+    let fields: Vec<String> = fields
+        .into_iter()
+        .map(|(name, value)| format!("  \"{name}\": {value}"))
+        .collect();
+    Ok(format!("{{\n{}\n}}\n", fields.join(",\n")))
+}
+
+/// For each node, whether no denominator below it contains a variable.
+fn polynomial(system: &System) -> Vec<bool> {
+    let expressions = &system.expressions;
+    let mut polynomial = Vec::with_capacity(expressions.nodes().len());
+    for (id, node) in expressions.nodes().iter().enumerate() {
+        let below = expressions
+            .children(NodeId(id as u32))
+            .all(|c: NodeId| polynomial[c.0 as usize]);
+        let here = match node {
+            Node::Divide(_, b) => expressions.dependence(*b) != Dependence::Variables,
+            _ => true,
+        };
+        polynomial.push(below && here);
+    }
+    polynomial
+}

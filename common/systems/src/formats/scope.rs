@@ -1,0 +1,251 @@
+//! Scope: what names mean in the expressions of a JSON text, and where its errors are.
+
+use super::definitions::Definitions;
+use super::json_value::{Kind, Text, Value};
+use super::{FormatError, Source};
+use crate::expression::build::{Builder, Use};
+use crate::expression::fault::{Fault, Problem, Span};
+use crate::expression::parse::{self, Dialect, Names, Parsed};
+use crate::expression::token::{TokenKind, Tokens, is_name, shorten};
+use crate::expression::{Expressions, NodeId};
+use crate::system::System;
+use cognate_numeric::rational::ComplexRational;
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+/// A fault in a field of a JSON text.
+#[derive(Debug)]
+pub(crate) struct FieldFault {
+    fault: Fault,
+    field: String,
+    /// Where the field's own text begins, if it is an expression.
+    start: Option<usize>,
+}
+
+impl FieldFault {
+    pub fn new(field: impl Into<String>, fault: Fault) -> Self {
+        Self {
+            fault,
+            field: field.into(),
+            start: None,
+        }
+    }
+
+    pub fn into_error(self, source: &Source<'_>) -> FormatError {
+        if self.field.is_empty() {
+            source.error(self.fault)
+        } else {
+            source.field_error(self.fault, &self.field, self.start)
+        }
+    }
+}
+
+/// Puts the field's name to a fault.
+pub(crate) fn at(field: &str) -> impl FnOnce(Fault) -> FieldFault {
+    move |fault| FieldFault::new(field, fault)
+}
+
+/// An expression that was parsed, with the text that it was parsed from.
+pub(crate) struct Written {
+    parsed: Parsed,
+    start: usize,
+    place: Text<'static>,
+    field: String,
+}
+
+impl Written {
+    /// The place of the whole expression.
+    pub fn span(&self) -> Span {
+        self.place.span(self.parsed.span)
+    }
+
+    fn fault(&self, fault: Fault) -> FieldFault {
+        FieldFault {
+            fault: Fault {
+                span: self.place.span(fault.span),
+                ..fault
+            },
+            field: self.field.clone(),
+            start: Some(self.start),
+        }
+    }
+}
+
+/// What names mean, and the graph that expressions go into.
+#[derive(Default)]
+pub(crate) struct Scope {
+    /// The graph.
+    pub builder: Builder,
+    names: Names,
+    values: Vec<Option<NodeId>>,
+    declared: HashMap<u32, &'static str>,
+    written: u64,
+}
+
+impl Scope {
+    /// The variables and parameters of a system, and its graph.
+    pub fn of(system: &System) -> Self {
+        let mut scope = Self {
+            builder: Builder::new(system.expressions.clone()),
+            ..Self::default()
+        };
+        for (i, name) in system.variables.iter().enumerate() {
+            let node = scope.builder.expressions.variable(i as u32);
+            scope.enter(name, "a variable", Some(node));
+        }
+        for (i, name) in system.parameters.iter().enumerate() {
+            let node = scope.builder.expressions.parameter(i as u32);
+            scope.enter(name, "a parameter", Some(node));
+        }
+        scope
+    }
+
+    fn enter(&mut self, name: &str, kind: &'static str, value: Option<NodeId>) -> u32 {
+        let number = self.names.intern(name);
+        self.values.resize(self.names.count(), None);
+        self.values[number as usize] = value;
+        self.declared.insert(number, kind);
+        number
+    }
+
+    /// Declares a name, which must be new and have no meaning of its own.
+    pub fn declare(
+        &mut self,
+        name: &Text<'_>,
+        span: Span,
+        kind: &'static str,
+        value: Option<NodeId>,
+    ) -> Result<u32, Fault> {
+        if !is_name(&name.text) {
+            let found = format!("\"{}\"", shorten(&name.text));
+            let expected = "a name: a letter or `_`, then letters, digits, `_`, `[` and `]`";
+            return Err(Fault::expected(span, expected, found));
+        }
+        parse::check_free(&name.text, span, Dialect::BERTINI)?;
+        if let Some(earlier) = self
+            .names
+            .find(&name.text)
+            .and_then(|n| self.declared.get(&n))
+        {
+            let problem = Problem::DuplicateName {
+                name: name.text.to_string(),
+                first: format!("is {earlier} already"),
+            };
+            return Err(Fault::new(span, problem));
+        }
+        Ok(self.enter(&name.text, kind, value))
+    }
+
+    /// Parses an expression, which stands in quotes or is a number.
+    pub fn parse(&mut self, value: &Value<'_>, field: String) -> Result<Written, FieldFault> {
+        let text = match &value.kind {
+            Kind::Text(text) => (**text).clone(),
+            Kind::Number(number) => Text::plain(number, value.span.start),
+            _ => {
+                let expected = "an expression in quotes";
+                return Err(FieldFault::new(
+                    field,
+                    Fault::expected(value.span, expected, value.describe()),
+                ));
+            }
+        };
+        let mut tokens = Tokens::new(&text.text, None);
+        let end = "the end of the expression";
+        let dialect = Dialect::BERTINI;
+        let result = parse::expression(
+            &mut tokens,
+            &mut self.names,
+            dialect,
+            end,
+            &mut self.written,
+        );
+        let result = result.and_then(|parsed| match tokens.peek() {
+            token if token.kind == TokenKind::End => Ok(parsed),
+            token => {
+                let expected = format!("an operator or {end}");
+                Err(Fault::expected(token.span, expected, token.describe()))
+            }
+        });
+        let written = |parsed| Written {
+            parsed,
+            start: text.start,
+            place: text.without_text(),
+            field,
+        };
+        match result {
+            Ok(parsed) => Ok(written(parsed)),
+            Err(fault) => Err(written(Parsed::default()).fault(fault)),
+        }
+    }
+
+    /// Builds definitions in any order; they are declared already.
+    pub fn define(&mut self, list: &[(u32, Written)]) -> Result<(), FieldFault> {
+        self.values.resize(self.names.count(), None);
+        if let Some(unit) = self.free_unit() {
+            let i = self.builder.expressions.constant(ComplexRational::i());
+            self.values[unit as usize] = Some(i);
+        }
+        let definitions = Definitions {
+            names: &self.names,
+            list: list
+                .iter()
+                .map(|(name, written)| (*name, &written.parsed))
+                .collect(),
+        };
+        definitions.build(
+            &mut self.builder,
+            &mut self.values,
+            Use::Polynomial,
+            &mut |i, fault| list[i].1.fault(fault),
+        )
+    }
+
+    /// `i` is the imaginary unit unless it is declared.
+    fn free_unit(&self) -> Option<u32> {
+        self.names
+            .find("i")
+            .filter(|n| !self.declared.contains_key(n))
+    }
+
+    /// Builds an expression.
+    pub fn build(&mut self, written: &Written, usage: Use) -> Result<NodeId, FieldFault> {
+        let Self {
+            builder,
+            names,
+            values,
+            ..
+        } = self;
+        let mut resolve = |expressions: &mut Expressions, name: u32, span| {
+            if let Some(value) = values.get(name as usize).copied().flatten() {
+                return Ok(value);
+            }
+            match names.name(name) {
+                "i" => Ok(expressions.constant(ComplexRational::i())),
+                unknown => Err(Fault::new(span, Problem::UnknownName(unknown.into()))),
+            }
+        };
+        builder
+            .build(&written.parsed, usage, &mut resolve)
+            .map_err(|fault| written.fault(fault))
+    }
+}
+
+impl<'a> Text<'a> {
+    /// A text without escapes that begins at a byte of the file.
+    pub fn plain(text: &'a str, start: usize) -> Self {
+        Self {
+            text: Cow::Borrowed(text),
+            start,
+            escapes: Vec::new(),
+        }
+    }
+
+    /// Only the map of places.
+    fn without_text(&self) -> Text<'static> {
+        Text {
+            text: Cow::Borrowed(""),
+            start: self.start,
+            escapes: self.escapes.clone(),
+        }
+    }
+}
