@@ -1,200 +1,335 @@
 //! Digest of a system: its name by content, the same on every machine.
 //!
-//! BLAKE3 over an encoding of our own: tagged, every length written, numbers
-//! little endian, rationals in lowest terms in hexadecimal, names in order.
-//! Protobuf bytes are not canonical, so they are not used. The graph counts as
-//! it stands: the order of its nodes decides the order of roundings. Settings
-//! are no part of it.
+//! BLAKE3 over an encoding of our own: every length written, numbers little
+//! endian, rationals in lowest terms in decimal, names in order. Protobuf
+//! bytes are not canonical, so they are not used. The graph counts as it
+//! stands: the order of its nodes decides the order of roundings. Settings are
+//! no part of it.
 
+use crate::error::ProtocolError;
+use crate::{from_proto, to_proto, v1};
 use cognate_continuation::start_points::Digest;
-use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_systems::expression::{Function, Node, NodeId};
-use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System};
+use cognate_systems::system::System;
 
 /// Version of the encoding; a change of it gives every system a new name.
 const MAGIC: &[u8] = b"cognate system 1\n";
+
+/// Bytes that hold no system.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DamagedSystem {
+    /// The encoding is broken.
+    #[error("the encoded system is damaged at byte {at}: {what}")]
+    Encoding {
+        /// Where reading stopped.
+        at: usize,
+        /// What is wrong there.
+        what: &'static str,
+    },
+    /// It decodes, but to no system.
+    #[error(transparent)]
+    Content(#[from] ProtocolError),
+}
 
 /// The digest of these bytes.
 pub fn of_bytes(bytes: &[u8]) -> Digest {
     Digest(*blake3::hash(bytes).as_bytes())
 }
 
-/// The digest of a checked system.
+/// The digest of a checked system: that of the bytes of [`encode_system`].
 pub fn of_system(system: &System) -> Digest {
-    let mut w = Writer(blake3::Hasher::new());
-    w.0.update(MAGIC);
-    let System {
-        expressions,
-        variables,
-        parameters,
-        groups,
-        equations,
-        equation_names,
-        path_variable,
-        conjugates,
-        degenerate,
-        symmetry,
-    } = system;
-    w.names(variables);
-    w.names(parameters);
-    w.length(groups.len());
-    for group in groups {
-        w.byte(u8::from(group.homogeneous));
-        w.indices(&group.variables);
-    }
-    w.length(expressions.nodes().len());
-    for node in expressions.nodes() {
-        w.node(node);
-    }
-    w.nodes(equations);
-    // A name that is not there and an empty name are the same.
-    for i in 0..equations.len() {
-        w.bytes(equation_names.get(i).map_or(b"", |name| name.as_bytes()));
-    }
-    match path_variable {
-        None => w.byte(0),
-        Some(index) => {
-            w.byte(1);
-            w.length(*index);
-        }
-    }
-    w.length(conjugates.len());
-    for (a, b) in conjugates {
-        w.length(*a);
-        w.length(*b);
-    }
-    w.length(degenerate.len());
-    for (name, set) in degenerate {
-        w.bytes(name.as_bytes());
-        match set {
-            DegenerateSet::Nonzero(node) => {
-                w.byte(0);
-                w.word(node.0);
-            }
-            DegenerateSet::Equations(nodes) => {
-                w.byte(1);
-                w.nodes(nodes);
-            }
-        }
-    }
-    w.length(symmetry.len());
-    for generator in symmetry {
-        match generator {
-            SymmetryGenerator::Permutation(images) => {
-                w.byte(0);
-                w.indices(images);
-            }
-            SymmetryGenerator::Map(nodes) => {
-                w.byte(1);
-                w.nodes(nodes);
-            }
-        }
-    }
-    Digest(*w.0.finalize().as_bytes())
+    of_bytes(&encode_system(system))
 }
 
-struct Writer(blake3::Hasher);
+/// The canonical bytes of a checked system.
+pub fn encode_system(system: &System) -> Vec<u8> {
+    // By way of the message, which has every field of a system in order.
+    let m = to_proto::problem::system(system);
+    let mut w = Writer(MAGIC.to_vec());
+    w.list(&m.variables, |w, name| w.text(name));
+    w.list(&m.parameters, |w, name| w.text(name));
+    w.list(&m.groups, |w, group| {
+        w.byte(u8::from(group.homogeneous));
+        w.words(&group.variables);
+    });
+    w.list(&m.nodes, |w, node| w.node(node));
+    w.list(&m.equations, |w, equation| {
+        w.word(equation.node);
+        w.text(&equation.name);
+    });
+    w.list(m.path_variable.as_slice(), |w, &index| w.word(index));
+    w.list(&m.conjugates, |w, pair| {
+        w.word(pair.first);
+        w.word(pair.second);
+    });
+    w.list(&m.degenerate, |w, set| {
+        use v1::degenerate_set::Set;
+        w.text(&set.name);
+        match set.set.as_ref().expect("every set is written whole") {
+            Set::Nonzero(node) => {
+                w.byte(0);
+                w.word(*node);
+            }
+            Set::Equations(list) => {
+                w.byte(1);
+                w.words(&list.nodes);
+            }
+        }
+    });
+    w.list(&m.symmetry, |w, generator| {
+        use v1::symmetry_generator::Action;
+        match generator
+            .action
+            .as_ref()
+            .expect("every generator is written whole")
+        {
+            Action::Permutation(p) => {
+                w.byte(0);
+                w.words(&p.images);
+            }
+            Action::Map(list) => {
+                w.byte(1);
+                w.words(&list.nodes);
+            }
+        }
+    });
+    w.0
+}
+
+/// Reads what [`encode_system`] wrote, with every check of a message.
+pub fn decode_system(bytes: &[u8]) -> Result<System, DamagedSystem> {
+    let mut r = Reader { bytes, at: 0 };
+    if r.take(MAGIC.len())? != MAGIC {
+        return Err(r.damaged("it does not begin with the right magic"));
+    }
+    let message = v1::System {
+        variables: r.list(Reader::text)?,
+        parameters: r.list(Reader::text)?,
+        groups: r.list(|r| {
+            Ok(v1::VariableGroup {
+                homogeneous: r.flag()?,
+                variables: r.words()?,
+            })
+        })?,
+        nodes: r.list(Reader::node)?,
+        equations: r.list(|r| {
+            Ok(v1::Equation {
+                node: r.word()?,
+                name: r.text()?,
+            })
+        })?,
+        path_variable: match r.list(Reader::word)?.as_slice() {
+            [] => None,
+            [index] => Some(*index),
+            _ => return Err(r.damaged("there are several path variables")),
+        },
+        conjugates: r.list(|r| {
+            Ok(v1::ConjugatePair {
+                first: r.word()?,
+                second: r.word()?,
+            })
+        })?,
+        degenerate: r.list(|r| {
+            use v1::degenerate_set::Set;
+            Ok(v1::DegenerateSet {
+                name: r.text()?,
+                set: Some(if r.flag()? {
+                    Set::Equations(v1::NodeList { nodes: r.words()? })
+                } else {
+                    Set::Nonzero(r.word()?)
+                }),
+            })
+        })?,
+        symmetry: r.list(|r| {
+            use v1::symmetry_generator::Action;
+            Ok(v1::SymmetryGenerator {
+                action: Some(if r.flag()? {
+                    Action::Map(v1::NodeList { nodes: r.words()? })
+                } else {
+                    Action::Permutation(v1::Permutation { images: r.words()? })
+                }),
+            })
+        })?,
+    };
+    if r.at != bytes.len() {
+        return Err(r.damaged("there is more than the system"));
+    }
+    Ok(from_proto::problem::system(&message)?)
+}
+
+struct Writer(Vec<u8>);
 
 impl Writer {
     fn byte(&mut self, byte: u8) {
-        self.0.update(&[byte]);
+        self.0.push(byte);
     }
 
     fn word(&mut self, word: u32) {
-        self.0.update(&word.to_le_bytes());
+        self.0.extend_from_slice(&word.to_le_bytes());
     }
 
-    fn length(&mut self, length: usize) {
-        self.0.update(&(length as u64).to_le_bytes());
+    fn list<T>(&mut self, list: &[T], mut item: impl FnMut(&mut Self, &T)) {
+        self.0.extend_from_slice(&(list.len() as u64).to_le_bytes());
+        list.iter().for_each(|x| item(self, x));
     }
 
-    fn bytes(&mut self, bytes: &[u8]) {
-        self.length(bytes.len());
-        self.0.update(bytes);
+    fn text(&mut self, text: &str) {
+        self.list(text.as_bytes(), |w, &byte| w.byte(byte));
     }
 
-    fn names(&mut self, names: &[String]) {
-        self.length(names.len());
-        for name in names {
-            self.bytes(name.as_bytes());
-        }
+    fn words(&mut self, words: &[u32]) {
+        self.list(words, |w, &word| w.word(word));
     }
 
-    fn indices(&mut self, indices: &[usize]) {
-        self.length(indices.len());
-        for &index in indices {
-            self.length(index);
-        }
-    }
-
-    fn nodes(&mut self, nodes: &[NodeId]) {
-        self.length(nodes.len());
-        for node in nodes {
-            self.word(node.0);
-        }
-    }
-
-    fn rational(&mut self, value: &Rational) {
-        self.bytes(value.numer().to_string_radix(16).as_bytes());
-        self.bytes(value.denom().to_string_radix(16).as_bytes());
-    }
-
-    fn complex(&mut self, value: &ComplexRational) {
-        self.rational(&value.re);
-        self.rational(&value.im);
-    }
-
-    fn pair(&mut self, tag: u8, a: NodeId, b: NodeId) {
-        self.byte(tag);
-        self.word(a.0);
-        self.word(b.0);
-    }
-
-    fn node(&mut self, node: &Node) {
-        match node {
-            Node::Constant(value) => {
+    fn node(&mut self, node: &v1::Node) {
+        use v1::node::Kind;
+        let mut pair = |tag: u8, m: &v1::Binary| {
+            self.byte(tag);
+            self.word(m.left);
+            self.word(m.right);
+        };
+        match node.kind.as_ref().expect("every node is written whole") {
+            Kind::Constant(z) => {
                 self.byte(0);
-                self.complex(value);
+                self.text(&z.re);
+                self.text(&z.im);
             }
-            Node::Variable(index) => {
+            Kind::Variable(index) => {
                 self.byte(1);
                 self.word(*index);
             }
-            Node::Parameter(index) => {
+            Kind::Parameter(index) => {
                 self.byte(2);
                 self.word(*index);
             }
-            Node::Add(a, b) => self.pair(3, *a, *b),
-            Node::Subtract(a, b) => self.pair(4, *a, *b),
-            Node::Multiply(a, b) => self.pair(5, *a, *b),
-            Node::Divide(a, b) => self.pair(6, *a, *b),
-            Node::Negate(a) => {
+            Kind::Add(m) => pair(3, m),
+            Kind::Subtract(m) => pair(4, m),
+            Kind::Multiply(m) => pair(5, m),
+            Kind::Divide(m) => pair(6, m),
+            Kind::Negate(a) => {
                 self.byte(7);
-                self.word(a.0);
+                self.word(*a);
             }
-            Node::Power(a, exponent) => {
+            Kind::Power(m) => {
                 self.byte(8);
-                self.word(a.0);
-                self.word(*exponent);
+                self.word(m.base);
+                self.word(m.exponent);
             }
-            Node::Root(a, exponent) => {
+            Kind::Root(m) => {
                 self.byte(9);
-                self.word(a.0);
-                self.rational(exponent);
+                self.word(m.base);
+                self.text(&m.exponent);
             }
-            Node::Function(function, a) => {
+            Kind::Function(m) => {
                 self.byte(10);
-                self.byte(match function {
-                    Function::SquareRoot => 0,
-                    Function::Exponential => 1,
-                    Function::Logarithm => 2,
-                    Function::Sine => 3,
-                    Function::Cosine => 4,
-                    Function::Tangent => 5,
-                    Function::Pi => 6,
-                });
-                self.word(a.0);
+                self.0.extend_from_slice(&m.function.to_le_bytes());
+                self.word(m.argument);
             }
         }
+    }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn damaged(&self, what: &'static str) -> DamagedSystem {
+        DamagedSystem::Encoding { at: self.at, what }
+    }
+
+    fn take(&mut self, length: usize) -> Result<&'a [u8], DamagedSystem> {
+        let end = self.at.checked_add(length);
+        let bytes = end.and_then(|end| self.bytes.get(self.at..end));
+        let bytes = bytes.ok_or_else(|| self.damaged("it ends too soon"))?;
+        self.at += length;
+        Ok(bytes)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], DamagedSystem> {
+        Ok(self
+            .take(N)?
+            .try_into()
+            .expect("as many bytes as asked for"))
+    }
+
+    fn word(&mut self) -> Result<u32, DamagedSystem> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    fn flag(&mut self) -> Result<bool, DamagedSystem> {
+        match self.array()? {
+            [0] => Ok(false),
+            [1] => Ok(true),
+            [_] => Err(self.damaged("a choice that this version does not know")),
+        }
+    }
+
+    /// Every item takes at least a byte, so a length beyond the end is refused before any of it.
+    fn length(&mut self) -> Result<usize, DamagedSystem> {
+        let length = self.array().map(u64::from_le_bytes)?;
+        usize::try_from(length)
+            .ok()
+            .filter(|&n| n <= self.bytes.len() - self.at)
+            .ok_or_else(|| self.damaged("a list is longer than what is there"))
+    }
+
+    fn list<T>(
+        &mut self,
+        mut item: impl FnMut(&mut Self) -> Result<T, DamagedSystem>,
+    ) -> Result<Vec<T>, DamagedSystem> {
+        (0..self.length()?).map(|_| item(self)).collect()
+    }
+
+    fn text(&mut self) -> Result<String, DamagedSystem> {
+        let length = self.length()?;
+        let bytes = self.take(length)?;
+        std::str::from_utf8(bytes)
+            .map(str::to_owned)
+            .map_err(|_| self.damaged("a text is not UTF-8"))
+    }
+
+    fn words(&mut self) -> Result<Vec<u32>, DamagedSystem> {
+        self.list(Self::word)
+    }
+
+    fn node(&mut self) -> Result<v1::Node, DamagedSystem> {
+        use v1::node::Kind;
+        let [tag] = self.array()?;
+        let kind = match tag {
+            0 => Kind::Constant(v1::ExactComplex {
+                re: self.text()?,
+                im: self.text()?,
+            }),
+            1 => Kind::Variable(self.word()?),
+            2 => Kind::Parameter(self.word()?),
+            3..=6 => {
+                let m = v1::Binary {
+                    left: self.word()?,
+                    right: self.word()?,
+                };
+                match tag {
+                    3 => Kind::Add(m),
+                    4 => Kind::Subtract(m),
+                    5 => Kind::Multiply(m),
+                    _ => Kind::Divide(m),
+                }
+            }
+            7 => Kind::Negate(self.word()?),
+            8 => Kind::Power(v1::Power {
+                base: self.word()?,
+                exponent: self.word()?,
+            }),
+            9 => Kind::Root(v1::Root {
+                base: self.word()?,
+                exponent: self.text()?,
+            }),
+            10 => Kind::Function(v1::FunctionCall {
+                function: self.array().map(i32::from_le_bytes)?,
+                argument: self.word()?,
+            }),
+            _ => return Err(self.damaged("a node of a kind that this version does not know")),
+        };
+        Ok(v1::Node { kind: Some(kind) })
     }
 }

@@ -1,0 +1,93 @@
+//! What goes out comes in again, the same; the same things have the same names.
+
+mod support;
+
+use cognate_continuation::path_result::{Coordinates, PathResult};
+use cognate_protocol::submission::{Source, Submission};
+use cognate_protocol::{digest, from_proto, records, to_proto, v1};
+use num_complex::Complex64;
+use proptest::prelude::*;
+use prost::Message;
+use support::Draw;
+
+/// Through the bytes of a message.
+fn sent<M: Message + Default>(message: &M) -> M {
+    M::decode(message.encode_to_vec().as_slice()).expect("what was encoded can be decoded")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn systems_come_back_with_their_digest(seed: u64) {
+        let system = Draw::new(seed).system();
+        let back = from_proto::problem::system(&sent(&to_proto::problem::system(&system))).unwrap();
+        prop_assert_eq!(&back, &system);
+        let bytes = digest::encode_system(&system);
+        prop_assert_eq!(&digest::decode_system(&bytes).unwrap(), &system);
+        prop_assert_eq!(digest::of_system(&back), digest::of_bytes(&bytes));
+    }
+
+    #[test]
+    fn submissions_come_back(seed: u64) {
+        let mut draw = Draw::new(seed);
+        let source = if seed % 2 == 0 {
+            Source::System(Box::new(draw.system()))
+        } else {
+            Source::Text { name: "a.txt".to_owned(), content: b"x^2 - 2;".to_vec() }
+        };
+        let submission = Submission { source, options: draw.options() };
+        let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
+        prop_assert_eq!(from_proto::problem::submission(message).unwrap(), submission);
+    }
+
+    #[test]
+    fn stages_come_back(seed: u64) {
+        let stage = Draw::new(seed).stage();
+        let message: v1::Stage = sent(&to_proto::path::stage(&stage));
+        prop_assert_eq!(from_proto::path::stage(&message).unwrap(), stage);
+    }
+
+    #[test]
+    fn results_come_back_by_both_ways(seed: u64) {
+        let mut draw = Draw::new(seed);
+        let results: Vec<PathResult> = (0..draw.below(5)).map(|_| draw.path_result()).collect();
+        for result in &results {
+            let message: v1::PathResult = sent(&to_proto::path::path_result(result));
+            let back = from_proto::path::path_result(&message).unwrap();
+            prop_assert_eq!(&back, result);
+        }
+        let bytes = records::encode(&results);
+        prop_assert_eq!(records::decode(&bytes).unwrap(), results);
+    }
+}
+
+#[test]
+fn different_systems_have_different_digests() {
+    let mut all: Vec<_> = (0..500).map(|seed| Draw::new(seed).system()).collect();
+    all.dedup();
+    let mut digests: Vec<_> = all.iter().map(digest::of_system).collect();
+    digests.sort();
+    digests.dedup();
+    let mut distinct = 0;
+    for (i, a) in all.iter().enumerate() {
+        distinct += usize::from(!all[..i].contains(a));
+    }
+    assert_eq!(digests.len(), distinct);
+    assert!(distinct > 400, "the generator is not that poor");
+}
+
+#[test]
+fn signs_of_zero_and_kinds_of_nan_are_kept_or_made_one() {
+    let with = |value: f64| {
+        let mut result = Draw::new(1).path_result();
+        result.outcome = cognate_continuation::tracker::outcome::PathOutcome::Failed(
+            cognate_continuation::tracker::outcome::Failure::StepTooSmall,
+        );
+        result.endpoint = Coordinates::Double(vec![Complex64::new(value, 0.0)]);
+        records::hash(&records::encode([&result]))
+    };
+    assert_ne!(with(0.0), with(-0.0));
+    assert_eq!(with(f64::NAN), with(-f64::NAN));
+    assert_eq!(with(f64::NAN), with(f64::from_bits(0x7ff8_0000_dead_beef)));
+}
