@@ -35,7 +35,7 @@ pub struct Options {
     pub start: StartKind,
     /// Variable groups by name, instead of those of the system.
     pub groups: Option<Vec<Vec<String>>>,
-    /// Pairs of conjugate variables by name, beside those of the system.
+    /// Pairs of conjugate variables by name, instead of those of the system; none: leave those.
     pub conjugates: Vec<(String, String)>,
     /// Seed of everything random; `None`: from the problem's digest.
     pub seed: Option<u64>,

@@ -91,3 +91,30 @@ fn signs_of_zero_and_kinds_of_nan_are_kept_or_made_one() {
     assert_eq!(with(f64::NAN), with(-f64::NAN));
     assert_eq!(with(f64::NAN), with(f64::from_bits(0x7ff8_0000_dead_beef)));
 }
+
+#[test]
+fn solutions_come_back() {
+    use cognate_solutions::solution::{NamedValues, Solution};
+    let solution = Solution {
+        variables: NamedValues(vec![("x".to_owned(), Complex64::new(0.1, -0.0))]),
+        multiplicity: 3,
+        cycles: vec![1, 2],
+        real: Some(false),
+        singular: true,
+        residual: 1e-16,
+        condition: f64::INFINITY,
+        accuracy: 1e-9,
+        precision_bits: 53,
+        class: Some(0),
+        paths: vec![3, 4, 17],
+        certificate: None,
+    };
+    let message: v1::Solution = sent(&to_proto::solution::solution(&solution));
+    assert_eq!(from_proto::solution::solution(&message).unwrap(), solution);
+    let nameless = v1::Solution {
+        multiplicity: 0,
+        ..message
+    };
+    let error = from_proto::solution::solution(&nameless).unwrap_err();
+    assert_eq!(error.to_string(), "multiplicity is 0; expected at least 1");
+}

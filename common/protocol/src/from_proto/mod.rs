@@ -2,6 +2,7 @@
 
 pub mod path;
 pub mod problem;
+pub mod solution;
 
 use crate::error::ProtocolError;
 use cognate_continuation::start_points::Digest;

@@ -2,6 +2,7 @@
 
 pub mod path;
 pub mod problem;
+pub mod solution;
 
 use crate::v1;
 use cognate_continuation::start_points::Digest;

@@ -1,0 +1,46 @@
+//! Solution message to Solution, for clients that go on computing with it.
+
+use super::finite;
+use crate::error::{ProtocolError, within_limit};
+use crate::v1;
+use cognate_solutions::solution::{NamedValues, Solution};
+use cognate_systems::formats::limits as sizes;
+use num_complex::Complex64;
+
+/// One solution.
+pub fn solution(m: &v1::Solution) -> Result<Solution, ProtocolError> {
+    within_limit("variables", m.variables.len(), sizes::VARIABLES)?;
+    let values: Vec<Complex64> = m
+        .variables
+        .iter()
+        .map(|v| Complex64::new(v.re, v.im))
+        .collect();
+    finite("variables", &values)?;
+    if m.multiplicity == 0 {
+        return Err(ProtocolError::invalid("multiplicity", 0, "at least 1"));
+    }
+    for (field, value) in [
+        ("residual", m.residual),
+        ("condition", m.condition),
+        ("accuracy", m.accuracy),
+    ] {
+        if value.is_nan() {
+            return Err(ProtocolError::invalid(field, value, "a number"));
+        }
+    }
+    let names = m.variables.iter().map(|v| v.name.clone());
+    Ok(Solution {
+        variables: NamedValues(names.zip(values).collect()),
+        multiplicity: m.multiplicity,
+        cycles: m.cycles.clone(),
+        real: m.real,
+        singular: m.singular,
+        residual: m.residual,
+        condition: m.condition,
+        accuracy: m.accuracy,
+        precision_bits: m.precision_bits,
+        class: m.class,
+        paths: m.paths.clone(),
+        certificate: m.certificate.clone(),
+    })
+}

@@ -1,0 +1,65 @@
+//! Solution, verdict and counts to their messages.
+
+use crate::v1;
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::solution::Solution;
+use cognate_solutions::summary::{PathCounts, SolutionCounts};
+
+/// One solution.
+pub fn solution(s: &Solution) -> v1::Solution {
+    v1::Solution {
+        variables: s
+            .variables
+            .0
+            .iter()
+            .map(|(name, z)| v1::VariableValue {
+                name: name.clone(),
+                re: z.re,
+                im: z.im,
+                re_digits: None,
+                im_digits: None,
+            })
+            .collect(),
+        multiplicity: s.multiplicity,
+        cycles: s.cycles.clone(),
+        real: s.real,
+        singular: s.singular,
+        residual: s.residual,
+        condition: s.condition,
+        accuracy: s.accuracy,
+        precision_bits: s.precision_bits,
+        class: s.class,
+        paths: s.paths.clone(),
+        degenerate: Vec::new(),
+        certificate: s.certificate.clone(),
+    }
+}
+
+/// The class of a path.
+pub fn class(verdict: Verdict) -> v1::PathClass {
+    match verdict {
+        Verdict::Failed => v1::PathClass::Failed,
+        Verdict::AtInfinity => v1::PathClass::AtInfinity,
+        Verdict::Singular => v1::PathClass::Singular,
+        Verdict::Finite => v1::PathClass::Finite,
+    }
+}
+
+/// The counts that every client wants.
+pub fn counts(paths: &PathCounts, solutions: &SolutionCounts) -> v1::SummaryCounts {
+    v1::SummaryCounts {
+        paths_total: paths.total,
+        paths_finite: paths.finite,
+        paths_singular: paths.singular,
+        paths_positive_dimensional: paths.positive_dimensional,
+        paths_excess: paths.excess,
+        paths_at_infinity: paths.at_infinity,
+        paths_failed: paths.failed,
+        paths_retracked: paths.retracked,
+        solutions_distinct: solutions.distinct,
+        solutions_nonsingular: solutions.nonsingular,
+        solutions_singular: solutions.singular,
+        solutions_real: solutions.real,
+        solutions_with_multiplicity: solutions.with_multiplicity,
+    }
+}
