@@ -2,11 +2,25 @@
 //!
 //! A [`PathAlgorithm`] is a state machine: it opens stages, is fed their
 //! results in index order, and knows at any moment how far it is. The service
-//! feeds it from leases, a test from a loop.
+//! feeds it from leases, a test from a loop ([`run_locally`]). `plan` makes
+//! one from a system and options; [`any_algorithm`] writes its state down and
+//! reads it back in another process.
 #![forbid(unsafe_code)]
+
+pub mod any_algorithm;
+pub mod parameter_solve;
+pub mod progress;
+pub mod retried_stage;
+pub mod run_locally;
+pub mod zero_dimensional_solve;
+
+pub use any_algorithm::{AnyAlgorithm, RestoreError};
+pub use progress::{Progress, StageProgress, VerdictCounts};
 
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
 
 /// What an algorithm wants next.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +39,15 @@ pub trait PathAlgorithm: Send {
     fn next(&mut self) -> Next;
     /// Takes the results of one stage, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>);
-    /// The whole state, to be restored where another process goes on.
+    /// How far it is.
+    fn progress(&self) -> Progress;
+    /// The whole state, to be restored where another process goes on
+    /// (see [`AnyAlgorithm::restore`]).
     fn snapshot(&self) -> Vec<u8>;
+    /// What was found, one set for each target; meant for when `next` has said `Done`.
+    /// `system` is the one that was planned for.
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
 }
+
+#[cfg(test)]
+mod synthetic;

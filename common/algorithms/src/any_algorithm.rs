@@ -1,0 +1,95 @@
+//! AnyAlgorithm: one type for every algorithm, which can be written down and read back.
+
+use crate::parameter_solve::ParameterSolve;
+use crate::zero_dimensional_solve::ZeroDimensionalSolve;
+use crate::{Next, PathAlgorithm, Progress};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::StageId;
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
+use serde::{Deserialize, Serialize};
+
+/// Version of the snapshots; another is not read.
+const VERSION: u8 = 1;
+
+/// Every algorithm that a plan can choose.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum AnyAlgorithm {
+    /// All isolated solutions of one system.
+    ZeroDimensional(ZeroDimensionalSolve),
+    /// From solved parameters to others.
+    Parameter(ParameterSolve),
+}
+
+/// Why a snapshot cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RestoreError {
+    /// It was written by another version.
+    #[error("the snapshot has version {found}, this program reads version {VERSION}")]
+    Version {
+        /// The version that it names.
+        found: u8,
+    },
+    /// It is no snapshot, or not all of one.
+    #[error("the snapshot is damaged: {0}")]
+    Damaged(String),
+}
+
+impl AnyAlgorithm {
+    /// The state that [`PathAlgorithm::snapshot`] wrote.
+    pub fn restore(snapshot: &[u8]) -> Result<Self, RestoreError> {
+        match snapshot.split_first() {
+            None => Err(RestoreError::Damaged("it is empty".into())),
+            Some((&VERSION, bytes)) => postcard::from_bytes(bytes)
+                .map_err(|error| RestoreError::Damaged(error.to_string())),
+            Some((&found, _)) => Err(RestoreError::Version { found }),
+        }
+    }
+
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        postcard::to_extend(self, vec![VERSION]).expect("memory takes every byte")
+    }
+
+    /// The same with another limit of repetitions.
+    #[must_use]
+    pub fn with_max_retries(self, max_retries: u16) -> Self {
+        match self {
+            Self::ZeroDimensional(solve) => {
+                Self::ZeroDimensional(solve.with_max_retries(max_retries))
+            }
+            Self::Parameter(solve) => Self::Parameter(solve.with_max_retries(max_retries)),
+        }
+    }
+
+    fn get(&self) -> &dyn PathAlgorithm {
+        match self {
+            Self::ZeroDimensional(solve) => solve,
+            Self::Parameter(solve) => solve,
+        }
+    }
+
+    fn get_mut(&mut self) -> &mut dyn PathAlgorithm {
+        match self {
+            Self::ZeroDimensional(solve) => solve,
+            Self::Parameter(solve) => solve,
+        }
+    }
+}
+
+impl PathAlgorithm for AnyAlgorithm {
+    fn next(&mut self) -> Next {
+        self.get_mut().next()
+    }
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        self.get_mut().absorb(stage, results);
+    }
+    fn progress(&self) -> Progress {
+        self.get().progress()
+    }
+    fn snapshot(&self) -> Vec<u8> {
+        self.to_bytes()
+    }
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+        self.get().solution_sets(system)
+    }
+}

@@ -1,0 +1,43 @@
+//! Progress: how far a solve is, for people and for clients.
+
+use cognate_continuation::work::StageId;
+use serde::{Deserialize, Serialize};
+
+/// One stage of a solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StageProgress {
+    /// Its number.
+    pub id: StageId,
+    /// 0 for the first tracking, then 1, 2, ...
+    pub attempt: u16,
+    /// How many paths it has.
+    pub items: u64,
+    /// True when its results have been taken in.
+    pub absorbed: bool,
+}
+
+/// Paths by their verdicts so far. They may be tracked again and change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VerdictCounts {
+    /// Nonsingular and finite.
+    pub finite: u64,
+    /// Singular and finite.
+    pub singular: u64,
+    /// At infinity.
+    pub at_infinity: u64,
+    /// Failed.
+    pub failed: u64,
+}
+
+/// How far a solve is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Progress {
+    /// What is done at the moment, in a few words.
+    pub description: String,
+    /// All stages so far.
+    pub stages: Vec<StageProgress>,
+    /// Paths of absorbed stages by their verdicts.
+    pub paths: VerdictCounts,
+    /// True when all is known.
+    pub done: bool,
+}

@@ -1,0 +1,443 @@
+//! RetriedStage: a stage, and the stages that track again what failed or crossed in it.
+//!
+//! The books of one solve: every path's last result, its verdict, and which
+//! paths are to be tracked again. Repetitions keep the seed (and so gamma:
+//! another would change which start reaches which end) and tighten the
+//! settings; the verdict uses the last.
+
+use crate::Next;
+use crate::progress::{Progress, StageProgress, VerdictCounts};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::work::{Stage, StageId};
+use cognate_solutions::classification::{Decision, Tolerances, Verdict, classify};
+use cognate_solutions::path_crossing::{CrossingBook, crossings};
+use cognate_solutions::point_shape::PointShape;
+use cognate_solutions::solution_set::{History, SolutionSet};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// How often a path is tracked again at most, before it counts as failed.
+pub const MAX_RETRIES: u16 = 3;
+
+/// What is kept of one target besides its results.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct TargetBook {
+    crossings: CrossingBook,
+    retracked: u64,
+    verdicts: VerdictCounts,
+}
+
+/// One stage with its repetitions, and all that is known about its paths.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RetriedStage {
+    first: Stage,
+    shape: PointShape,
+    tolerances: Tolerances,
+    max_retries: u16,
+    /// Paths for each target; the targets' paths follow each other.
+    paths_per_target: u64,
+    /// Last result of every path, by its index.
+    results: Vec<PathResult>,
+    targets: Vec<TargetBook>,
+    stages: Vec<StageProgress>,
+    /// Paths that the next stage has to track; `None` before the first and after the last.
+    wanted: Option<Vec<u64>>,
+}
+
+impl RetriedStage {
+    /// A stage that is not open yet, with its number of targets.
+    pub fn new(first: Stage, system: &System, tolerances: Tolerances, targets: u64) -> Self {
+        let items = first
+            .items()
+            .expect("a plan has only stages whose paths can be counted");
+        assert!(
+            targets > 0 && items.is_multiple_of(targets),
+            "every target has the same number of paths"
+        );
+        Self {
+            first,
+            shape: PointShape::of(system),
+            tolerances,
+            max_retries: MAX_RETRIES,
+            paths_per_target: items / targets,
+            results: Vec::new(),
+            targets: vec![TargetBook::default(); targets as usize],
+            stages: Vec::new(),
+            wanted: None,
+        }
+    }
+
+    /// The same with another limit of repetitions.
+    #[must_use]
+    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
+        self.max_retries = max_retries;
+        self
+    }
+
+    /// The stage that comes first.
+    pub fn first(&self) -> &Stage {
+        &self.first
+    }
+
+    /// The last results of all paths so far.
+    pub fn results(&self) -> &[PathResult] {
+        &self.results
+    }
+
+    /// What is wanted next.
+    pub fn next_stage(&mut self) -> Next {
+        if self.stages.iter().any(|stage| !stage.absorbed) {
+            return Next::Wait;
+        }
+        let stage = if self.stages.is_empty() {
+            self.first.clone()
+        } else {
+            match self.wanted.take() {
+                None => return Next::Done,
+                Some(indices) => self.repetition(indices),
+            }
+        };
+        self.stages.push(StageProgress {
+            id: stage.id,
+            attempt: stage.attempt,
+            items: stage
+                .items()
+                .expect("a plan has only stages whose paths can be counted"),
+            absorbed: false,
+        });
+        Next::Open(Box::new(stage))
+    }
+
+    fn repetition(&self, indices: Vec<u64>) -> Stage {
+        let attempt = self.stages.len() as u16;
+        Stage {
+            id: StageId(self.first.id.0 + u32::from(attempt)),
+            start_points: StartPoints::Selected {
+                base: Box::new(self.first.start_points.clone()),
+                indices,
+            },
+            settings: self.first.settings.tightened(attempt),
+            attempt,
+            ..self.first.clone()
+        }
+    }
+
+    /// Takes the results of an open stage.
+    ///
+    /// # Panics
+    /// When the stage is not open, or the results are not its own, complete and in order.
+    pub fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        let stage = self
+            .stages
+            .iter_mut()
+            .find(|stage| stage.id == id && !stage.absorbed)
+            .expect("only an open stage is absorbed");
+        stage.absorbed = true;
+        let (attempt, items) = (stage.attempt, stage.items);
+        let mut taken = 0;
+        for result in results {
+            let origin = result.origin.0;
+            if attempt == 0 {
+                assert_eq!(origin, taken, "results come in item order");
+                self.results.push(result);
+            } else {
+                let place = usize::try_from(origin).expect("an index of a path that is in memory");
+                self.targets[place / self.paths_per_target as usize].retracked += 1;
+                self.results[place] = result;
+            }
+            taken += 1;
+        }
+        assert_eq!(taken, items, "a stage is absorbed as a whole");
+        let suspects = self.judge();
+        self.wanted = (!suspects.is_empty() && attempt < self.max_retries).then_some(suspects);
+    }
+
+    /// Brings all verdicts up to date; returns the paths to track again, ascending.
+    fn judge(&mut self) -> Vec<u64> {
+        let mut suspects = Vec::new();
+        let size = self.paths_per_target.max(1) as usize;
+        for (target, results) in self.results.chunks(size).enumerate() {
+            let decisions: Vec<Decision> = results
+                .iter()
+                .map(|result| classify(result, &self.shape, &self.tolerances))
+                .collect();
+            let meetings = crossings(
+                results,
+                &decisions,
+                &self.shape,
+                &self.tolerances,
+                self.first.seed,
+            );
+            let book = &mut self.targets[target];
+            book.crossings.update(
+                meetings
+                    .iter()
+                    .map(|members| members.iter().map(|&m| results[m].origin.0).collect())
+                    .collect(),
+            );
+            book.verdicts = VerdictCounts::default();
+            for (result, decision) in results.iter().zip(&decisions) {
+                match decision.verdict {
+                    Verdict::Finite => book.verdicts.finite += 1,
+                    Verdict::Singular => book.verdicts.singular += 1,
+                    Verdict::AtInfinity => book.verdicts.at_infinity += 1,
+                    Verdict::Failed => {
+                        book.verdicts.failed += 1;
+                        if can_be_helped(result.outcome) {
+                            suspects.push(result.origin.0);
+                        }
+                    }
+                }
+            }
+            suspects.extend(book.crossings.paths());
+        }
+        suspects.sort_unstable();
+        suspects.dedup();
+        suspects
+    }
+
+    /// How far it is.
+    pub fn progress(&self, what: &str) -> Progress {
+        let mut paths = VerdictCounts::default();
+        for book in &self.targets {
+            paths.finite += book.verdicts.finite;
+            paths.singular += book.verdicts.singular;
+            paths.at_infinity += book.verdicts.at_infinity;
+            paths.failed += book.verdicts.failed;
+        }
+        let open = self.stages.iter().find(|stage| !stage.absorbed);
+        let done = !self.stages.is_empty() && open.is_none() && self.wanted.is_none();
+        let description = match open {
+            Some(stage) if stage.attempt == 0 => format!("{what}: tracking {} paths", stage.items),
+            Some(stage) => format!(
+                "{what}: tracking {} paths again, more carefully ({} of {})",
+                stage.items, stage.attempt, self.max_retries
+            ),
+            None if done => format!("{what}: done"),
+            None => what.to_string(),
+        };
+        Progress {
+            description,
+            stages: self.stages.clone(),
+            paths,
+            done,
+        }
+    }
+
+    /// What was found for one target, at which the parameters have these values.
+    pub fn solution_set(
+        &self,
+        target: usize,
+        system: &System,
+        parameters: &[Complex64],
+        complete_start: bool,
+    ) -> SolutionSet {
+        let size = self.paths_per_target as usize;
+        let results = self
+            .results
+            .get(target * size..(target + 1) * size)
+            .unwrap_or(&[]);
+        let book = &self.targets[target];
+        let history = History {
+            retracked: book.retracked,
+            crossings_found: book.crossings.found(),
+            crossings_resolved: book.crossings.resolved(),
+            complete_start,
+        };
+        SolutionSet::new(
+            system,
+            parameters,
+            results,
+            &history,
+            &self.tolerances,
+            self.first.seed,
+        )
+    }
+}
+
+/// Whether tracking a failed path more carefully can make it succeed.
+fn can_be_helped(outcome: PathOutcome) -> bool {
+    match outcome {
+        PathOutcome::Failed(failure) => match failure {
+            Failure::StepTooSmall | Failure::TooManySteps | Failure::EndgameUnsettled => true,
+            Failure::InvalidStartPoint | Failure::KilledItsWorker => false,
+        },
+        // It failed by its result: damaged, or a crossing.
+        PathOutcome::Regular | PathOutcome::Singular => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::any_algorithm::{AnyAlgorithm, RestoreError};
+    use crate::parameter_solve::ParameterSolve;
+    use crate::run_locally::drive;
+    use crate::synthetic::{Fate, first_stage, system, track};
+    use crate::zero_dimensional_solve::ZeroDimensionalSolve;
+    use crate::{Next, PathAlgorithm};
+    use cognate_continuation::homotopies::HomotopyKind;
+    use cognate_continuation::start_points::StartPoints;
+    use cognate_continuation::work::Stage;
+    use cognate_solutions::classification::Tolerances;
+    use cognate_solutions::solution_set::SolutionSet;
+    use num_complex::Complex64;
+    use std::convert::Infallible;
+
+    fn solve() -> AnyAlgorithm {
+        let homotopy = HomotopyKind::StraightLine {
+            parameters: vec![Complex64::new(1.0, 0.0)],
+        };
+        AnyAlgorithm::ZeroDimensional(ZeroDimensionalSolve::new(
+            first_stage(homotopy),
+            &system(),
+            Tolerances::default(),
+        ))
+    }
+
+    /// Runs it; returns the stages that it opened and what it found.
+    fn run(
+        algorithm: &mut AnyAlgorithm,
+        fate: impl Fn(u64, u16) -> Fate,
+    ) -> (Vec<Stage>, Vec<SolutionSet>) {
+        let mut stages = Vec::new();
+        let done: Result<(), Infallible> = drive(algorithm, &mut |stage| {
+            stages.push(stage.clone());
+            Ok(track(stage, &fate))
+        });
+        assert_eq!(done, Ok(()));
+        assert!(algorithm.progress().done);
+        (stages, algorithm.solution_sets(&system()))
+    }
+
+    #[test]
+    fn clean_paths_are_tracked_once() {
+        let (stages, sets) = run(&mut solve(), |path, _| Fate::At(0.1 * path as f64));
+        assert_eq!(stages.len(), 1);
+        assert_eq!((sets[0].paths.total, sets[0].paths.finite), (4, 4));
+        assert_eq!(sets[0].counts.real, Some(4));
+        assert!(sets[0].settled());
+    }
+
+    #[test]
+    fn what_fails_or_crosses_is_tracked_again_with_the_same_gamma() {
+        // Paths 0 and 2 meet once; path 3 fails twice.
+        let (stages, sets) = run(&mut solve(), |path, attempt| match (path, attempt) {
+            (2, 0) => Fate::At(0.0),
+            (3, 0 | 1) => Fate::Fails,
+            _ => Fate::At(0.1 * path as f64),
+        });
+        let selected: Vec<_> = stages[1..]
+            .iter()
+            .map(|stage| match &stage.start_points {
+                StartPoints::Selected { indices, .. } => indices.clone(),
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(selected, [vec![0, 2, 3], vec![3]]);
+        for (k, stage) in stages.iter().enumerate() {
+            assert_eq!((stage.id.0, usize::from(stage.attempt)), (k as u32, k));
+            assert_eq!(stage.seed, stages[0].seed);
+            assert_eq!(stage.settings, stages[0].settings.tightened(k as u16));
+        }
+        let paths = &sets[0].paths;
+        assert_eq!((paths.finite, paths.failed, paths.retracked), (4, 0, 4));
+        assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 1));
+        assert!(sets[0].settled());
+    }
+
+    #[test]
+    fn what_does_not_come_apart_is_accounted_for() {
+        let (stages, sets) = run(&mut solve(), |path, _| match path {
+            1 => Fate::At(0.0),
+            2 => Fate::Hopeless,
+            3 => Fate::Fails,
+            _ => Fate::At(0.1 * path as f64),
+        });
+        assert_eq!(stages.len(), 4);
+        assert_eq!(
+            stages[3].items(),
+            Some(3),
+            "the hopeless path is left alone"
+        );
+        let paths = &sets[0].paths;
+        assert_eq!((paths.finite, paths.failed, paths.total), (1, 3, 4));
+        assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 0));
+        assert!(!sets[0].settled());
+    }
+
+    #[test]
+    fn every_target_has_its_own_set() {
+        let one = |re: f64| vec![Complex64::new(re, 0.0)];
+        let homotopy = HomotopyKind::Parameter {
+            start: one(1.0),
+            targets: vec![one(2.0), vec![Complex64::new(0.0, 1.0)], one(3.0)],
+        };
+        let mut algorithm = AnyAlgorithm::Parameter(ParameterSolve::new(
+            first_stage(homotopy),
+            &system(),
+            Tolerances::default(),
+        ));
+        // Equal endpoints of different targets are no crossing; paths 8 and 9 are one.
+        let (stages, sets) = run(&mut algorithm, |path, attempt| match (path, attempt) {
+            (9, 0) => Fate::At(0.0),
+            _ => Fate::At(0.1 * (path % 4) as f64),
+        });
+        assert_eq!(stages.len(), 2);
+        assert_eq!(stages[1].items(), Some(2));
+        assert_eq!(sets.len(), 3);
+        assert!(
+            sets.iter()
+                .all(|set| set.paths.finite == 4 && set.settled())
+        );
+        let crossings: Vec<u64> = sets.iter().map(|s| s.paths.crossings_found).collect();
+        assert_eq!(crossings, [0, 0, 1]);
+        let real: Vec<Option<u64>> = sets.iter().map(|s| s.counts.real).collect();
+        assert_eq!(real, [Some(4), None, Some(4)], "x^4 = i is not real");
+        assert_eq!(sets[1].solutions[0].paths, [4]);
+    }
+
+    #[test]
+    fn a_restored_solve_goes_on_to_the_same_answer() {
+        let fate = |path: u64, attempt: u16| match (path, attempt) {
+            (0, 0) | (1, 0..=2) => Fate::Fails,
+            _ => Fate::At(0.1 * path as f64),
+        };
+        let (_, expected) = run(&mut solve(), fate);
+        // A new process before every step.
+        let mut algorithm = solve();
+        let mut open = Vec::new();
+        loop {
+            let bytes = algorithm.snapshot();
+            let restored = AnyAlgorithm::restore(&bytes).unwrap();
+            assert_eq!(restored, algorithm);
+            algorithm = restored;
+            match algorithm.next() {
+                Next::Open(stage) => open.push(stage),
+                Next::Wait => {
+                    let stage = open.pop().unwrap();
+                    let results = track(&stage, fate);
+                    algorithm.absorb(stage.id, &mut results.into_iter());
+                }
+                Next::Done => break,
+            }
+        }
+        assert_eq!(algorithm.solution_sets(&system()), expected);
+    }
+
+    #[test]
+    fn damaged_snapshots_are_refused() {
+        let bytes = solve().snapshot();
+        assert!(matches!(
+            AnyAlgorithm::restore(&bytes[..bytes.len() / 2]),
+            Err(RestoreError::Damaged(_))
+        ));
+        assert!(AnyAlgorithm::restore(&[]).is_err());
+        assert_eq!(
+            AnyAlgorithm::restore(&[99]),
+            Err(RestoreError::Version { found: 99 })
+        );
+    }
+}

@@ -1,0 +1,83 @@
+//! A make-believe tracker for this crate's tests: what each path does at each attempt is written down.
+
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_systems::system::{System, VariableGroup};
+use num_complex::Complex64;
+
+/// x^4 = p in one variable.
+pub fn system() -> System {
+    let mut system = System {
+        variables: vec!["x".into()],
+        parameters: vec!["p".into()],
+        groups: vec![VariableGroup {
+            variables: vec![0],
+            homogeneous: false,
+        }],
+        equation_names: vec!["f".into()],
+        ..System::default()
+    };
+    let e = &mut system.expressions;
+    let (x, p) = (e.variable(0), e.parameter(0));
+    let fourth = e.power(x, 4);
+    system.equations = vec![e.subtract(fourth, p)];
+    system
+}
+
+/// All four paths.
+pub fn first_stage(homotopy: HomotopyKind) -> Stage {
+    Stage {
+        id: StageId(0),
+        work: Work::Track,
+        homotopy,
+        start_points: StartPoints::TotalDegree { degrees: vec![4] },
+        settings: Settings::default(),
+        seed: 7,
+        attempt: 0,
+    }
+}
+
+/// What a path does.
+#[derive(Clone, Copy)]
+pub enum Fate {
+    /// Ends regularly at this x.
+    At(f64),
+    /// Fails in a way that tracking again may help.
+    Fails,
+    /// Fails in a way that nothing helps.
+    Hopeless,
+}
+
+/// All paths of a stage, each by its fate at the stage's attempt.
+pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> {
+    let items = stage.items().unwrap();
+    (0..items)
+        .map(|item| {
+            let origin = stage.origin(item);
+            let (outcome, x) = match fate(origin, stage.attempt) {
+                Fate::At(x) => (PathOutcome::Regular, x),
+                Fate::Fails => (PathOutcome::Failed(Failure::StepTooSmall), 0.1),
+                Fate::Hopeless => (PathOutcome::Failed(Failure::KilledItsWorker), 0.1),
+            };
+            let coordinates = vec![Complex64::new(1.0, 0.0), Complex64::new(x, 0.0)];
+            PathResult {
+                origin: PathIndex(origin),
+                attempt: stage.attempt,
+                outcome,
+                endpoint: Coordinates::Double(coordinates),
+                t: Complex64::new(0.0, 0.0),
+                residual: 1e-16,
+                condition: 3.0,
+                accuracy: 1e-15,
+                winding_number: None,
+                infinity_turns: Vec::new(),
+                precision_bits: 53,
+                counts: Counts::default(),
+            }
+        })
+        .collect()
+}
