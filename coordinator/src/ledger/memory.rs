@@ -59,6 +59,7 @@ struct Worker {
     first_seen: LedgerTime,
     last_seen: LedgerTime,
     items_done: u64,
+    chunks_done: u64,
 }
 
 impl MemoryLedger {
@@ -87,6 +88,18 @@ impl Stage {
         count
     }
 
+    fn outcomes(&self) -> Outcomes {
+        let mut outcomes = Outcomes::default();
+        for chunk in self.chunks.values() {
+            if let ChunkState::Accepted { result, .. } | ChunkState::Failed { result } =
+                &chunk.row.state
+            {
+                outcomes.add(result.outcomes);
+            }
+        }
+        outcomes
+    }
+
     fn row(&self, stage: StageId) -> StageRow {
         StageRow {
             stage,
@@ -98,6 +111,7 @@ impl Stage {
             accepted: self.count(|s| matches!(s, ChunkState::Accepted { .. })),
             failed: self.count(|s| matches!(s, ChunkState::Failed { .. })),
             cpu_micros: self.cpu_micros,
+            outcomes: self.outcomes(),
         }
     }
 }
@@ -711,6 +725,7 @@ impl Ledger for MemoryLedger {
                 }
                 if let Some(worker) = books.workers.get_mut(&worker) {
                     worker.items_done += items;
+                    worker.chunks_done += 1;
                 }
                 Ok(Completion::Accepted)
             }
@@ -779,6 +794,7 @@ impl Ledger for MemoryLedger {
                 first_seen: now,
                 last_seen: now,
                 items_done: 0,
+                chunks_done: 0,
             });
         worker.says = says;
         worker.last_seen = now;
@@ -795,6 +811,7 @@ impl Ledger for MemoryLedger {
                 first_seen: w.first_seen,
                 last_seen: w.last_seen,
                 items_done: w.items_done,
+                chunks_done: w.chunks_done,
                 leased_chunks: books.held(&w.says.worker).len() as u64,
             })
             .collect();
@@ -805,4 +822,16 @@ impl Ledger for MemoryLedger {
         rows.truncate(limit as usize);
         Ok(rows)
     }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::MemoryLedger;
+    use crate::ledger::conformance::ledger_conformance;
+
+    async fn open(clock: std::sync::Arc<crate::ledger::clock::ManualClock>) -> (MemoryLedger, ()) {
+        (MemoryLedger::new(clock), ())
+    }
+
+    ledger_conformance!(memory, open);
 }

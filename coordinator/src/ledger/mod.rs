@@ -6,9 +6,14 @@
 //! the names and hashes of the objects that hold them.
 
 pub mod clock;
+#[cfg(test)]
+mod conformance;
 pub mod identity;
 pub mod memory;
 pub mod rows;
+pub mod sqlite;
+#[cfg(test)]
+mod state_machine;
 
 use self::clock::LedgerTime;
 use self::identity::{CoordinatorId, Epoch, JobId, LeaseId, RequestId};

@@ -3,7 +3,9 @@
 use super::clock::LedgerTime;
 use super::identity::*;
 use crate::chunks::sizing::Sizing;
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::Digest;
+use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::work::StageId;
 use serde::{Deserialize, Serialize};
 
@@ -166,6 +168,39 @@ pub struct Count {
     pub chunks: u64,
 }
 
+/// How paths ended, before any verdict.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Outcomes {
+    /// At a regular endpoint.
+    pub regular: u64,
+    /// At a singular endpoint.
+    pub singular: u64,
+    /// Before the end.
+    pub failed: u64,
+}
+
+impl Outcomes {
+    /// Counts the outcomes of some results.
+    pub fn of(results: &[PathResult]) -> Self {
+        let mut outcomes = Self::default();
+        for result in results {
+            match result.outcome {
+                PathOutcome::Regular => outcomes.regular += 1,
+                PathOutcome::Singular => outcomes.singular += 1,
+                PathOutcome::Failed(_) => outcomes.failed += 1,
+            }
+        }
+        outcomes
+    }
+
+    /// Adds another count to this one.
+    pub fn add(&mut self, other: Self) {
+        self.regular += other.regular;
+        self.singular += other.singular;
+        self.failed += other.failed;
+    }
+}
+
 /// A stage's row with its counts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StageRow {
@@ -187,6 +222,8 @@ pub struct StageRow {
     pub failed: Count,
     /// CPU time of the accepted items, in microseconds.
     pub cpu_micros: u64,
+    /// How the accepted and failed items ended.
+    pub outcomes: Outcomes,
 }
 
 impl StageRow {
@@ -255,6 +292,8 @@ pub struct ResultObject {
     pub hash: Digest,
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
+    /// How its paths ended.
+    pub outcomes: Outcomes,
 }
 
 /// A piece of a chunk that is split.
@@ -366,6 +405,10 @@ pub struct WorkerSeen {
     pub instruction_set: String,
     /// Threads that it tracks with.
     pub threads: u32,
+    /// Paths that it tracks in lockstep; 0: it depends on the stage.
+    pub lane_width: u32,
+    /// The machine that it runs on.
+    pub host: String,
     /// How it is connected: `grpc`, for instance.
     pub transport: String,
     /// True when it takes no more chunks.
@@ -383,6 +426,8 @@ pub struct WorkerRow {
     pub last_seen: LedgerTime,
     /// Items that it finished.
     pub items_done: u64,
+    /// Chunks that it finished.
+    pub chunks_done: u64,
     /// Chunks that it has now.
     pub leased_chunks: u64,
 }

@@ -1,0 +1,229 @@
+//! Rows of the database to rows of the ledger: every value is checked.
+
+use crate::ledger::LedgerError;
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::identity::*;
+use crate::ledger::rows::*;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::StageId;
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
+use std::fmt::Display;
+
+/// The error for a value that this program did not write.
+pub fn damaged(what: impl Display) -> LedgerError {
+    LedgerError::Damaged(what.to_string())
+}
+
+/// A nonnegative number.
+pub fn number(row: &SqliteRow, column: &str) -> Result<u64, LedgerError> {
+    let value: i64 = row.try_get(column)?;
+    u64::try_from(value).map_err(|_| damaged(format_args!("{column} is {value}")))
+}
+
+/// A nonnegative number of at most 32 bits.
+pub fn small(row: &SqliteRow, column: &str) -> Result<u32, LedgerError> {
+    let value = number(row, column)?;
+    u32::try_from(value).map_err(|_| damaged(format_args!("{column} is {value}")))
+}
+
+fn text(row: &SqliteRow, column: &str) -> Result<String, LedgerError> {
+    Ok(row.try_get(column)?)
+}
+
+fn time(row: &SqliteRow, column: &str) -> Result<LedgerTime, LedgerError> {
+    Ok(LedgerTime(row.try_get(column)?))
+}
+
+/// A digest.
+pub fn digest(row: &SqliteRow, column: &str) -> Result<Digest, LedgerError> {
+    parse_digest(&text(row, column)?).map_err(damaged)
+}
+
+fn optional_digest(row: &SqliteRow, column: &str) -> Result<Option<Digest>, LedgerError> {
+    let value: Option<String> = row.try_get(column)?;
+    value.map(|v| parse_digest(&v).map_err(damaged)).transpose()
+}
+
+/// A worker's name.
+pub fn worker(row: &SqliteRow) -> Result<WorkerId, LedgerError> {
+    WorkerId::new(text(row, "worker")?).map_err(damaged)
+}
+
+/// A job's id.
+pub fn job_id(row: &SqliteRow) -> Result<JobId, LedgerError> {
+    text(row, "job")?.parse().map_err(damaged)
+}
+
+/// A job's state by its name.
+pub fn job_state(row: &SqliteRow) -> Result<JobState, LedgerError> {
+    let name = text(row, "state")?;
+    let found = JobState::ALL.into_iter().find(|s| s.name() == name);
+    found.ok_or_else(|| damaged(format_args!("a job's state is `{name}`")))
+}
+
+/// A whole job.
+pub fn job_row(row: &SqliteRow) -> Result<JobRow, LedgerError> {
+    let optional_time = |column| -> Result<Option<LedgerTime>, LedgerError> {
+        let value: Option<i64> = row.try_get(column)?;
+        Ok(value.map(LedgerTime))
+    };
+    let steward: Option<String> = row.try_get("steward")?;
+    Ok(JobRow {
+        job: job_id(row)?,
+        number: number(row, "number")?,
+        asked: NewJob {
+            tenant: Tenant::new(text(row, "tenant")?).map_err(damaged)?,
+            label: text(row, "label")?,
+            problem: digest(row, "problem")?,
+            options: from_hex(&text(row, "options")?)?,
+            numerics_revision: small(row, "numerics_revision")?,
+        },
+        state: job_state(row)?,
+        reason: row.try_get("reason")?,
+        submitted: time(row, "submitted")?,
+        started: optional_time("started")?,
+        ended: optional_time("ended")?,
+        steward: steward
+            .map(|s| CoordinatorId::new(s).map_err(damaged))
+            .transpose()?,
+        steward_epoch: Epoch(number(row, "steward_epoch")?),
+        steward_until: time(row, "steward_until")?,
+        snapshot: optional_digest(row, "snapshot")?,
+        solutions: optional_digest(row, "solutions")?,
+        summary: optional_digest(row, "summary")?,
+    })
+}
+
+fn outcomes(row: &SqliteRow) -> Result<Outcomes, LedgerError> {
+    Ok(Outcomes {
+        regular: number(row, "paths_regular")?,
+        singular: number(row, "paths_singular")?,
+        failed: number(row, "paths_failed")?,
+    })
+}
+
+/// A stage with its counts.
+pub fn stage_row(row: &SqliteRow) -> Result<StageRow, LedgerError> {
+    let count = |items: &str, chunks: &str| -> Result<Count, LedgerError> {
+        Ok(Count {
+            items: number(row, items)?,
+            chunks: number(row, chunks)?,
+        })
+    };
+    Ok(StageRow {
+        stage: StageId(small(row, "stage")?),
+        definition: digest(row, "definition")?,
+        items: number(row, "items")?,
+        closed: number(row, "closed")? != 0,
+        ready: count("ready_items", "ready_chunks")?,
+        leased: count("leased_items", "leased_chunks")?,
+        accepted: count("accepted_items", "accepted_chunks")?,
+        failed: count("failed_items", "failed_chunks")?,
+        cpu_micros: number(row, "cpu_micros")?,
+        outcomes: outcomes(row)?,
+    })
+}
+
+/// The name of a chunk.
+pub fn chunk_id(row: &SqliteRow) -> Result<ChunkId, LedgerError> {
+    Ok(ChunkId {
+        job: job_id(row)?,
+        stage: StageId(small(row, "stage")?),
+        first: number(row, "first")?,
+    })
+}
+
+/// The items of a chunk.
+pub fn items(row: &SqliteRow) -> Result<ItemRange, LedgerError> {
+    Ok(ItemRange {
+        first: number(row, "first")?,
+        last: number(row, "last")?,
+    })
+}
+
+/// A whole chunk.
+pub fn chunk_row(row: &SqliteRow) -> Result<ChunkRow, LedgerError> {
+    let items = items(row)?;
+    let result = || -> Result<ResultObject, LedgerError> {
+        Ok(ResultObject {
+            items,
+            address: text(row, "address")?,
+            hash: digest(row, "hash")?,
+            cpu_micros: number(row, "cpu_micros")?,
+            outcomes: outcomes(row)?,
+        })
+    };
+    let state = match text(row, "state")?.as_str() {
+        "ready" => ChunkState::Ready,
+        "leased" => ChunkState::Leased {
+            worker: worker(row)?,
+            until: time(row, "lease_until")?,
+        },
+        "accepted" => ChunkState::Accepted {
+            worker: worker(row)?,
+            result: result()?,
+        },
+        "failed" => ChunkState::Failed { result: result()? },
+        other => return Err(damaged(format_args!("a chunk's state is `{other}`"))),
+    };
+    Ok(ChunkRow {
+        chunk: chunk_id(row)?,
+        items,
+        state,
+        epoch: Epoch(number(row, "epoch")?),
+        suspicions: small(row, "suspicions")?,
+        alone: number(row, "alone")? != 0,
+    })
+}
+
+/// What one worker did for a job.
+pub fn contribution(row: &SqliteRow) -> Result<Contribution, LedgerError> {
+    Ok(Contribution {
+        worker: worker(row)?,
+        transport: text(row, "transport")?,
+        items: number(row, "items")?,
+        cpu_micros: number(row, "cpu_micros")?,
+    })
+}
+
+/// A whole worker.
+pub fn worker_row(row: &SqliteRow) -> Result<WorkerRow, LedgerError> {
+    Ok(WorkerRow {
+        says: WorkerSeen {
+            worker: worker(row)?,
+            version: text(row, "version")?,
+            numerics_revision: small(row, "numerics_revision")?,
+            instruction_set: text(row, "instruction_set")?,
+            threads: small(row, "threads")?,
+            lane_width: small(row, "lane_width")?,
+            host: text(row, "host")?,
+            transport: text(row, "transport")?,
+            draining: number(row, "draining")? != 0,
+        },
+        first_seen: time(row, "first_seen")?,
+        last_seen: time(row, "last_seen")?,
+        items_done: number(row, "items_done")?,
+        chunks_done: number(row, "chunks_done")?,
+        leased_chunks: number(row, "leased_chunks")?,
+    })
+}
+
+/// Bytes as hexadecimal text.
+pub fn to_hex(bytes: &[u8]) -> String {
+    let digit = |nibble: u8| char::from(b"0123456789abcdef"[usize::from(nibble)]);
+    let pairs = bytes.iter().flat_map(|b| [digit(b >> 4), digit(b & 15)]);
+    pairs.collect()
+}
+
+/// Hexadecimal text as bytes.
+pub fn from_hex(text: &str) -> Result<Vec<u8>, LedgerError> {
+    let nibble = |c: u8| char::from(c).to_digit(16);
+    let pairs = text.as_bytes().chunks(2).map(|pair| match *pair {
+        [a, b] => Some((nibble(a)? * 16 + nibble(b)?) as u8),
+        _ => None,
+    });
+    pairs
+        .collect::<Option<_>>()
+        .ok_or_else(|| damaged("a job's options are no hexadecimal text"))
+}

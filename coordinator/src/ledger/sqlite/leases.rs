@@ -1,0 +1,518 @@
+//! What workers write: leases and what becomes of them. Each function is one operation of a commit.
+
+use super::decode::*;
+use crate::chunks::sizing::Situation;
+use crate::ledger::LedgerError;
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::identity::*;
+use crate::ledger::memory::{PRESENT_MS, check_size, estimate};
+use crate::ledger::rows::*;
+use cognate_continuation::start_points::Digest;
+use sqlx::Row;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
+
+type Connection = SqliteConnection;
+
+fn signed(value: u64) -> i64 {
+    i64::try_from(value).unwrap_or(i64::MAX)
+}
+
+/// What a chunk's row says that the operations here need.
+struct Found {
+    items: ItemRange,
+    state: String,
+    epoch: Epoch,
+    charged: i64,
+    row: SqliteRow,
+}
+
+/// One chunk.
+async fn find(c: &mut Connection, chunk: ChunkId) -> Result<Option<Found>, LedgerError> {
+    let row = sqlx::query("SELECT * FROM chunks WHERE job = ? AND stage = ? AND first = ?")
+        .bind(chunk.job.to_string())
+        .bind(chunk.stage.0)
+        .bind(signed(chunk.first))
+        .fetch_optional(c)
+        .await?;
+    row.map(|row| {
+        Ok(Found {
+            items: items(&row)?,
+            state: row.try_get("state")?,
+            epoch: Epoch(number(&row, "epoch")?),
+            charged: row.try_get("charged")?,
+            row,
+        })
+    })
+    .transpose()
+}
+
+/// Adds to the virtual time of a job and its tenant, and to the job's leased chunks.
+async fn charge(
+    c: &mut Connection,
+    job: JobId,
+    micros: i64,
+    chunks: i64,
+) -> Result<(), LedgerError> {
+    let row = sqlx::query(
+        "UPDATE jobs SET virtual_time = virtual_time + ?, leased_chunks = leased_chunks + ?
+         WHERE job = ? RETURNING tenant",
+    )
+    .bind(micros)
+    .bind(chunks)
+    .bind(job.to_string())
+    .fetch_one(&mut *c)
+    .await?;
+    let tenant: String = row.try_get(0)?;
+    sqlx::query("UPDATE tenants SET virtual_time = virtual_time + ? WHERE tenant = ?")
+        .bind(micros)
+        .bind(tenant)
+        .execute(c)
+        .await?;
+    Ok(())
+}
+
+/// Gives chunks out.
+pub async fn lease(
+    c: &mut Connection,
+    now: LedgerTime,
+    request: LeaseRequest,
+) -> Result<Vec<Lease>, LedgerError> {
+    let until = now.after_ms(request.duration_ms);
+    let held = sqlx::query(
+        "SELECT c.job, c.stage, c.first, c.last, c.epoch, c.alone, c.request, j.problem,
+                s.definition
+         FROM chunks c JOIN jobs j ON j.job = c.job
+                       JOIN stages s ON s.job = c.job AND s.stage = c.stage
+         WHERE c.state = 'leased' AND c.worker = ? ORDER BY c.job, c.stage, c.first",
+    )
+    .bind(request.worker.as_str())
+    .fetch_all(&mut *c)
+    .await?;
+    let mut again = Vec::new();
+    let mut holds_alone = false;
+    for row in &held {
+        let alone = number(row, "alone")? != 0;
+        holds_alone |= alone;
+        let asked: Option<String> = row.try_get("request")?;
+        if asked.as_deref() != Some(request.request.as_str()) {
+            continue;
+        }
+        let chunk = chunk_id(row)?;
+        set_lease_end(c, chunk, until).await?;
+        again.push(Lease {
+            lease: LeaseId {
+                chunk,
+                epoch: Epoch(number(row, "epoch")?),
+            },
+            items: items(row)?,
+            until,
+            problem: digest(row, "problem")?,
+            definition: digest(row, "definition")?,
+            alone,
+        });
+    }
+    if !again.is_empty() || holds_alone || request.slots == 0 {
+        return Ok(again);
+    }
+    let threads = sqlx::query(
+        "SELECT COALESCE(SUM(threads), 0) AS threads FROM workers
+         WHERE last_seen > ? AND draining = 0 AND worker <> ?",
+    )
+    .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
+    .bind(request.worker.as_str())
+    .fetch_one(&mut *c)
+    .await?;
+    let all_threads = number(&threads, "threads")? + u64::from(request.threads);
+    let mut leases: Vec<Lease> = Vec::new();
+    while leases.len() < request.slots as usize && !leases.last().is_some_and(|l| l.alone) {
+        match lease_one(c, now, &request, all_threads).await? {
+            Some(lease) => leases.push(lease),
+            None => break,
+        }
+    }
+    Ok(leases)
+}
+
+/// The stage whose turn it is: the tenant's, then the job's least virtual time.
+async fn choose(
+    c: &mut Connection,
+    request: &LeaseRequest,
+) -> Result<Option<(JobId, Digest, StageRow)>, LedgerError> {
+    let row = sqlx::query(
+        "SELECT s.*, j.problem FROM jobs j
+         JOIN tenants t ON t.tenant = j.tenant
+         JOIN stages s ON s.job = j.job
+         WHERE j.ended IS NULL AND j.state = 'running' AND j.numerics_revision = ?
+           AND j.leased_chunks < ? AND s.ready_chunks > 0
+           AND EXISTS (SELECT 1 FROM chunks c WHERE c.job = s.job AND c.stage = s.stage
+                       AND c.state = 'ready' AND c.suspicions < ?)
+         ORDER BY t.virtual_time, j.virtual_time, j.number, s.stage LIMIT 1",
+    )
+    .bind(request.numerics_revision)
+    .bind(request.in_flight_limit)
+    .bind(request.suspicion_limit)
+    .fetch_optional(c)
+    .await?;
+    row.map(|row| Ok((job_id(&row)?, digest(&row, "problem")?, stage_row(&row)?)))
+        .transpose()
+}
+
+async fn lease_one(
+    c: &mut Connection,
+    now: LedgerTime,
+    request: &LeaseRequest,
+    all_threads: u64,
+) -> Result<Option<Lease>, LedgerError> {
+    let Some((job, problem, stage)) = choose(c, request).await? else {
+        return Ok(None);
+    };
+    let row = sqlx::query(
+        "SELECT * FROM chunks WHERE job = ? AND stage = ? AND state = 'ready' AND suspicions < ?
+         ORDER BY first LIMIT 1",
+    )
+    .bind(job.to_string())
+    .bind(stage.stage.0)
+    .bind(request.suspicion_limit)
+    .fetch_one(&mut *c)
+    .await?;
+    let mut chunk = chunk_row(&row)?;
+    let wanted = request.sizing.items(&Situation {
+        ready_items: stage.ready.items,
+        done_items: stage.accepted.items,
+        done_micros: stage.cpu_micros,
+        threads: u64::from(request.threads),
+        all_threads,
+    });
+    let rest = ItemRange {
+        first: chunk.items.first.saturating_add(wanted),
+        last: chunk.items.last,
+    };
+    if !rest.is_empty() {
+        chunk.items.last = rest.first;
+        let mut cut = chunk.clone();
+        cut.chunk.first = rest.first;
+        cut.items = rest;
+        insert_ready(c, &cut).await?;
+    }
+    let charged = estimate(chunk.items.len(), &stage);
+    let until = now.after_ms(request.duration_ms);
+    chunk.epoch.0 += 1;
+    sqlx::query(
+        "UPDATE chunks SET last = ?, state = 'leased', epoch = ?, worker = ?, lease_until = ?,
+                request = ?, charged = ?
+         WHERE job = ? AND stage = ? AND first = ?",
+    )
+    .bind(signed(chunk.items.last))
+    .bind(signed(chunk.epoch.0))
+    .bind(request.worker.as_str())
+    .bind(until.0)
+    .bind(request.request.as_str())
+    .bind(charged)
+    .bind(job.to_string())
+    .bind(stage.stage.0)
+    .bind(signed(chunk.items.first))
+    .execute(&mut *c)
+    .await?;
+    sqlx::query(
+        "UPDATE stages SET ready_items = ready_items - ?, ready_chunks = ready_chunks - ?,
+                leased_items = leased_items + ?, leased_chunks = leased_chunks + 1
+         WHERE job = ? AND stage = ?",
+    )
+    .bind(signed(chunk.items.len()))
+    .bind(i64::from(rest.is_empty()))
+    .bind(signed(chunk.items.len()))
+    .bind(job.to_string())
+    .bind(stage.stage.0)
+    .execute(&mut *c)
+    .await?;
+    sqlx::query("UPDATE jobs SET started = ? WHERE job = ? AND started IS NULL")
+        .bind(now.0)
+        .bind(job.to_string())
+        .execute(&mut *c)
+        .await?;
+    charge(c, job, charged, 1).await?;
+    Ok(Some(Lease {
+        lease: LeaseId {
+            chunk: chunk.chunk,
+            epoch: chunk.epoch,
+        },
+        items: chunk.items,
+        until,
+        problem,
+        definition: stage.definition,
+        alone: chunk.alone,
+    }))
+}
+
+/// Writes a chunk that is ready. The stage's counts are the caller's business.
+pub async fn insert_ready(c: &mut Connection, chunk: &ChunkRow) -> Result<(), LedgerError> {
+    sqlx::query(
+        "INSERT INTO chunks (job, stage, first, last, state, epoch, suspicions, alone, charged)
+         VALUES (?, ?, ?, ?, 'ready', ?, ?, ?, 0)",
+    )
+    .bind(chunk.chunk.job.to_string())
+    .bind(chunk.chunk.stage.0)
+    .bind(signed(chunk.items.first))
+    .bind(signed(chunk.items.last))
+    .bind(signed(chunk.epoch.0))
+    .bind(chunk.suspicions)
+    .bind(i64::from(chunk.alone))
+    .execute(c)
+    .await?;
+    Ok(())
+}
+
+async fn set_lease_end(
+    c: &mut Connection,
+    chunk: ChunkId,
+    until: LedgerTime,
+) -> Result<(), LedgerError> {
+    sqlx::query("UPDATE chunks SET lease_until = ? WHERE job = ? AND stage = ? AND first = ?")
+        .bind(until.0)
+        .bind(chunk.job.to_string())
+        .bind(chunk.stage.0)
+        .bind(signed(chunk.first))
+        .execute(c)
+        .await?;
+    Ok(())
+}
+
+/// Prolongs leases.
+pub async fn renew(
+    c: &mut Connection,
+    now: LedgerTime,
+    leases: Vec<LeaseId>,
+    duration_ms: u64,
+) -> Result<Vec<Renewal>, LedgerError> {
+    let until = now.after_ms(duration_ms);
+    let mut renewals = Vec::with_capacity(leases.len());
+    for lease in leases {
+        let done = sqlx::query(
+            "UPDATE chunks SET lease_until = ? WHERE job = ? AND stage = ? AND first = ?
+             AND epoch = ? AND state = 'leased'",
+        )
+        .bind(until.0)
+        .bind(lease.chunk.job.to_string())
+        .bind(lease.chunk.stage.0)
+        .bind(signed(lease.chunk.first))
+        .bind(signed(lease.epoch.0))
+        .execute(&mut *c)
+        .await?;
+        renewals.push(match done.rows_affected() {
+            0 => Renewal::Lost,
+            _ => Renewal::Until(until),
+        });
+    }
+    Ok(renewals)
+}
+
+/// Accepts a result, if the lease still stands.
+pub async fn complete(
+    c: &mut Connection,
+    lease: LeaseId,
+    result: ResultObject,
+) -> Result<Completion, LedgerError> {
+    let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
+    let Some(found) = find(c, lease.chunk).await? else {
+        return Ok(Completion::Stale);
+    };
+    if found.items != result.items {
+        return Ok(Completion::Stale);
+    }
+    match found.state.as_str() {
+        "leased" if found.epoch == lease.epoch => {
+            let worker = worker(&found.row)?;
+            settle(c, lease.chunk, "accepted", &result).await?;
+            sqlx::query(
+                "UPDATE stages SET leased_items = leased_items - ?,
+                        leased_chunks = leased_chunks - 1, accepted_items = accepted_items + ?,
+                        accepted_chunks = accepted_chunks + 1, cpu_micros = cpu_micros + ?,
+                        paths_regular = paths_regular + ?, paths_singular = paths_singular + ?,
+                        paths_failed = paths_failed + ?
+                 WHERE job = ? AND stage = ?",
+            )
+            .bind(signed(result.items.len()))
+            .bind(signed(result.items.len()))
+            .bind(cpu_micros)
+            .bind(signed(result.outcomes.regular))
+            .bind(signed(result.outcomes.singular))
+            .bind(signed(result.outcomes.failed))
+            .bind(lease.chunk.job.to_string())
+            .bind(lease.chunk.stage.0)
+            .execute(&mut *c)
+            .await?;
+            charge(c, lease.chunk.job, cpu_micros - found.charged, -1).await?;
+            sqlx::query(
+                "UPDATE workers SET items_done = items_done + ?, chunks_done = chunks_done + 1
+                 WHERE worker = ?",
+            )
+            .bind(signed(result.items.len()))
+            .bind(worker.as_str())
+            .execute(c)
+            .await?;
+            Ok(Completion::Accepted)
+        }
+        "accepted" => {
+            let first = digest(&found.row, "hash")?;
+            Ok(if first != result.hash {
+                Completion::HashDiffers
+            } else if found.epoch == lease.epoch {
+                Completion::AlreadyAccepted
+            } else {
+                Completion::Stale
+            })
+        }
+        _ => Ok(Completion::Stale),
+    }
+}
+
+/// Writes a chunk's result and its last state.
+pub async fn settle(
+    c: &mut Connection,
+    chunk: ChunkId,
+    state: &'static str,
+    result: &ResultObject,
+) -> Result<(), LedgerError> {
+    sqlx::query(
+        "UPDATE chunks SET state = ?, lease_until = NULL, request = NULL, charged = 0,
+                address = ?, hash = ?, cpu_micros = ?, paths_regular = ?, paths_singular = ?,
+                paths_failed = ?
+         WHERE job = ? AND stage = ? AND first = ?",
+    )
+    .bind(state)
+    .bind(result.address.as_str())
+    .bind(result.hash.to_string())
+    .bind(signed(result.cpu_micros))
+    .bind(signed(result.outcomes.regular))
+    .bind(signed(result.outcomes.singular))
+    .bind(signed(result.outcomes.failed))
+    .bind(chunk.job.to_string())
+    .bind(chunk.stage.0)
+    .bind(signed(chunk.first))
+    .execute(c)
+    .await?;
+    Ok(())
+}
+
+/// Takes a leased chunk from its worker, with so many new suspicions.
+async fn release(
+    c: &mut Connection,
+    chunk: ChunkId,
+    found: &Found,
+    suspicions: u32,
+) -> Result<(), LedgerError> {
+    sqlx::query(
+        "UPDATE chunks SET state = 'ready', worker = NULL, lease_until = NULL, request = NULL,
+                charged = 0, suspicions = suspicions + ?
+         WHERE job = ? AND stage = ? AND first = ?",
+    )
+    .bind(suspicions)
+    .bind(chunk.job.to_string())
+    .bind(chunk.stage.0)
+    .bind(signed(chunk.first))
+    .execute(&mut *c)
+    .await?;
+    sqlx::query(
+        "UPDATE stages SET leased_items = leased_items - ?, leased_chunks = leased_chunks - 1,
+                ready_items = ready_items + ?, ready_chunks = ready_chunks + 1
+         WHERE job = ? AND stage = ?",
+    )
+    .bind(signed(found.items.len()))
+    .bind(signed(found.items.len()))
+    .bind(chunk.job.to_string())
+    .bind(chunk.stage.0)
+    .execute(&mut *c)
+    .await?;
+    charge(c, chunk.job, -found.charged, -1).await
+}
+
+/// Returns one chunk.
+pub async fn give_back(
+    c: &mut Connection,
+    lease: LeaseId,
+    why: GiveBack,
+) -> Result<(), LedgerError> {
+    match find(c, lease.chunk).await? {
+        Some(found) if found.state == "leased" && found.epoch == lease.epoch => {
+            let suspicions = u32::from(matches!(why, GiveBack::Failed { .. }));
+            release(c, lease.chunk, &found, suspicions).await
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Returns the chunks whose leases have ended.
+pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>, LedgerError> {
+    let rows = sqlx::query(
+        "SELECT * FROM chunks WHERE state = 'leased' AND lease_until <= ?
+         ORDER BY job, stage, first",
+    )
+    .bind(now.0)
+    .fetch_all(&mut *c)
+    .await?;
+    let mut expired = Vec::with_capacity(rows.len());
+    for row in rows {
+        let chunk = chunk_id(&row)?;
+        expired.push(Expired {
+            lease: LeaseId {
+                chunk,
+                epoch: Epoch(number(&row, "epoch")?),
+            },
+            worker: worker(&row)?,
+            suspicions: small(&row, "suspicions")? + 1,
+        });
+        if let Some(found) = find(c, chunk).await? {
+            release(c, chunk, &found, 1).await?;
+        }
+    }
+    Ok(expired)
+}
+
+/// Returns all leased chunks of a job that ends.
+pub async fn release_all(c: &mut Connection, job: JobId) -> Result<(), LedgerError> {
+    let rows = sqlx::query("SELECT * FROM chunks WHERE state = 'leased' AND job = ?")
+        .bind(job.to_string())
+        .fetch_all(&mut *c)
+        .await?;
+    for row in rows {
+        let chunk = chunk_id(&row)?;
+        if let Some(found) = find(c, chunk).await? {
+            release(c, chunk, &found, 0).await?;
+        }
+    }
+    Ok(())
+}
+
+/// Remembers a worker.
+pub async fn seen(
+    c: &mut Connection,
+    now: LedgerTime,
+    says: WorkerSeen,
+) -> Result<(), LedgerError> {
+    sqlx::query(
+        "INSERT INTO workers (worker, version, numerics_revision, instruction_set, threads,
+                lane_width, host, transport, draining, first_seen, last_seen, items_done,
+                chunks_done)
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0, 0)
+         ON CONFLICT (worker) DO UPDATE SET version = excluded.version,
+                numerics_revision = excluded.numerics_revision,
+                instruction_set = excluded.instruction_set, threads = excluded.threads,
+                lane_width = excluded.lane_width, host = excluded.host,
+                transport = excluded.transport, draining = excluded.draining,
+                last_seen = excluded.last_seen",
+    )
+    .bind(says.worker.as_str())
+    .bind(says.version)
+    .bind(says.numerics_revision)
+    .bind(says.instruction_set)
+    .bind(says.threads)
+    .bind(says.lane_width)
+    .bind(says.host)
+    .bind(says.transport)
+    .bind(i64::from(says.draining))
+    .bind(now.0)
+    .bind(now.0)
+    .execute(c)
+    .await?;
+    Ok(())
+}

@@ -1,0 +1,332 @@
+//! The ledger on SQLite: one machine, no set-up.
+//!
+//! One task writes: it groups operations into a commit and acknowledges them
+//! after it. Readers have connections of their own (WAL).
+
+mod decode;
+mod leases;
+mod stewardship;
+mod writer;
+
+use self::decode::*;
+use self::writer::Writer;
+use super::clock::{Clock, LedgerTime};
+use super::identity::*;
+use super::rows::*;
+use super::{Ledger, LedgerError};
+use async_trait::async_trait;
+use cognate_continuation::work::StageId;
+use sqlx::sqlite::{
+    SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqlitePool, SqlitePoolOptions,
+    SqliteSynchronous,
+};
+use sqlx::{ConnectOptions, Connection, Row};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Version of the schema that this program writes.
+pub const SCHEMA_VERSION: i64 = 1;
+
+/// What makes version n + 1 of version n; the first makes version 1 of an empty file.
+const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [include_str!("../schema.sql")];
+
+/// A ledger in a file.
+pub struct SqliteLedger {
+    clock: Arc<dyn Clock>,
+    writer: Writer,
+    readers: SqlitePool,
+}
+
+impl From<sqlx::Error> for LedgerError {
+    fn from(error: sqlx::Error) -> Self {
+        Self::Storage(error.to_string())
+    }
+}
+
+impl SqliteLedger {
+    /// Opens the ledger in this file, or makes it; brings an older one up to date.
+    pub async fn open(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, LedgerError> {
+        let options = SqliteConnectOptions::new()
+            .filename(path)
+            .create_if_missing(true)
+            .journal_mode(SqliteJournalMode::Wal)
+            .synchronous(SqliteSynchronous::Full)
+            .busy_timeout(Duration::from_secs(10))
+            .statement_cache_capacity(128);
+        let mut connection = options.connect().await?;
+        migrate(&mut connection).await?;
+        let readers = SqlitePoolOptions::new()
+            .max_connections(4)
+            .connect_with(options.read_only(true))
+            .await?;
+        Ok(Self {
+            writer: Writer::start(connection, Arc::clone(&clock)),
+            clock,
+            readers,
+        })
+    }
+
+    /// Writes what is under way and closes the file.
+    pub async fn close(&self) {
+        self.writer.close().await;
+        self.readers.close().await;
+    }
+
+    async fn known(&self, job: JobId) -> Result<(), LedgerError> {
+        let found = sqlx::query("SELECT 1 FROM jobs WHERE job = ?")
+            .bind(job.to_string())
+            .fetch_optional(&self.readers)
+            .await?;
+        found.map(|_| ()).ok_or(LedgerError::UnknownJob(job))
+    }
+}
+
+/// Brings the schema to this program's version, all or nothing.
+async fn migrate(connection: &mut SqliteConnection) -> Result<(), LedgerError> {
+    let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
+    let tables: i64 = sqlx::query("SELECT COUNT(*) FROM sqlite_master WHERE type = 'table'")
+        .fetch_one(&mut *transaction)
+        .await?
+        .try_get(0)?;
+    let found: i64 = if tables == 0 {
+        0
+    } else {
+        sqlx::query("SELECT schema_version FROM ledger")
+            .fetch_one(&mut *transaction)
+            .await
+            .map_err(|_| LedgerError::Damaged("it has no schema version".into()))?
+            .try_get(0)?
+    };
+    if found > SCHEMA_VERSION {
+        return Err(LedgerError::TooNew {
+            found,
+            known: SCHEMA_VERSION,
+        });
+    }
+    let done = usize::try_from(found)
+        .map_err(|_| LedgerError::Damaged(format!("its schema version is {found}")))?;
+    for migration in &MIGRATIONS[done..] {
+        sqlx::raw_sql(*migration).execute(&mut *transaction).await?;
+    }
+    if found < SCHEMA_VERSION {
+        let write = if found == 0 {
+            "INSERT INTO ledger (schema_version) VALUES (?)"
+        } else {
+            "UPDATE ledger SET schema_version = ?"
+        };
+        sqlx::query(write)
+            .bind(SCHEMA_VERSION)
+            .execute(&mut *transaction)
+            .await?;
+    }
+    transaction.commit().await?;
+    Ok(())
+}
+
+#[async_trait]
+impl Ledger for SqliteLedger {
+    async fn now(&self) -> Result<LedgerTime, LedgerError> {
+        Ok(self.clock.now())
+    }
+
+    async fn submit(&self, id: RequestId, job: NewJob) -> Result<Submitted, LedgerError> {
+        self.writer
+            .write(|c, now| Box::pin(stewardship::submit(c, now, id, job)))
+            .await
+    }
+
+    async fn cancel(&self, job: JobId, reason: &str) -> Result<Cancelled, LedgerError> {
+        let reason = reason.to_owned();
+        self.writer
+            .write(move |c, now| Box::pin(stewardship::cancel(c, now, job, reason)))
+            .await
+    }
+
+    async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
+        let row = sqlx::query("SELECT * FROM jobs WHERE job = ?")
+            .bind(job.to_string())
+            .fetch_optional(&self.readers)
+            .await?;
+        row.as_ref().map(job_row).transpose()
+    }
+
+    async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError> {
+        let rows = sqlx::query("SELECT * FROM jobs ORDER BY number DESC LIMIT ?")
+            .bind(limit)
+            .fetch_all(&self.readers)
+            .await?;
+        rows.iter().rev().map(job_row).collect()
+    }
+
+    async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
+        self.known(job).await?;
+        let rows = sqlx::query("SELECT * FROM stages WHERE job = ? ORDER BY stage")
+            .bind(job.to_string())
+            .fetch_all(&self.readers)
+            .await?;
+        rows.iter().map(stage_row).collect()
+    }
+
+    async fn steward(
+        &self,
+        job: JobId,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<Option<Epoch>, LedgerError> {
+        let who = who.clone();
+        self.writer
+            .write(move |c, now| Box::pin(stewardship::steward(c, now, job, who, duration_ms)))
+            .await
+    }
+
+    async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
+        let rows = sqlx::query("SELECT job FROM jobs WHERE ended IS NULL ORDER BY number")
+            .fetch_all(&self.readers)
+            .await?;
+        rows.iter().map(job_id).collect()
+    }
+
+    async fn advance(&self, job: JobId, epoch: Epoch, step: Advance) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, _| Box::pin(stewardship::advance(c, job, epoch, step)))
+            .await
+    }
+
+    async fn split(
+        &self,
+        chunk: ChunkId,
+        epoch: Epoch,
+        pieces: &[Piece],
+    ) -> Result<(), LedgerError> {
+        let pieces = pieces.to_vec();
+        self.writer
+            .write(move |c, _| Box::pin(stewardship::split(c, chunk, epoch, pieces)))
+            .await
+    }
+
+    async fn condemn(
+        &self,
+        chunk: ChunkId,
+        epoch: Epoch,
+        result: ResultObject,
+    ) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, _| Box::pin(stewardship::condemn(c, chunk, epoch, result)))
+            .await
+    }
+
+    async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, now| Box::pin(stewardship::finish(c, now, job, epoch, end)))
+            .await
+    }
+
+    async fn finished_chunks(
+        &self,
+        job: JobId,
+        stage: StageId,
+        from: u64,
+        limit: u32,
+    ) -> Result<Vec<ChunkRow>, LedgerError> {
+        self.known(job).await?;
+        let rows = sqlx::query(
+            "SELECT * FROM chunks WHERE job = ? AND stage = ? AND first >= ?
+             AND state IN ('accepted', 'failed') ORDER BY first LIMIT ?",
+        )
+        .bind(job.to_string())
+        .bind(stage.0)
+        .bind(i64::try_from(from).unwrap_or(i64::MAX))
+        .bind(limit)
+        .fetch_all(&self.readers)
+        .await?;
+        rows.iter().map(chunk_row).collect()
+    }
+
+    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
+        self.known(job).await?;
+        let rows = sqlx::query(
+            "SELECT * FROM chunks WHERE job = ? AND state = 'ready' AND suspicions >= ?
+             ORDER BY stage, first",
+        )
+        .bind(job.to_string())
+        .bind(suspicions)
+        .fetch_all(&self.readers)
+        .await?;
+        rows.iter().map(chunk_row).collect()
+    }
+
+    async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError> {
+        self.known(job).await?;
+        let rows = sqlx::query(
+            "SELECT c.worker, COALESCE(w.transport, '') AS transport,
+                    SUM(c.last - c.first) AS items, SUM(c.cpu_micros) AS cpu_micros
+             FROM chunks c LEFT JOIN workers w ON w.worker = c.worker
+             WHERE c.job = ? AND c.state = 'accepted' GROUP BY c.worker ORDER BY c.worker",
+        )
+        .bind(job.to_string())
+        .fetch_all(&self.readers)
+        .await?;
+        rows.iter().map(contribution).collect()
+    }
+
+    async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError> {
+        self.writer
+            .write(move |c, now| Box::pin(leases::lease(c, now, request)))
+            .await
+    }
+
+    async fn renew(
+        &self,
+        leases: &[LeaseId],
+        duration_ms: u64,
+    ) -> Result<Vec<Renewal>, LedgerError> {
+        let ids = leases.to_vec();
+        self.writer
+            .write(move |c, now| Box::pin(leases::renew(c, now, ids, duration_ms)))
+            .await
+    }
+
+    async fn complete(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError> {
+        self.writer
+            .write(move |c, _| Box::pin(leases::complete(c, lease, result)))
+            .await
+    }
+
+    async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, _| Box::pin(leases::give_back(c, lease, why)))
+            .await
+    }
+
+    async fn expire(&self) -> Result<Vec<Expired>, LedgerError> {
+        self.writer
+            .write(|c, now| Box::pin(leases::expire(c, now)))
+            .await
+    }
+
+    async fn seen(&self, worker: WorkerSeen) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, now| Box::pin(leases::seen(c, now, worker)))
+            .await
+    }
+
+    async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, LedgerError> {
+        let rows = sqlx::query(
+            "SELECT w.*, (SELECT COUNT(*) FROM chunks c
+                          WHERE c.state = 'leased' AND c.worker = w.worker) AS leased_chunks
+             FROM workers w ORDER BY last_seen DESC, worker DESC LIMIT ?",
+        )
+        .bind(limit)
+        .fetch_all(&self.readers)
+        .await?;
+        rows.iter().map(worker_row).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
