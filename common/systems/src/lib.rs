@@ -5,5 +5,7 @@ pub mod evaluation;
 pub mod expression;
 pub mod formats;
 pub mod named;
+pub mod polynomial;
 pub mod straight_line_program;
 pub mod system;
+pub mod transform;

@@ -79,7 +79,15 @@ fn sixteen_lanes_are_at_least_two_and_a_half_times_faster() {
         eprintln!("not measured: needs a release build and fused multiply-add");
         return;
     }
-    let plain = mechanisms::nine_points();
+    for (name, plain) in [
+        ("nine points", mechanisms::nine_points()),
+        ("platform", mechanisms::platform()),
+    ] {
+        check(name, &plain);
+    }
+}
+
+fn check(name: &str, plain: &mechanisms::Plain) {
     let interpreter = Interpreter::compile(
         &plain.expressions,
         &plain.equations,
@@ -95,12 +103,12 @@ fn sixteen_lanes_are_at_least_two_and_a_half_times_faster() {
     }
     let ratio = one / sixteen;
     eprintln!(
-        "W = 1: {:.0} ns a path, W = 16: {:.0} ns, {ratio:.1} times faster",
+        "{name}: W = 1: {:.0} ns a path, W = 16: {:.0} ns, {ratio:.1} times faster",
         one * 1e9,
         sixteen * 1e9
     );
     assert!(
         ratio >= 2.5,
-        "W = 16 is only {ratio:.2} times faster than W = 1: is everything below `dispatch` inlined?"
+        "{name}: W = 16 is only {ratio:.2} times faster than W = 1: is everything below `dispatch` inlined?"
     );
 }

@@ -348,7 +348,13 @@ impl Expressions {
                 Node::Add(a, b) => self.add(memory[a], memory[b]),
                 Node::Subtract(a, b) => self.subtract(memory[a], memory[b]),
                 Node::Multiply(a, b) => self.multiply(memory[a], memory[b]),
-                Node::Divide(a, b) => self.divide(memory[a], memory[b]),
+                // A rational map keeps its denominators as they are.
+                Node::Divide(a, b) => match (memory[a], memory[b]) {
+                    (a, b) if self.dependence(b) == Dependence::Variables => {
+                        self.insert(Node::Divide(a, b))
+                    }
+                    (a, b) => self.divide(a, b),
+                },
                 Node::Negate(a) => self.negate(memory[a]),
                 Node::Power(a, e) => self.power(memory[a], *e),
                 Node::Root(a, e) => self.root(memory[a], e.clone()),

@@ -130,7 +130,7 @@ pub fn eco(n: usize) -> Named {
 /// part is finite.
 ///
 /// PoSSo test suite, and J. Verschelde's database of polynomial systems (36
-/// and 144 solutions for n = 4 and 5).
+/// and 144 solutions for n = 4 and 5); 4 and 12 for n = 2 and 3 were found with PHCpack.
 pub fn reimer(n: usize) -> Named {
     let mut d = Draft::new(numbered("x", 1, n));
     for k in 1..=n as u32 {
@@ -145,6 +145,8 @@ pub fn reimer(n: usize) -> Named {
         d.equate(&terms);
     }
     let count = match n {
+        2 => Some(4),
+        3 => Some(12),
         4 => Some(36),
         5 => Some(144),
         _ => None,
