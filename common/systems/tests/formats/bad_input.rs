@@ -462,6 +462,16 @@ fn limits_are_named() {
         ),
         "VARIABLES",
     );
+    let declared = |word: &str| {
+        let names: Vec<String> = (0..1001).map(|i| format!("{word}{i}")).collect();
+        bertini(&format!("{word} {}; f = x;", names.join(", ")))
+    };
+    limit(&declared("function"), "EQUATIONS");
+    let json = |variables: &[String], equations: &[String]| {
+        format!("{{\"variables\": {variables:?}, \"equations\": {equations:?}}}")
+    };
+    limit(&json(&names, &names), "VARIABLES");
+    limit(&json(&names[..1], &names), "EQUATIONS");
     // Squaring again and again doubles the digits each time.
     let mut text = String::from("a0 = 3*x/3 - x + 10^20; ");
     for i in 0..40 {
@@ -469,4 +479,18 @@ fn limits_are_named() {
     }
     let text = text.replace("3*x/3 - x + ", "");
     limit(&bertini(&format!("{text} f = a40*x;")), "CONSTANT_BITS");
+}
+
+#[test]
+fn many_warnings_are_not_slow() {
+    let text = format!(
+        "CONFIG\n{}END;\n{}",
+        "odd: 1;\n".repeat(1_000_000),
+        "INPUT "
+    );
+    let text = text + &bertini("f = x;");
+    let start = std::time::Instant::now();
+    let problem = formats::read("test", text.as_bytes()).expect("only warnings");
+    assert_eq!(problem.warnings.len(), 100);
+    assert!(start.elapsed().as_secs() < 20);
 }
