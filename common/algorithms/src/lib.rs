@@ -2,19 +2,24 @@
 //!
 //! A [`PathAlgorithm`] is a state machine: it opens stages, is fed their
 //! results in index order, and knows at any moment how far it is. The service
-//! feeds it from leases, a test from a loop ([`run_locally`]). `plan` makes
+//! feeds it from leases, a test from a loop ([`run_locally`]). [`plan`] makes
 //! one from a system and options; [`any_algorithm`] writes its state down and
 //! reads it back in another process.
 #![forbid(unsafe_code)]
 
 pub mod any_algorithm;
 pub mod parameter_solve;
+pub mod plan;
+pub mod plan_error;
 pub mod progress;
 pub mod retried_stage;
 pub mod run_locally;
+pub mod start_costs;
 pub mod zero_dimensional_solve;
 
 pub use any_algorithm::{AnyAlgorithm, RestoreError};
+pub use plan::{Plan, PlanOptions, plan};
+pub use plan_error::PlanError;
 pub use progress::{Progress, StageProgress, VerdictCounts};
 
 use cognate_continuation::path_result::PathResult;

@@ -1,0 +1,533 @@
+//! From a system and options to an algorithm that solves it, or to a clear reason why not.
+
+use crate::any_algorithm::AnyAlgorithm;
+use crate::parameter_solve::ParameterSolve;
+use crate::plan_error::PlanError;
+use crate::retried_stage::MAX_RETRIES;
+use crate::start_costs::{StartKind, Starts, check_square, checked_degrees};
+use crate::zero_dimensional_solve::ZeroDimensionalSolve;
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::start_points::{Digest, StartPoints};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_solutions::classification::Tolerances;
+use cognate_systems::expression::Dependence;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// Most paths of one solve: all results are held in memory, about 300 bytes a path.
+pub const MAX_PATHS: u64 = 4_000_000;
+
+/// Which start is wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartChoice {
+    /// Given start solutions where there are any, else the start with the fewest paths.
+    #[default]
+    Auto,
+    /// All affine groups as one.
+    TotalDegree,
+    /// By the groups of the system.
+    Multihomogeneous,
+    /// The start solutions that are given.
+    Given,
+}
+
+/// Start solutions that are stored as an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GivenStart {
+    /// Digest of the object.
+    pub object: Digest,
+    /// How many points it holds.
+    pub count: u64,
+    /// Coordinates of each point: the variables of the system, in order.
+    pub dimension: usize,
+}
+
+/// Everything that decides how a system is solved, besides the system.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlanOptions {
+    /// Which start.
+    pub start: StartChoice,
+    /// Start solutions, for a parameter homotopy or a homotopy of the user's own.
+    pub start_points: Option<GivenStart>,
+    /// Where the start solutions solve the system.
+    pub start_parameters: Option<Vec<Complex64>>,
+    /// Where the solutions are wanted; without start parameters one, the values of the parameters.
+    pub target_parameters: Vec<Vec<Complex64>>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// How paths are tracked.
+    pub settings: Settings,
+    /// How verdicts are reached.
+    pub tolerances: Tolerances,
+    /// How often a path is tracked again at most.
+    pub max_retries: u16,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        Self {
+            start: StartChoice::Auto,
+            start_points: None,
+            start_parameters: None,
+            target_parameters: Vec::new(),
+            seed: 0,
+            settings: Settings::default(),
+            tolerances: Tolerances::default(),
+            max_retries: MAX_RETRIES,
+        }
+    }
+}
+
+/// How a system will be solved.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The system as it is tracked: a total-degree start makes one group of all.
+    /// Workers, results and solution sets all go by this one.
+    pub system: System,
+    /// What solves it.
+    pub algorithm: AnyAlgorithm,
+    /// How its paths begin.
+    pub start: StartKind,
+    /// Number of paths of the first stage.
+    pub paths: u64,
+    /// Why this start.
+    pub why: String,
+}
+
+/// The plan for a system that has been checked.
+pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+    check_parameters(system, options)?;
+    if let Some(index) = (0..system.equations.len())
+        .find(|&i| system.expressions.dependence(system.equations[i]) == Dependence::Parameters)
+    {
+        let name = system.equation_names.get(index).cloned();
+        return Err(PlanError::ConstrainedParameters(
+            name.unwrap_or_else(|| format!("equation {}", index + 1)),
+        ));
+    }
+    let given = options.start == StartChoice::Given || options.start_points.is_some();
+    match (given, options.start) {
+        (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),
+        _ if system.path_variable.is_some() => Err(PlanError::HomotopyWithoutStart),
+        (true, _) => Err(PlanError::NothingToDeform),
+        (false, choice) => plan_start_system(system, choice, options),
+    }
+}
+
+fn check_parameters(system: &System, options: &PlanOptions) -> Result<(), PlanError> {
+    let expected = system.parameters.len();
+    // A path variable's own value is not asked for where it is the only parameter.
+    let only_path_variable = system.path_variable.is_some() && expected == 1;
+    let sets = options
+        .start_parameters
+        .iter()
+        .map(|set| ("the start parameters", set))
+        .chain(
+            options
+                .target_parameters
+                .iter()
+                .map(|set| ("the target parameters", set)),
+        );
+    for (what, set) in sets {
+        let found = set.len();
+        if found != expected && !(only_path_variable && found == 0) {
+            return Err(PlanError::ParameterCount {
+                what,
+                found,
+                expected,
+            });
+        }
+        if set.iter().any(|z| !z.re.is_finite() || !z.im.is_finite()) {
+            return Err(PlanError::NotFinite { what });
+        }
+    }
+    Ok(())
+}
+
+/// Values of the parameters where there is one set of them.
+fn one_target(system: &System, options: &PlanOptions) -> Result<Vec<Complex64>, PlanError> {
+    let zero = Complex64::new(0.0, 0.0);
+    match options.target_parameters.as_slice() {
+        [set] if set.len() == system.parameters.len() => Ok(set.clone()),
+        [] | [_] => {
+            let free: Vec<&str> = (0..system.parameters.len())
+                .filter(|&k| system.path_variable != Some(k))
+                .map(|k| system.parameters[k].as_str())
+                .collect();
+            if free.is_empty() {
+                Ok(vec![zero; system.parameters.len()])
+            } else {
+                Err(PlanError::ParametersWithoutValues {
+                    names: free.join(", "),
+                })
+            }
+        }
+        several => Err(PlanError::SeveralTargets(several.len())),
+    }
+}
+
+fn plan_start_system(
+    system: &System,
+    choice: StartChoice,
+    options: &PlanOptions,
+) -> Result<Plan, PlanError> {
+    if options.start_parameters.is_some() {
+        return Err(PlanError::StartParametersAlone);
+    }
+    let parameters = one_target(system, options)?;
+    let starts = Starts::of(system)?;
+    let (kind, why) = match choice {
+        StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
+        StartChoice::Multihomogeneous => (StartKind::Multihomogeneous, "asked for".to_string()),
+        StartChoice::Auto | StartChoice::Given => starts.choose()?,
+    };
+    let (tracked, start_points) = match kind {
+        StartKind::TotalDegree => {
+            let (tracked, start, _) = starts.total_degree?;
+            (tracked, start)
+        }
+        _ => (system.clone(), starts.multihomogeneous?.0),
+    };
+    let homotopy = HomotopyKind::StraightLine { parameters };
+    Ok(finish(tracked, homotopy, start_points, kind, why, options))
+}
+
+fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+    let start = options.start_points.ok_or(PlanError::NoStartPoints)?;
+    if start.count == 0 {
+        return Err(PlanError::EmptyStart);
+    }
+    if start.dimension != system.variables.len() {
+        return Err(PlanError::StartDimension {
+            found: start.dimension,
+            expected: system.variables.len(),
+        });
+    }
+    checked_degrees(system)?;
+    check_square(system)?;
+    let homotopy = if system.path_variable.is_some() {
+        HomotopyKind::PathVariable {
+            parameters: one_target(system, options)?,
+        }
+    } else if system.parameters.is_empty() {
+        return Err(PlanError::NothingToDeform);
+    } else {
+        let from = options
+            .start_parameters
+            .clone()
+            .ok_or(PlanError::NoStartParameters)?;
+        if options.target_parameters.is_empty() {
+            return Err(PlanError::ParametersWithoutValues {
+                names: system.parameters.join(", "),
+            });
+        }
+        HomotopyKind::Parameter {
+            start: from,
+            targets: options.target_parameters.clone(),
+        }
+    };
+    let number = start.count.checked_mul(match &homotopy {
+        HomotopyKind::Parameter { targets, .. } => targets.len() as u64,
+        _ => 1,
+    });
+    if number.is_none_or(|number| number > MAX_PATHS) {
+        return Err(PlanError::TooManyPaths {
+            start: StartKind::Given,
+            number,
+        });
+    }
+    let start_points = StartPoints::Stored {
+        object: start.object,
+        count: start.count,
+    };
+    let why = "start solutions are given".to_string();
+    Ok(finish(
+        system.clone(),
+        homotopy,
+        start_points,
+        StartKind::Given,
+        why,
+        options,
+    ))
+}
+
+fn finish(
+    system: System,
+    homotopy: HomotopyKind,
+    start_points: StartPoints,
+    start: StartKind,
+    why: String,
+    options: &PlanOptions,
+) -> Plan {
+    let several = matches!(homotopy, HomotopyKind::Parameter { .. });
+    let first = Stage {
+        id: StageId(0),
+        work: Work::Track,
+        homotopy,
+        start_points,
+        settings: options.settings.clone(),
+        seed: options.seed,
+        attempt: 0,
+    };
+    let paths = first
+        .items()
+        .expect("the number of paths is under the limit");
+    let tolerances = options.tolerances.clone();
+    let algorithm = if several {
+        AnyAlgorithm::Parameter(ParameterSolve::new(first, &system, tolerances))
+    } else {
+        AnyAlgorithm::ZeroDimensional(ZeroDimensionalSolve::new(first, &system, tolerances))
+    };
+    Plan {
+        system,
+        algorithm: algorithm.with_max_retries(options.max_retries),
+        start,
+        paths,
+        why,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PathAlgorithm;
+    use crate::start_costs::StartCosts;
+    use cognate_systems::polynomial::PolynomialError;
+
+    fn system(text: &str) -> System {
+        match cognate_systems::formats::read("test", text.as_bytes()) {
+            Ok(problem) => problem.system,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    fn bertini(input: &str) -> System {
+        system(&format!("CONFIG\nEND;\nINPUT\n{input}\nEND;\n"))
+    }
+
+    /// Two bilinear equations in two groups: 4 paths by total degree, 2 by the groups.
+    fn bilinear() -> System {
+        bertini("variable_group x; variable_group y; function f, g; f = x*y - 1; g = x*y + x - y;")
+    }
+
+    fn with_parameter() -> System {
+        bertini("variable_group x; parameter p; function f; f = x^3 - p;")
+    }
+
+    fn given(dimension: usize) -> PlanOptions {
+        PlanOptions {
+            start_points: Some(GivenStart {
+                object: Digest([1; 32]),
+                count: 3,
+                dimension,
+            }),
+            ..PlanOptions::default()
+        }
+    }
+
+    fn number(re: f64) -> Vec<Complex64> {
+        vec![Complex64::new(re, 0.0)]
+    }
+
+    fn refusal(system: &System, options: &PlanOptions) -> PlanError {
+        match plan(system, options) {
+            Err(error) => error,
+            Ok(plan) => panic!("there should be no plan: {plan:?}"),
+        }
+    }
+
+    fn with_start(start: StartChoice) -> PlanOptions {
+        PlanOptions {
+            start,
+            ..PlanOptions::default()
+        }
+    }
+
+    #[test]
+    fn the_start_with_fewest_paths_is_chosen() {
+        let chosen = plan(&bilinear(), &PlanOptions::default()).unwrap();
+        assert_eq!(
+            (chosen.start, chosen.paths),
+            (StartKind::Multihomogeneous, 2)
+        );
+        assert_eq!(chosen.system.groups.len(), 2);
+        let total = plan(&bilinear(), &with_start(StartChoice::TotalDegree)).unwrap();
+        assert_eq!((total.start, total.paths), (StartKind::TotalDegree, 4));
+        assert_eq!(total.system.groups.len(), 1, "groups are merged");
+        assert_eq!(total.algorithm.progress().stages, []);
+        let one = bertini("variable_group x, y; function f, g; f = x*y - 1; g = x^3 + y;");
+        let chosen = plan(&one, &PlanOptions::default()).unwrap();
+        assert_eq!((chosen.start, chosen.paths), (StartKind::TotalDegree, 6));
+    }
+
+    #[test]
+    fn costs_are_as_the_contract_has_them() {
+        let costs = StartCosts::of(&bilinear()).unwrap();
+        assert_eq!(
+            serde_json::to_string(&costs).unwrap(),
+            "{\"variables\":2,\"equations\":2,\"degrees\":[2,2],\"total_degree\":4,\
+             \"multihomogeneous\":{\"groups\":[[\"x\"],[\"y\"]],\"number\":2},\
+             \"linear_product\":null,\"mixed_volume\":null,\"choice\":\"multihomogeneous\",\
+             \"why\":\"2 paths by the variable groups, 4 by total degree\",\
+             \"notes\":{\"linear_product\":\"not in this version\",\
+             \"mixed_volume\":\"not in this version\"}}"
+        );
+        let more = bertini("variable_group x; function f, g; f = x^2 - 1; g = x - 1;");
+        let costs = StartCosts::of(&more).unwrap();
+        assert_eq!((costs.choice, costs.total_degree), (None, None));
+        assert!(costs.why.contains("not in this version"), "{}", costs.why);
+        assert_eq!(costs.degrees, [2, 1]);
+    }
+
+    #[test]
+    fn homogeneous_groups_lose_one_unknown() {
+        let conics = "function f, g; f = x^2 + y^2 - z^2; g = x*y - z^2;";
+        let projective = bertini(&format!("hom_variable_group x, y, z; {conics}"));
+        assert_eq!(plan(&projective, &PlanOptions::default()).unwrap().paths, 4);
+        let affine = bertini(&format!("variable_group x, y, z; {conics}"));
+        assert!(matches!(
+            refusal(&affine, &PlanOptions::default()),
+            PlanError::FewerEquations {
+                equations: 2,
+                unknowns: 3
+            }
+        ));
+        let skew = bertini("hom_variable_group x, y; function f; f = x^2 - y;");
+        assert!(matches!(
+            refusal(&skew, &PlanOptions::default()),
+            PlanError::Polynomial(PolynomialError::NotHomogeneous { .. })
+        ));
+        let mixed = bertini(
+            "hom_variable_group x, y; variable_group z; function f, g; f = x*z - y; g = x + y*z;",
+        );
+        assert_eq!(
+            plan(&mixed, &PlanOptions::default()).unwrap().start,
+            StartKind::Multihomogeneous
+        );
+        assert_eq!(
+            refusal(&mixed, &with_start(StartChoice::TotalDegree)),
+            PlanError::TotalDegreeNeedsOneGroup
+        );
+    }
+
+    #[test]
+    fn what_is_too_large_is_named() {
+        let large = bertini("variable_group x, y; function f, g; f = x^3000 - 1; g = y^3000 - 1;");
+        let error = refusal(&large, &PlanOptions::default());
+        assert!(error.to_string().contains("9000000 paths"), "{error}");
+        assert!(
+            error.to_string().starts_with("not in this version"),
+            "{error}"
+        );
+        let names: Vec<String> = (0..70).map(|k| format!("x{k}")).collect();
+        let functions: Vec<String> = (0..70).map(|k| format!("f{k}")).collect();
+        let equations: Vec<String> = (0..70).map(|k| format!("f{k} = x{k}^2 - 1;")).collect();
+        let huge = bertini(&format!(
+            "variable_group {}; function {}; {}",
+            names.join(", "),
+            functions.join(", "),
+            equations.join(" ")
+        ));
+        let error = refusal(&huge, &PlanOptions::default());
+        assert!(error.to_string().contains("2^64 or more"), "{error}");
+        let groups: Vec<String> = names
+            .iter()
+            .map(|n| format!("variable_group {n};"))
+            .collect();
+        let many = bertini(&format!(
+            "{} function {}; {}",
+            groups.join(" "),
+            functions.join(", "),
+            equations.join(" ")
+        ));
+        assert_eq!(
+            refusal(&many, &with_start(StartChoice::Multihomogeneous)),
+            PlanError::TooManyGroups { groups: 70 }
+        );
+    }
+
+    #[test]
+    fn groups_that_admit_no_solution_are_refused() {
+        // Both equations in x alone: 4 by total degree, 0 by the groups.
+        let system =
+            bertini("variable_group x; variable_group y; function f, g; f = x^2 - 1; g = x^2 - x;");
+        assert_eq!(
+            refusal(&system, &with_start(StartChoice::Multihomogeneous)),
+            PlanError::NoPaths
+        );
+        assert_eq!(
+            StartCosts::of(&system).unwrap().multihomogeneous.number,
+            Some(0)
+        );
+    }
+
+    #[test]
+    fn parameters_need_values_or_a_solved_start() {
+        let system = with_parameter();
+        let error = refusal(&system, &PlanOptions::default());
+        assert!(error.to_string().contains("(p)"), "{error}");
+        let mut options = PlanOptions {
+            target_parameters: vec![number(2.0)],
+            ..PlanOptions::default()
+        };
+        assert_eq!(plan(&system, &options).unwrap().paths, 3);
+        options.target_parameters.push(number(3.0));
+        assert_eq!(refusal(&system, &options), PlanError::SeveralTargets(2));
+        options.start_parameters = Some(number(1.0));
+        assert_eq!(refusal(&system, &options), PlanError::StartParametersAlone);
+        options.start_points = given(1).start_points;
+        let chosen = plan(&system, &options).unwrap();
+        assert_eq!((chosen.start, chosen.paths), (StartKind::Given, 6));
+        options.target_parameters[1].push(Complex64::new(0.0, 0.0));
+        assert!(matches!(
+            refusal(&system, &options),
+            PlanError::ParameterCount {
+                found: 2,
+                expected: 1,
+                ..
+            }
+        ));
+        options.target_parameters[1] = number(f64::NAN);
+        assert!(matches!(
+            refusal(&system, &options),
+            PlanError::NotFinite { .. }
+        ));
+    }
+
+    #[test]
+    fn given_starts_must_fit() {
+        let system = with_parameter();
+        assert_eq!(refusal(&system, &given(1)), PlanError::NoStartParameters);
+        assert_eq!(
+            refusal(&system, &given(2)),
+            PlanError::StartDimension {
+                found: 2,
+                expected: 1
+            }
+        );
+        assert_eq!(
+            refusal(&system, &with_start(StartChoice::Given)),
+            PlanError::NoStartPoints
+        );
+        assert_eq!(refusal(&bilinear(), &given(2)), PlanError::NothingToDeform);
+    }
+
+    #[test]
+    fn a_homotopy_of_the_users_own_starts_where_it_says() {
+        let system =
+            bertini("variable x; pathvariable t; function f; f = t*(x^2 - 1) + (1 - t)*(x^2 - 4);");
+        assert!(system.path_variable.is_some());
+        assert_eq!(
+            refusal(&system, &PlanOptions::default()),
+            PlanError::HomotopyWithoutStart
+        );
+        let mut options = given(1);
+        let chosen = plan(&system, &options).unwrap();
+        assert_eq!((chosen.start, chosen.paths), (StartKind::Given, 3));
+        options.start = StartChoice::TotalDegree;
+        assert!(plan(&system, &options).is_err());
+    }
+}

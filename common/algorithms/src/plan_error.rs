@@ -1,0 +1,128 @@
+//! PlanError: why there is no plan, in words for the person who gave the system.
+
+use crate::plan::MAX_PATHS;
+use crate::start_costs::StartKind;
+use cognate_systems::polynomial::PolynomialError;
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// Overdetermined.
+    #[error(
+        "not in this version: {equations} equations for {unknowns} unknowns; a system must have \
+         as many equations as unknowns"
+    )]
+    MoreEquations {
+        /// How many equations.
+        equations: usize,
+        /// How many unknowns: variables, less one for each homogeneous group.
+        unknowns: usize,
+    },
+    /// Underdetermined.
+    #[error(
+        "{equations} equations for {unknowns} unknowns: the solution set is positive-dimensional, \
+         which is not in this version; as many equations as unknowns are needed"
+    )]
+    FewerEquations {
+        /// How many equations.
+        equations: usize,
+        /// How many unknowns: variables, less one for each homogeneous group.
+        unknowns: usize,
+    },
+    /// The equations are not what they should be.
+    #[error(transparent)]
+    Polynomial(#[from] PolynomialError),
+    /// An equation among parameters.
+    #[error(
+        "not in this version: `{0}` is an equation among the parameters; parameters must be free \
+         to move, since the homotopy takes a random complex detour that leaves any constrained set"
+    )]
+    ConstrainedParameters(String),
+    /// Parameters without values.
+    #[error("the system has parameters ({names}) and no values for them: give target parameters")]
+    ParametersWithoutValues {
+        /// Their names.
+        names: String,
+    },
+    /// The wrong number of values.
+    #[error("{what} have {found} values, but the system has {expected} parameters")]
+    ParameterCount {
+        /// Which.
+        what: &'static str,
+        /// How many values there are.
+        found: usize,
+        /// How many parameters there are.
+        expected: usize,
+    },
+    /// Infinite or not a number.
+    #[error("{what} have a value that is no finite number")]
+    NotFinite {
+        /// Which.
+        what: &'static str,
+    },
+    /// Several targets can only be reached from solved parameters.
+    #[error(
+        "{0} sets of target parameters need start solutions and start parameters; without them \
+         one set can be solved at a time"
+    )]
+    SeveralTargets(usize),
+    /// `given` without anything given.
+    #[error("the start `given` needs start solutions")]
+    NoStartPoints,
+    /// An object without points.
+    #[error("there is no start solution among the start solutions")]
+    EmptyStart,
+    /// Start solutions of another space.
+    #[error(
+        "the start solutions have {found} coordinates, but the system has {expected} variables"
+    )]
+    StartDimension {
+        /// How many coordinates there are.
+        found: usize,
+        /// How many variables there are.
+        expected: usize,
+    },
+    /// Start solutions of what?
+    #[error("start solutions need start parameters, at which they solve the system")]
+    NoStartParameters,
+    /// Nothing to deform.
+    #[error(
+        "start solutions are for systems with parameters or a path variable; this one has neither"
+    )]
+    NothingToDeform,
+    /// Start parameters without solutions there.
+    #[error("start parameters need start solutions")]
+    StartParametersAlone,
+    /// A homotopy of the user's own has no start system of ours.
+    #[error("a system with a path variable is a homotopy: it needs its start solutions")]
+    HomotopyWithoutStart,
+    /// Too large.
+    #[error(
+        "not in this version: the {start} start has {} paths, more than the limit of {MAX_PATHS} \
+         paths of one solve",
+        .number.map_or("2^64 or more".to_string(), |n| n.to_string())
+    )]
+    TooManyPaths {
+        /// Which start.
+        start: StartKind,
+        /// How many paths, where that fits in 64 bits.
+        number: Option<u64>,
+    },
+    /// Too many ways to count.
+    #[error(
+        "not in this version: counting the choices of a start by {groups} groups takes too long"
+    )]
+    TooManyGroups {
+        /// How many groups.
+        groups: usize,
+    },
+    /// A product of projective spaces has no total degree.
+    #[error("a total-degree start needs one homogeneous group or only affine ones")]
+    TotalDegreeNeedsOneGroup,
+    /// The count by groups is 0.
+    #[error(
+        "the multihomogeneous Bezout number of these variable groups is 0: there is no isolated \
+         solution, or the groups are not meant"
+    )]
+    NoPaths,
+}

@@ -1,0 +1,253 @@
+//! What each start system would cost for a system, and which is the cheapest: `cognate info`.
+
+use crate::plan_error::PlanError;
+use cognate_continuation::start_points::StartPoints;
+use cognate_systems::polynomial::{Degrees, check_homogeneous, degrees};
+use cognate_systems::system::{System, VariableGroup};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// How paths begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartKind {
+    /// As many paths as the product of the degrees.
+    TotalDegree,
+    /// As many as the multihomogeneous Bezout number of the variable groups.
+    Multihomogeneous,
+    /// Given start solutions.
+    Given,
+}
+
+impl std::fmt::Display for StartKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::TotalDegree => "total-degree",
+            Self::Multihomogeneous => "multihomogeneous",
+            Self::Given => "given",
+        })
+    }
+}
+
+/// A start by the variable groups.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MultihomogeneousCost {
+    /// Names of the variables, group by group.
+    pub groups: Vec<Vec<String>>,
+    /// Number of paths.
+    pub number: Option<u64>,
+}
+
+/// What each start would cost, as `cognate info --format json` prints it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StartCosts {
+    /// Number of variables.
+    pub variables: usize,
+    /// Number of equations.
+    pub equations: usize,
+    /// Degree of each equation.
+    pub degrees: Vec<u32>,
+    /// Paths of a total-degree start.
+    pub total_degree: Option<u64>,
+    /// Paths of a start by the groups of the file.
+    pub multihomogeneous: MultihomogeneousCost,
+    /// Paths of a linear-product start.
+    pub linear_product: Option<u64>,
+    /// Paths of a polyhedral start.
+    pub mixed_volume: Option<u64>,
+    /// The cheapest that can be used; null where the system cannot be solved.
+    pub choice: Option<StartKind>,
+    /// Why.
+    pub why: String,
+    /// Why a number is null, by the name of its field.
+    pub notes: BTreeMap<String, String>,
+}
+
+/// Past this many states the table of multihomogeneous choices would take too long.
+const MAX_CHOICE_STATES: u64 = 100_000;
+
+/// The start systems of a square system, each with the system as it is tracked by it.
+#[derive(Clone, Debug)]
+pub struct Starts {
+    /// Degrees of the equations.
+    pub degrees: Degrees,
+    /// Total degree: all affine groups are one.
+    pub total_degree: Result<(System, StartPoints, u64), PlanError>,
+    /// By the groups of the file.
+    pub multihomogeneous: Result<(StartPoints, u64), PlanError>,
+}
+
+impl Starts {
+    /// Both starts of a system, or why one does not serve.
+    pub fn of(system: &System) -> Result<Self, PlanError> {
+        let degrees = checked_degrees(system)?;
+        check_square(system)?;
+        Ok(Self {
+            total_degree: total_degree(system, &degrees),
+            multihomogeneous: multihomogeneous(system, &degrees),
+            degrees,
+        })
+    }
+
+    /// The cheaper one, and why, in words.
+    pub fn choose(&self) -> Result<(StartKind, String), PlanError> {
+        match (&self.total_degree, &self.multihomogeneous) {
+            (Ok((_, _, total)), Ok((_, multi))) if multi < total => Ok((
+                StartKind::Multihomogeneous,
+                format!("{multi} paths by the variable groups, {total} by total degree"),
+            )),
+            (Ok((_, _, total)), Ok((_, multi))) if multi > total => Ok((
+                StartKind::TotalDegree,
+                format!("{total} paths by total degree, {multi} by the variable groups"),
+            )),
+            (Ok((_, _, total)), Ok(_)) => Ok((
+                StartKind::TotalDegree,
+                format!("{total} paths; the variable groups save none"),
+            )),
+            (Ok((_, _, total)), Err(_)) => Ok((
+                StartKind::TotalDegree,
+                format!("{total} paths by total degree"),
+            )),
+            (Err(_), Ok((_, multi))) => Ok((
+                StartKind::Multihomogeneous,
+                format!("{multi} paths by the variable groups"),
+            )),
+            (Err(error), Err(_)) => Err(error.clone()),
+        }
+    }
+}
+
+impl StartCosts {
+    /// The costs of every start; an error only where the equations are no polynomials.
+    pub fn of(system: &System) -> Result<Self, PlanError> {
+        let degrees = checked_degrees(system)?;
+        let mut notes = BTreeMap::new();
+        for name in ["linear_product", "mixed_volume"] {
+            notes.insert(name.to_string(), "not in this version".to_string());
+        }
+        let starts = Starts::of(system);
+        let mut number = |name: &str, number: Result<u64, PlanError>| match number {
+            Ok(number) => Some(number),
+            // A number is a number, even where it is too large or too small to be used.
+            Err(PlanError::TooManyPaths {
+                number: Some(number),
+                ..
+            }) => Some(number),
+            Err(PlanError::NoPaths) => Some(0),
+            Err(error) => {
+                notes.insert(name.to_string(), error.to_string());
+                None
+            }
+        };
+        let (total, multi) = match &starts {
+            Ok(starts) => (
+                starts.total_degree.as_ref().map(|t| t.2),
+                starts.multihomogeneous.as_ref().map(|m| m.1),
+            ),
+            Err(error) => (Err(error), Err(error)),
+        };
+        let total_degree = number("total_degree", total.map_err(Clone::clone));
+        let multihomogeneous = number("multihomogeneous", multi.map_err(Clone::clone));
+        let (choice, why) = match starts.and_then(|starts| starts.choose()) {
+            Ok((choice, why)) => (Some(choice), why),
+            Err(error) => (None, error.to_string()),
+        };
+        let name = |&v: &usize| system.variables[v].clone();
+        Ok(Self {
+            variables: system.variables.len(),
+            equations: system.equations.len(),
+            degrees: degrees.total,
+            total_degree,
+            multihomogeneous: MultihomogeneousCost {
+                groups: system
+                    .groups
+                    .iter()
+                    .map(|group| group.variables.iter().map(name).collect())
+                    .collect(),
+                number: multihomogeneous,
+            },
+            linear_product: None,
+            mixed_volume: None,
+            choice,
+            why,
+            notes,
+        })
+    }
+}
+
+/// Degrees of a system that is polynomial, and homogeneous where it says so.
+pub(crate) fn checked_degrees(system: &System) -> Result<Degrees, PlanError> {
+    let degrees = degrees(system)?;
+    check_homogeneous(system, &degrees)?;
+    Ok(degrees)
+}
+
+/// As many equations as there are unknowns.
+pub(crate) fn check_square(system: &System) -> Result<(), PlanError> {
+    let (equations, unknowns) = (system.equation_count(), system.dimension());
+    match equations.cmp(&unknowns) {
+        std::cmp::Ordering::Equal => Ok(()),
+        std::cmp::Ordering::Greater => Err(PlanError::MoreEquations {
+            equations,
+            unknowns,
+        }),
+        std::cmp::Ordering::Less => Err(PlanError::FewerEquations {
+            equations,
+            unknowns,
+        }),
+    }
+}
+
+fn total_degree(
+    system: &System,
+    degrees: &Degrees,
+) -> Result<(System, StartPoints, u64), PlanError> {
+    let mut tracked = system.clone();
+    if system.groups.len() > 1 {
+        if system.groups.iter().any(|group| group.homogeneous) {
+            return Err(PlanError::TotalDegreeNeedsOneGroup);
+        }
+        tracked.groups = vec![VariableGroup {
+            variables: (0..system.variables.len()).collect(),
+            homogeneous: false,
+        }];
+    }
+    let start = StartPoints::TotalDegree {
+        degrees: degrees.total.clone(),
+    };
+    let count = counted(&start, StartKind::TotalDegree)?;
+    Ok((tracked, start, count))
+}
+
+fn multihomogeneous(system: &System, degrees: &Degrees) -> Result<(StartPoints, u64), PlanError> {
+    let dimensions: Vec<u32> = system
+        .groups
+        .iter()
+        .map(|group| (group.variables.len() - usize::from(group.homogeneous)) as u32)
+        .collect();
+    let states = dimensions
+        .iter()
+        .try_fold(1u64, |product, &d| product.checked_mul(u64::from(d) + 1));
+    if states.is_none_or(|states| states > MAX_CHOICE_STATES) {
+        return Err(PlanError::TooManyGroups {
+            groups: dimensions.len(),
+        });
+    }
+    let start = StartPoints::Multihomogeneous {
+        degrees: degrees.by_group.clone(),
+        dimensions,
+    };
+    let count = counted(&start, StartKind::Multihomogeneous)?;
+    Ok((start, count))
+}
+
+fn counted(start: &StartPoints, kind: StartKind) -> Result<u64, PlanError> {
+    match start.count() {
+        Some(0) => Err(PlanError::NoPaths),
+        Some(number) if number <= crate::plan::MAX_PATHS => Ok(number),
+        number => Err(PlanError::TooManyPaths {
+            start: kind,
+            number,
+        }),
+    }
+}
