@@ -1,3 +1,0 @@
-//! The services: decode, one call inwards, encode.
-
-pub mod error;
