@@ -1,9 +1,20 @@
 //! How one path is followed: start systems, homotopies, the tracker, endgames.
+//!
+//! In the order of a path's life: [`work`] says what is asked, [`stage`] prepares
+//! it, [`chart`] and [`homotopies`] make the program, [`start_systems`] and
+//! [`start_points`] the beginning; [`predictor`], [`step_control`] and [`tracker`]
+//! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left.
 #![forbid(unsafe_code)]
 
+pub mod chart;
+pub mod endgames;
 pub mod homotopies;
 pub mod path_result;
+pub mod predictor;
+mod refine;
+pub mod stage;
 pub mod start_points;
 pub mod start_systems;
+pub mod step_control;
 pub mod tracker;
 pub mod work;

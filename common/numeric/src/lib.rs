@@ -24,6 +24,7 @@ pub mod linear_algebra;
 pub mod precision;
 pub mod random;
 pub mod rational;
+pub mod roots_of_unity;
 pub mod scalar;
 
 /// Revision of everything that decides a path's bits.

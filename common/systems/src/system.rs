@@ -93,6 +93,12 @@ pub enum SystemError {
     /// An equation holds always or never.
     #[error("equation `{0}` contains no variable")]
     ConstantEquation(String),
+    /// An equation or a degenerate set has a variable in a denominator.
+    #[error("`{0}` divides by an expression with variables")]
+    DivisionByVariables(String),
+    /// Permutations, maps and pairs of conjugates must fit the variables.
+    #[error("{0} does not fit the variables")]
+    Misfit(String),
     /// A reference to a variable, parameter or node that does not exist.
     #[error("`{0}` refers to something that does not exist")]
     DanglingReference(String),
@@ -170,6 +176,163 @@ impl System {
                 return Err(SystemError::ConstantEquation(name));
             }
         }
+        self.check_attachments()
+    }
+
+    /// Conjugates, degenerate sets, symmetry, path variable: each refers to what exists.
+    fn check_attachments(&self) -> Result<(), SystemError> {
+        let missing = |what: &str| SystemError::DanglingReference(what.into());
+        if self
+            .path_variable
+            .is_some_and(|p| p >= self.parameters.len())
+        {
+            return Err(missing("the path variable"));
+        }
+        let count = self.variables.len();
+        let mut paired = vec![false; count];
+        for &(a, b) in &self.conjugates {
+            for v in [a, b] {
+                let taken = paired
+                    .get_mut(v)
+                    .ok_or_else(|| missing("a pair of conjugates"))?;
+                if std::mem::replace(taken, true) {
+                    let what = format!("the pair of conjugates with `{}`", self.variables[v]);
+                    return Err(SystemError::Misfit(what));
+                }
+            }
+        }
+        let nodes = self.expressions.nodes();
+        let exists = |node: &NodeId| (node.0 as usize) < nodes.len();
+        let polynomial = self.polynomial_nodes();
+        let divides = |node: &NodeId| !polynomial[node.0 as usize];
+        for (i, equation) in self.equations.iter().enumerate() {
+            if divides(equation) {
+                let name = self.equation_names.get(i).cloned();
+                let name = name.unwrap_or_else(|| format!("equation {}", i + 1));
+                return Err(SystemError::DivisionByVariables(name));
+            }
+        }
+        for (name, set) in &self.degenerate {
+            let members = match set {
+                DegenerateSet::Nonzero(node) => std::slice::from_ref(node),
+                DegenerateSet::Equations(nodes) => nodes,
+            };
+            if !members.iter().all(exists) {
+                return Err(missing(name));
+            }
+            if members.iter().any(divides) {
+                return Err(SystemError::DivisionByVariables(name.clone()));
+            }
+        }
+        for (i, generator) in self.symmetry.iter().enumerate() {
+            let name = format!("symmetry generator {}", i + 1);
+            let fits = match generator {
+                SymmetryGenerator::Permutation(images) => {
+                    let mut sorted = images.clone();
+                    sorted.sort_unstable();
+                    sorted.into_iter().eq(0..count)
+                }
+                SymmetryGenerator::Map(images) => {
+                    if !images.iter().all(exists) {
+                        return Err(missing(&name));
+                    }
+                    images.len() == count
+                }
+            };
+            if !fits {
+                return Err(SystemError::Misfit(name));
+            }
+        }
         Ok(())
+    }
+
+    /// For each node, whether no denominator below it contains a variable.
+    pub fn polynomial_nodes(&self) -> Vec<bool> {
+        let mut polynomial: Vec<bool> = Vec::with_capacity(self.expressions.nodes().len());
+        for (id, node) in self.expressions.nodes().iter().enumerate() {
+            let mut children = self.expressions.children(NodeId(id as u32));
+            let here = match node {
+                Node::Divide(_, b) => self.expressions.dependence(*b) != Dependence::Variables,
+                _ => true,
+            };
+            polynomial.push(here && children.all(|c| polynomial[c.0 as usize]));
+        }
+        polynomial
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn system() -> System {
+        let mut e = Expressions::new();
+        let (x, y) = (e.variable(0), e.variable(1));
+        let product = e.multiply(x, y);
+        System {
+            expressions: e,
+            variables: vec!["x".into(), "y".into()],
+            parameters: vec!["t".into()],
+            groups: vec![VariableGroup {
+                variables: vec![0, 1],
+                homogeneous: false,
+            }],
+            equations: vec![product],
+            equation_names: vec!["f".into()],
+            ..System::default()
+        }
+    }
+
+    #[test]
+    fn what_is_attached_must_fit_the_system() {
+        assert_eq!(system().check(), Ok(()));
+        let change = |change: &dyn Fn(&mut System)| {
+            let mut s = system();
+            change(&mut s);
+            s.check().map_err(|e| e.to_string())
+        };
+        let far = NodeId(99);
+        let err = |text: &str| Err(text.to_string());
+        assert_eq!(
+            change(&|s| s.path_variable = Some(1)),
+            err("`the path variable` refers to something that does not exist")
+        );
+        assert_eq!(
+            change(&|s| s.conjugates = vec![(0, 2)]),
+            err("`a pair of conjugates` refers to something that does not exist")
+        );
+        assert_eq!(
+            change(&|s| s.conjugates = vec![(0, 0)]),
+            err("the pair of conjugates with `x` does not fit the variables")
+        );
+        assert_eq!(
+            change(&|s| drop(s.degenerate.insert("a".into(), DegenerateSet::Nonzero(far)))),
+            err("`a` refers to something that does not exist")
+        );
+        let permutation = |images: &[usize]| SymmetryGenerator::Permutation(images.into());
+        assert_eq!(change(&|s| s.symmetry = vec![permutation(&[1, 0])]), Ok(()));
+        assert_eq!(
+            change(&|s| s.symmetry = vec![permutation(&[1, 1])]),
+            err("symmetry generator 1 does not fit the variables")
+        );
+        assert_eq!(
+            change(&|s| s.symmetry = vec![SymmetryGenerator::Map(vec![far, far])]),
+            err("`symmetry generator 1` refers to something that does not exist")
+        );
+        let quotient = |s: &mut System| {
+            let (x, y) = (s.expressions.variable(0), s.expressions.variable(1));
+            s.expressions.divide(x, y)
+        };
+        assert_eq!(
+            change(&|s| s.equations[0] = quotient(s)),
+            err("`f` divides by an expression with variables")
+        );
+        assert_eq!(
+            change(&|s| {
+                let q = quotient(s);
+                s.symmetry = vec![SymmetryGenerator::Map(vec![q, q])];
+            }),
+            Ok(())
+        );
     }
 }

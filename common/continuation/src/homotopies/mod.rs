@@ -1,9 +1,20 @@
 //! Homotopies: H(x, t) from t = 1, where solutions are known, to t = 0, where they are wanted.
+//!
+//! Every homotopy is one program F(z; p) whose parameters move along a path
+//! p(t): the straight line to a start system is one with the two parameters
+//! 1 - t and gamma t. So the tracker knows one thing only, and what differs
+//! between homotopies is which program is made and how p moves.
+
+pub mod parameter_path;
+pub mod prepare;
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// What is deformed into what. Pure data; `prepare` makes a program of it.
+pub use parameter_path::ParameterPath;
+pub use prepare::Homotopy;
+
+/// What is deformed into what. Pure data; [`prepare`] makes a program of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum HomotopyKind {
     /// `(1-t) F + t gamma G` with the start system G that belongs to the start points.

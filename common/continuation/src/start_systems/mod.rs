@@ -1,3 +1,7 @@
 //! Start systems: a system whose solutions are known, and the solutions, by index.
+//!
+//! A start system, its points and its homotopy are chosen together, and so they
+//! stand together here. Points are made from their index; nothing is stored.
 
 pub mod multihomogeneous;
+pub mod total_degree;

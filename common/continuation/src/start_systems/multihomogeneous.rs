@@ -3,7 +3,106 @@
 //! Counting and unranking go by the same table, so that a start point is made
 //! from its index and never stored (survey, section 6.1).
 
+use crate::chart::{Chart, exact};
+use cognate_numeric::linear_algebra::lu::eliminate;
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::scalar::Complex;
+use cognate_systems::expression::{Expressions, NodeId};
+use num_complex::Complex64;
 use std::collections::HashMap;
+
+/// The start system and its solutions by index.
+#[derive(Clone, Debug)]
+pub struct Multihomogeneous {
+    choices: Choices,
+    /// `forms[equation][group][factor]`: coefficients of a linear form in the
+    /// homogeneous coordinates of the group.
+    forms: Vec<Vec<Vec<Vec<Complex64>>>>,
+}
+
+impl Multihomogeneous {
+    /// Random forms for these degrees; `None` when there are too many choices to count.
+    pub fn new(degrees: &[Vec<u32>], dimensions: &[u32], chart: &Chart, seed: u64) -> Option<Self> {
+        let choices = Choices::new(degrees, dimensions)?;
+        let mut number = 0;
+        let forms = degrees
+            .iter()
+            .map(|row| {
+                row.iter()
+                    .enumerate()
+                    .map(|(group, &d)| {
+                        (0..d)
+                            .map(|_| {
+                                let mut stream =
+                                    RandomStream::new(seed, Purpose::StartSystem, number);
+                                number += 1;
+                                (0..chart.group_size(group))
+                                    .map(|_| stream.unit())
+                                    .collect()
+                            })
+                            .collect()
+                    })
+                    .collect()
+            })
+            .collect();
+        Some(Self { choices, forms })
+    }
+
+    /// The equations over the homogeneous coordinates of all groups.
+    pub fn equations(&self, out: &mut Expressions, coordinates: &[Vec<NodeId>]) -> Vec<NodeId> {
+        self.forms
+            .iter()
+            .map(|groups| {
+                let mut product = out.integer(1);
+                for (group, factors) in groups.iter().enumerate() {
+                    for form in factors {
+                        let mut sum = out.integer(0);
+                        for (&c, &y) in form.iter().zip(&coordinates[group]) {
+                            let c = exact(out, c);
+                            let term = out.multiply(c, y);
+                            sum = out.add(sum, term);
+                        }
+                        product = out.multiply(product, sum);
+                    }
+                }
+                product
+            })
+            .collect()
+    }
+
+    /// Start point number `index`: where the chosen factor of each equation vanishes.
+    pub fn point(&self, chart: &Chart, index: u64) -> Option<Vec<Complex64>> {
+        let choice = self.choices.choice(index);
+        let mut point = vec![Complex64::default(); chart.dimension()];
+        for group in 0..chart.group_count() {
+            let (patch, first) = chart.patch(group);
+            let n = patch.len() - 1;
+            if n == 0 {
+                continue;
+            }
+            let mut system = Matrix::<f64>::zeros((), n, n + 1);
+            let chosen = choice.iter().enumerate().filter(|(_, (g, _))| *g == group);
+            for (row, (equation, (_, factor))) in chosen.enumerate() {
+                let form = &self.forms[equation][group][*factor as usize];
+                let native = |z: Complex64| Complex { re: z.re, im: z.im };
+                for j in 0..n {
+                    *system.at_mut(row, j) = native(form[j + 1] + form[0] * patch[j + 1]);
+                }
+                *system.at_mut(row, n) = native(-form[0] * patch[0]);
+            }
+            eliminate::<f64, 1>(&mut system, &mut 0.0);
+            for j in 0..n {
+                let y = system.at(j, n);
+                if !(y.re.is_finite() && y.im.is_finite()) {
+                    return None;
+                }
+                point[first + j] = Complex64::new(y.re, y.im);
+            }
+        }
+        Some(point)
+    }
+}
 
 /// How many ways there are to take one factor from each equation so that group
 /// k is taken `dimensions[k]` times: the multihomogeneous Bezout number.

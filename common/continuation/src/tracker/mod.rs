@@ -1,4 +1,10 @@
 //! How one path is followed: settings, state, steps, outcome.
+//!
+//! [`lockstep`] follows many paths at once, always in the same phase of a step;
+//! [`lane`] is what one of them knows of itself between steps.
 
+pub mod lane;
+pub mod lockstep;
+pub mod observer;
 pub mod outcome;
 pub mod settings;

@@ -41,7 +41,7 @@ impl Default for Settings {
             max_steps: 20_000,
             endgame_boundary: 0.1,
             endgame_radius: 1e-3,
-            endgame_min_radius: 1e-9,
+            endgame_min_radius: 1e-14,
             max_winding_number: 32,
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,

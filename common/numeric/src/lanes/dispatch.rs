@@ -86,27 +86,34 @@ pub fn dispatch<J: Job>(job: J) -> J::Output {
     dispatch_on(InstructionSet::detect(), job)
 }
 
-/// Runs the job with one instruction set, for tests that compare them.
+/// Runs the job with one instruction set, for tests that compare them; with the best that this
+/// machine has where it lacks the one asked for, which gives the same bits.
 ///
-/// An instruction set that this machine lacks falls back to plain code, which gives the same bits.
+/// # Panics
+/// On a machine without fused multiply-add. What tracks paths asks
+/// [`InstructionSet::detect`] first and declines such a machine.
 pub fn dispatch_on<J: Job>(instruction_set: InstructionSet, job: J) -> J::Output {
+    let best = InstructionSet::detect();
+    assert!(
+        best != InstructionSet::Software,
+        "this machine has no fused multiply-add, which every path's bits rely on"
+    );
     #[cfg(target_arch = "x86_64")]
     {
-        let best = InstructionSet::detect();
-        if instruction_set == InstructionSet::Avx512 && best == InstructionSet::Avx512 {
+        if best == InstructionSet::Avx512 && instruction_set != InstructionSet::Avx2 {
             // SAFETY: the features were detected on this machine just now;
             // `lanes_agree_on_every_instruction_set` runs both and compares.
-            return unsafe { run_avx512(job) };
-        }
-        if instruction_set == InstructionSet::Avx2
-            && matches!(best, InstructionSet::Avx2 | InstructionSet::Avx512)
-        {
+            unsafe { run_avx512(job) }
+        } else {
             // SAFETY: as above; a machine with the AVX-512 set has AVX2.
-            return unsafe { run_avx2(job) };
+            unsafe { run_avx2(job) }
         }
     }
-    let _ = instruction_set;
-    job.run()
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        let _ = instruction_set;
+        job.run()
+    }
 }
 
 #[cfg(test)]

@@ -4,4 +4,6 @@
 //! libraries spend their time on blocking and dispatch. Larger matrices belong
 //! to a library.
 
+pub mod condition;
+pub mod lu;
 pub mod matrix;

@@ -4,15 +4,16 @@
 //! for each group, and `path_variable` names the parameter of a user homotopy.
 
 use super::json_value::{self, Value};
+use super::limits::{self, Limit};
 use super::scope::{FieldFault, Scope, at};
 use super::sharing::{self, WriteError};
 use super::{FileSettings, Format, FormatError, Problem, Source, degenerate, finish, symmetry};
+use crate::expression::NodeId;
 use crate::expression::build::Use;
 use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::Dialect;
 use crate::expression::token::shorten;
-use crate::expression::{Dependence, Node, NodeId};
 use crate::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use std::collections::{HashMap, HashSet};
 
@@ -86,7 +87,7 @@ fn system(source: &Source<'_>) -> Result<System, FieldFault> {
     };
     let mut scope = Scope::default();
     let mut system = System::default();
-    for (i, value) in array(required("variables")?, "variables")?
+    for (i, value) in limited(required("variables")?, "variables", limits::VARIABLES)?
         .iter()
         .enumerate()
     {
@@ -97,7 +98,10 @@ fn system(source: &Source<'_>) -> Result<System, FieldFault> {
             .push(declare(&mut scope, value, &field, "a variable", node)?);
     }
     if let Some(value) = fields.get("parameters") {
-        for (i, value) in array(value, "parameters")?.iter().enumerate() {
+        for (i, value) in limited(value, "parameters", limits::PARAMETERS)?
+            .iter()
+            .enumerate()
+        {
             let field = format!("parameters[{i}]");
             let node = scope.builder.expressions.parameter(i as u32);
             system
@@ -131,7 +135,7 @@ fn system(source: &Source<'_>) -> Result<System, FieldFault> {
         scope.define(&list)?;
     }
     let mut places = Vec::new();
-    for (i, value) in array(required("equations")?, "equations")?
+    for (i, value) in limited(required("equations")?, "equations", limits::EQUATIONS)?
         .iter()
         .enumerate()
     {
@@ -177,6 +181,22 @@ fn system(source: &Source<'_>) -> Result<System, FieldFault> {
         }
         _ => FieldFault::new("", fault),
     })
+}
+
+/// An array with at most so many entries.
+fn limited<'v, 'a>(
+    value: &'v Value<'a>,
+    field: &str,
+    limit: Limit,
+) -> Result<&'v [Value<'a>], FieldFault> {
+    let items = array(value, field)?;
+    match items.get(limit.value as usize) {
+        Some(item) => {
+            let fault = Fault::limit(item.span, limit, items.len());
+            Err(FieldFault::new(field, fault))
+        }
+        None => Ok(items),
+    }
 }
 
 fn array<'v, 'a>(value: &'v Value<'a>, field: &str) -> Result<&'v [Value<'a>], FieldFault> {
@@ -315,7 +335,7 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     let roots = sharing::roots(system, false);
     let style = Style::BERTINI;
     // A rational map may have variables in denominators, a definition may not.
-    let polynomial = polynomial(system);
+    let polynomial = system.polynomial_nodes();
     let may_share = |node: NodeId| polynomial[node.0 as usize];
     let sharing = sharing::share(system, style, &roots, taken, &may_share);
     let display = sharing::display(system, style, &sharing.names);
@@ -419,21 +439,4 @@ pub fn write(system: &System) -> Result<String, WriteError> {
         .map(|(name, value)| format!("  \"{name}\": {value}"))
         .collect();
     Ok(format!("{{\n{}\n}}\n", fields.join(",\n")))
-}
-
-/// For each node, whether no denominator below it contains a variable.
-fn polynomial(system: &System) -> Vec<bool> {
-    let expressions = &system.expressions;
-    let mut polynomial = Vec::with_capacity(expressions.nodes().len());
-    for (id, node) in expressions.nodes().iter().enumerate() {
-        let below = expressions
-            .children(NodeId(id as u32))
-            .all(|c: NodeId| polynomial[c.0 as usize]);
-        let here = match node {
-            Node::Divide(_, b) => expressions.dependence(*b) != Dependence::Variables,
-            _ => true,
-        };
-        polynomial.push(below && here);
-    }
-    polynomial
 }

@@ -96,6 +96,21 @@ impl fmt::Display for Warning {
     }
 }
 
+/// Warnings kept for one file; a file with more has one mistake many times.
+const WARNINGS: usize = 100;
+
+/// Adds a warning about the place of a byte.
+pub(crate) fn warn(warnings: &mut Vec<Warning>, source: &Source<'_>, at: usize, message: String) {
+    if warnings.len() < WARNINGS {
+        let (line, _) = source.line_and_column(at);
+        warnings.push(Warning {
+            file: source.name.into(),
+            line,
+            message,
+        });
+    }
+}
+
 /// What a problem file holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {

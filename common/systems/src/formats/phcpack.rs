@@ -4,7 +4,7 @@
 //! at the beginning of the first polynomial decides.
 
 use super::sharing::{self, WriteError};
-use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish};
+use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish, warn};
 use crate::expression::Node;
 use crate::expression::build::{Builder, Use};
 use crate::expression::display::Style;
@@ -143,14 +143,11 @@ fn system(source: &Source<'_>, warnings: &mut Vec<Warning>) -> Result<System, Fa
     // Titles and solutions are what PHCpack itself writes below a system.
     let known = matches!(rest.kind, TokenKind::Name("TITLE" | "THE" | "SOLUTIONS"));
     if !known && rest.kind != TokenKind::End {
-        warnings.push(Warning {
-            file: source.name.into(),
-            line: source.line_and_column(rest.span.start).0,
-            message: format!(
-                "what follows the {} polynomials is ignored",
-                header.equations
-            ),
-        });
+        let message = format!(
+            "what follows the {} polynomials is ignored",
+            header.equations
+        );
+        warn(warnings, source, rest.span.start, message);
     }
     system.variables = (0..names.count() as u32)
         .map(|n| names.name(n).into())

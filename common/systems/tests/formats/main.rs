@@ -1,8 +1,11 @@
 //! What the readers and writers of problem files promise.
 
 mod agreement;
+mod bad_input;
 mod bertini;
 mod json;
+mod mutation;
 mod phcpack;
 mod points;
+mod round_trip;
 mod support;

@@ -6,14 +6,14 @@ mod write;
 
 pub use write::write;
 
-use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish};
+use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish, limits, warn};
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
 use crate::expression::token::{TokenKind, Tokens};
 use std::collections::HashMap;
 
 /// What a name was declared as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Kind {
     Variable,
     Function,
@@ -61,6 +61,8 @@ struct Statements {
     /// Names in the order of their declaration.
     declared: Vec<(u32, Kind, Span)>,
     kinds: HashMap<u32, Kind>,
+    /// How many names there are of each kind.
+    counts: HashMap<Kind, u64>,
     /// Where each name was declared.
     places: HashMap<u32, Span>,
     /// Groups of variables: homogeneous or not, and the names.
@@ -82,12 +84,8 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         .and_then(|(system, places, end)| finish(system, &places, end))
         .map_err(|fault| source.error(fault))?;
     if settings.user_homotopy && system.path_variable.is_none() {
-        warnings.push(Warning {
-            file: source.name.into(),
-            line: 1,
-            message: "UserHomotopy is set, but no pathvariable is declared; solved without it"
-                .into(),
-        });
+        let message = "UserHomotopy is set, but no pathvariable is declared; solved without it";
+        warn(&mut warnings, source, 0, message.into());
         settings.user_homotopy = false;
     }
     settings.user_homotopy |= system.path_variable.is_some();
@@ -147,11 +145,8 @@ fn statements(
             statements.end = token.span;
             let rest = tokens.peek();
             if rest.kind != TokenKind::End {
-                warnings.push(Warning {
-                    file: source.name.into(),
-                    line: source.line_and_column(rest.span.start).0,
-                    message: "what follows the `END;` of the input is ignored".into(),
-                });
+                let message = "what follows the `END;` of the input is ignored".into();
+                warn(warnings, source, rest.span.start, message);
             }
             break;
         } else if matches!(word, "random" | "random_real")
@@ -232,7 +227,7 @@ impl Statements {
                 };
                 return Err(Fault::new(token.span, problem));
             }
-            if kind == Kind::PathVariable && self.kinds.values().any(|&k| k == kind) {
+            if kind == Kind::PathVariable && self.counts.contains_key(&kind) {
                 return Err(Fault::expected(
                     token.span,
                     "one path variable",
@@ -251,6 +246,16 @@ impl Statements {
                     "variables either in groups or in `variable` lists",
                     format!("`{word}` after the other kind"),
                 ));
+            }
+            let limit = match kind {
+                Kind::Variable => limits::VARIABLES,
+                Kind::Function => limits::EQUATIONS,
+                _ => limits::OPERATIONS,
+            };
+            let count = self.counts.entry(kind).or_default();
+            *count += 1;
+            if *count > limit.value {
+                return Err(Fault::limit(token.span, limit, "more"));
             }
             self.declared.push((name, kind, token.span));
             self.kinds.insert(name, kind);

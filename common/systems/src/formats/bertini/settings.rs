@@ -2,7 +2,7 @@
 
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::token::{Token, TokenKind, Tokens};
-use crate::formats::{FileSettings, PrecisionHint, Source, Warning};
+use crate::formats::{FileSettings, PrecisionHint, Source, Warning, warn};
 
 /// Reads settings up to and with `END;`.
 pub(super) fn read(
@@ -52,11 +52,10 @@ pub(super) fn read(
                     return Err(Fault::new(value.token.span, What::NotInThisVersion(what)));
                 }
             }
-            _ => warnings.push(Warning {
-                file: source.name.into(),
-                line: source.line_and_column(token.span.start).0,
-                message: format!("the setting {name} has no meaning here and is ignored"),
-            }),
+            _ => {
+                let message = format!("the setting {name} has no meaning here and is ignored");
+                warn(warnings, source, token.span.start, message);
+            }
         }
         tokens.expect_symbol(';', "`;`")?;
     }

@@ -1,0 +1,400 @@
+//! Cauchy endgame: turns around t = 0 until the path closes; the mean of the samples is the endpoint.
+//!
+//! Near t = 0 a path is a power series in t^(1/c), c its winding number. Its
+//! value at 0 is the mean over a closed curve of c turns (Morgan, Sommese,
+//! Wampler 1991; survey, section 6.5). Branch points inside the radius falsify
+//! it: then c different endpoints are joined, and the mean is none of them. The
+//! power sums of the c sheets are analytic in t, so their values at 0 are means
+//! over the same samples; they vanish only if all sheets end at the mean. An
+//! endpoint counts when they do, and when two radii agree on it and on c.
+
+use super::winding::Winding;
+use crate::chart::norm;
+use crate::tracker::settings::Settings;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::scalar::Real;
+use num_complex::Complex64;
+
+/// Samples per turn.
+pub const VERTICES: u32 = 16;
+/// Ratio of successive radii.
+const SHRINKAGE: f64 = 0.125;
+/// A power sum counts as 0 below this part of the largest it could be: sheets that end closer
+/// together than about 1e-6 are told apart by a smaller radius only.
+const COALESCED: f64 = 1e-12;
+/// Means over all samples and over every other one must agree to this before a mean is looked at.
+const RESOLVED: f64 = 1e-3;
+
+/// Where to follow the path next.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Next {
+    /// Along the side of the polygon to this vertex of the circle with this radius.
+    Vertex {
+        /// Radius in t.
+        radius: f64,
+        /// Which vertex, counted from the real axis.
+        vertex: u32,
+    },
+    /// From the first point of the turn (the path is taken back to it) to this smaller real t.
+    Inward(f64),
+    /// Two radii agree.
+    Settled(Settled),
+    /// There is no use in smaller radii.
+    Unsettled,
+}
+
+/// What two radii agreed on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// The endpoint, in the chart.
+    pub endpoint: Vec<Complex64>,
+    /// Turns until the path closed.
+    pub winding_number: u32,
+    /// Estimated relative error.
+    pub accuracy: f64,
+    /// Turns of each homogenising coordinate.
+    pub infinity_turns: Vec<i32>,
+    /// Radius of the last turns.
+    pub radius: f64,
+}
+
+/// The state of one path in the endgame.
+#[derive(Clone, Debug, Default)]
+pub struct Cauchy {
+    radius: f64,
+    start: Vec<Complex64>,
+    start_tangent: Vec<Complex64>,
+    sum: Vec<Complex64>,
+    even_sum: Vec<Complex64>,
+    /// A generic linear form of each sample, for the power sums.
+    samples: Vec<Complex64>,
+    vertex: u32,
+    turns: u32,
+    total_turns: u32,
+    noise: f64,
+    infinity: Vec<Winding>,
+    previous: Option<(u32, Vec<Complex64>)>,
+}
+
+/// A linear form with fixed coefficients without pattern: different points of a generic patch
+/// have different values.
+fn generic_form(x: &[Complex64]) -> Complex64 {
+    let mut stream = RandomStream::new(0, Purpose::Probe, 1);
+    x.iter().map(|z| z * stream.unit()).sum()
+}
+
+/// Largest modulus of the difference.
+pub(crate) fn distance(x: &[Complex64], y: &[Complex64]) -> f64 {
+    x.iter()
+        .zip(y)
+        .fold(0.0f64, |m, (a, b)| m.max((a - b).norm_sqr()))
+        .sqrt()
+}
+
+impl Cauchy {
+    /// Forgets the path before.
+    pub fn clear(&mut self) {
+        self.previous = None;
+        self.total_turns = 0;
+    }
+
+    /// All turns made for this path.
+    pub fn total_turns(&self) -> u32 {
+        self.total_turns
+    }
+
+    /// The mean at this radius, where the path closed after one turn.
+    pub fn closed_after_one_turn(&self) -> Option<&[Complex64]> {
+        match &self.previous {
+            Some((1, mean)) => Some(mean),
+            _ => None,
+        }
+    }
+
+    /// Radius of the present turns.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Where the present turns began: point and tangent at t = radius.
+    pub fn start(&self) -> (&[Complex64], &[Complex64]) {
+        (&self.start, &self.start_tangent)
+    }
+
+    /// The path stands at real t = radius: the turns begin here.
+    ///
+    /// `homogenizing` are the values of the homogenising coordinates at the point.
+    pub fn begin(
+        &mut self,
+        radius: f64,
+        point: &[Complex64],
+        tangent: &[Complex64],
+        noise: f64,
+        homogenizing: &[Complex64],
+    ) -> Next {
+        self.radius = radius;
+        self.start.clear();
+        self.start.extend_from_slice(point);
+        self.start_tangent.clear();
+        self.start_tangent.extend_from_slice(tangent);
+        self.sum.clear();
+        self.sum.extend_from_slice(point);
+        self.even_sum.clear();
+        self.even_sum.extend_from_slice(point);
+        self.samples.clear();
+        self.samples.push(generic_form(point));
+        self.vertex = 0;
+        self.turns = 0;
+        self.noise = noise;
+        self.infinity.resize(homogenizing.len(), Winding::default());
+        for (winding, &z) in self.infinity.iter_mut().zip(homogenizing) {
+            winding.clear();
+            winding.sample(z);
+        }
+        Next::Vertex { radius, vertex: 1 }
+    }
+
+    /// The path stands at the vertex that was asked for. `noise`: relative error of the point.
+    pub fn at_vertex(
+        &mut self,
+        point: &[Complex64],
+        noise: f64,
+        homogenizing: &[Complex64],
+        settings: &Settings,
+    ) -> Next {
+        self.noise = self.noise.max(noise);
+        for (winding, &z) in self.infinity.iter_mut().zip(homogenizing) {
+            winding.sample(z);
+        }
+        self.vertex += 1;
+        if self.vertex < VERTICES {
+            self.add(point);
+            return Next::Vertex {
+                radius: self.radius,
+                vertex: self.vertex + 1,
+            };
+        }
+        self.turns += 1;
+        self.total_turns += 1;
+        self.vertex = 0;
+        let size = norm(point);
+        let closed = (1e-9f64).max(100.0 * self.noise);
+        if distance(point, &self.start) > closed * size {
+            if self.turns >= settings.max_winding_number {
+                self.previous = None;
+                return self.inward(SHRINKAGE, settings);
+            }
+            self.add(point);
+            return Next::Vertex {
+                radius: self.radius,
+                vertex: 1,
+            };
+        }
+        let samples = f64::from(self.turns * VERTICES);
+        let mean: Vec<Complex64> = self.sum.iter().map(|s| s / samples).collect();
+        let even: Vec<Complex64> = self.even_sum.iter().map(|s| s / (0.5 * samples)).collect();
+        let size = norm(&mean);
+        let unresolved = distance(&mean, &even) / size;
+        if unresolved > RESOLVED {
+            self.previous = None;
+            return self.inward(SHRINKAGE, settings);
+        }
+        if let Some(separation) = self.separation(generic_form(&mean), size, unresolved) {
+            // The sheets end apart: a branch point at about separation^c of the radius joins them.
+            self.previous = None;
+            let ratio = (0.25 * separation * separation).clamp(1e-4, SHRINKAGE);
+            return self.inward(ratio, settings);
+        }
+        if let Some((turns, previous)) = &self.previous {
+            let change = distance(&mean, previous) / size;
+            if *turns == self.turns && change <= settings.endgame_tolerance {
+                // The aliasing error falls with the 16th power of the radius, so the newer mean
+                // is better than the change by far; what remains is the noise of the samples.
+                let accuracy = (0.01 * change)
+                    .max(unresolved * unresolved)
+                    .max(self.noise)
+                    .max(f64::EPSILON);
+                return Next::Settled(Settled {
+                    endpoint: mean,
+                    winding_number: self.turns,
+                    accuracy,
+                    infinity_turns: self.infinity.iter().map(Winding::turns).collect(),
+                    radius: self.radius,
+                });
+            }
+        }
+        self.previous = Some((self.turns, mean));
+        self.inward(SHRINKAGE, settings)
+    }
+
+    /// How far apart the sheets end, as a part of how far they are apart at this radius; `None`
+    /// when they end together. `mean`: the generic form at the mean of all samples.
+    fn separation(&self, mean: Complex64, size: f64, unresolved: f64) -> Option<f64> {
+        let spread = self
+            .samples
+            .iter()
+            .fold(0.0f64, |m, y| m.max((y - mean).norm_sqr()))
+            .sqrt();
+        let count = self.samples.len() as f64;
+        let mut largest: Option<f64> = None;
+        for k in 2..=self.turns {
+            let power_sum: Complex64 = self.samples.iter().map(|y| (y - mean).powu(k)).sum();
+            let mut mean_power = (power_sum / count).norm_sqr();
+            Real::sqrt(&mut mean_power);
+            // Rounding errors of the samples, and the error of replacing integrals by sums.
+            let error = f64::from(k) * (COALESCED + 10.0 * self.noise) * size
+                + unresolved * unresolved * size * size / spread;
+            let mut bound = error;
+            let mut scale = 1.0;
+            for _ in 1..k {
+                bound *= spread;
+                scale *= spread;
+            }
+            if mean_power > bound {
+                // At least the k-th root of this part; a lower bound is enough.
+                let part = mean_power / (scale * spread);
+                largest = Some(largest.map_or(part, |l| l.max(part)));
+            }
+        }
+        largest.map(|part| part.min(1.0))
+    }
+
+    fn add(&mut self, point: &[Complex64]) {
+        self.samples.push(generic_form(point));
+        let even = self.vertex.is_multiple_of(2);
+        for (k, z) in point.iter().enumerate() {
+            self.sum[k] += z;
+            if even {
+                self.even_sum[k] += z;
+            }
+        }
+    }
+
+    fn inward(&self, ratio: f64, settings: &Settings) -> Next {
+        let radius = self.radius * ratio;
+        if radius < settings.endgame_min_radius {
+            return Next::Unsettled;
+        }
+        Next::Inward(radius)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_numeric::roots_of_unity::roots_of_unity;
+
+    /// Drives the endgame along x(s) with s^c = t, all sheets known exactly.
+    fn drive(c: u32, path: &dyn Fn(Complex64) -> Vec<Complex64>) -> (Next, u32) {
+        let settings = Settings::default();
+        let fine = roots_of_unity(VERTICES * c);
+        let mut cauchy = Cauchy::default();
+        let root = |r: f64| {
+            // The real c-th root of r, by Newton's method.
+            let mut s: f64 = 1.0;
+            for _ in 0..400 {
+                s -= (s - r / s.powi(c as i32 - 1)) / f64::from(c);
+            }
+            s
+        };
+        let mut radius = 0.05;
+        let mut at = 0u32;
+        let point =
+            |radius: f64, at: u32| path(fine[(at % (VERTICES * c)) as usize] * root(radius));
+        let x = point(radius, 0);
+        let mut next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
+        for _ in 0..10_000 {
+            match next {
+                Next::Vertex { .. } => {
+                    at += 1;
+                    let x = point(radius, at);
+                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &settings);
+                }
+                Next::Inward(r) => {
+                    radius = r;
+                    at = 0;
+                    let x = point(radius, 0);
+                    next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
+                }
+                _ => break,
+            }
+        }
+        (next, cauchy.total_turns())
+    }
+
+    #[test]
+    fn puiseux_series_end_with_their_winding_number_and_limit() {
+        let one = Complex64::new(1.0, 0.0);
+        for c in 1..=6 {
+            let (next, _) = drive(c, &|s| {
+                vec![s * s * (one + s), one * 2.0 + s - s * s / (one - s)]
+            });
+            let Next::Settled(settled) = next else {
+                panic!("c = {c}: {next:?}")
+            };
+            assert_eq!(settled.winding_number, c);
+            assert!(settled.endpoint[0].norm_sqr().sqrt() < 1e-9, "{settled:?}");
+            assert!((settled.endpoint[1] - 2.0).norm_sqr().sqrt() < 1e-9);
+            // x_0 ~ s^2 goes around 0 twice in c turns.
+            assert_eq!(settled.infinity_turns, vec![2]);
+        }
+    }
+
+    #[test]
+    fn endpoints_that_are_only_close_are_told_apart() {
+        // x = 1 +- sqrt(t + d^2) ends at two regular points; large turns see a double one.
+        for distance in [1e-2, 1e-3, 1e-4] {
+            let settings = Settings::default();
+            let circle = roots_of_unity(VERTICES);
+            let mut cauchy = Cauchy::default();
+            let mut last = Complex64::new(1.0, 0.0);
+            // Follows the sheet by continuity, in small steps.
+            let mut follow = |from: Complex64, to: Complex64| {
+                for k in 1..=200 {
+                    let t = from + (to - from) * (f64::from(k) / 200.0);
+                    let square = t + distance * distance;
+                    for _ in 0..60 {
+                        last = 0.5 * (last + square / last);
+                    }
+                }
+                vec![last + 1.0, last * 2.0 - 3.0]
+            };
+            let mut radius = 0.05;
+            let mut t = Complex64::new(radius, 0.0);
+            let x = follow(Complex64::new(1.0, 0.0), t);
+            let mut next = cauchy.begin(radius, &x, &x, 1e-15, &[]);
+            let settled = loop {
+                match next {
+                    Next::Vertex { vertex, .. } => {
+                        let to = circle[(vertex % VERTICES) as usize] * radius;
+                        let x = follow(t, to);
+                        t = to;
+                        next = cauchy.at_vertex(&x, 1e-15, &[], &settings);
+                    }
+                    Next::Inward(r) => {
+                        // After a closed curve the path is where it began.
+                        let to = Complex64::new(r, 0.0);
+                        let x = follow(t, to);
+                        (t, radius) = (to, r);
+                        next = cauchy.begin(radius, &x, &x, 1e-15, &[]);
+                    }
+                    Next::Settled(settled) => break settled,
+                    Next::Unsettled => panic!("unsettled at distance {distance}"),
+                }
+            };
+            assert_eq!(settled.winding_number, 1, "distance {distance}");
+            let error = (settled.endpoint[0] - 1.0).norm_sqr().sqrt() - distance;
+            assert!(error.abs() < 1e-9, "distance {distance}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_branch_point_inside_the_first_radius_is_left_outside() {
+        let one = Complex64::new(1.0, 0.0);
+        let (next, turns) = drive(1, &|t| vec![one + t, one / (t - 0.01)]);
+        let Next::Settled(settled) = next else {
+            panic!("{next:?}")
+        };
+        assert!((settled.endpoint[1] + 100.0).norm_sqr().sqrt() < 1e-6 && turns >= 3);
+    }
+}

@@ -1,0 +1,172 @@
+//! Refiner: Newton's method at the end of a path, one path at a time, and what it shows.
+
+use crate::chart::norm;
+use crate::homotopies::Homotopy;
+use cognate_numeric::lanes::dispatch::{Job, dispatch};
+use cognate_numeric::linear_algebra::condition::condition_number;
+use cognate_numeric::linear_algebra::lu::eliminate;
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::scalar::Complex;
+use cognate_systems::evaluation::{Evaluate, Interpreter};
+use num_complex::Complex64;
+
+/// What is known of an endpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Report {
+    /// Largest |H_i|.
+    pub residual: f64,
+    /// Condition number of the Jacobian.
+    pub condition: f64,
+    /// Estimated relative error.
+    pub accuracy: f64,
+    /// Newton's method converged to rounding error.
+    pub converged: bool,
+}
+
+impl Report {
+    pub(crate) fn unknown() -> Self {
+        Self {
+            residual: f64::INFINITY,
+            condition: f64::INFINITY,
+            accuracy: f64::INFINITY,
+            converged: false,
+        }
+    }
+}
+
+/// Largest modulus in one column.
+fn largest(matrix: &Matrix<f64>, column: usize) -> f64 {
+    (0..matrix.rows())
+        .fold(0.0f64, |m, i| {
+            let size = matrix.at(i, column).norm_sqr();
+            if size > m || size.is_nan() { size } else { m }
+        })
+        .sqrt()
+}
+
+/// One run of Newton's method, compiled for the instruction set: it stands apart from the
+/// lockstep loop, which would otherwise contain it many times.
+struct Newton<'r, 'a, 'p> {
+    refiner: &'r mut Refiner<'a>,
+    point: &'p mut [Complex64],
+    t: Complex64,
+    target: u64,
+    most: u32,
+}
+
+impl Job for Newton<'_, '_, '_> {
+    type Output = Report;
+    #[inline(always)]
+    fn run(self) -> Report {
+        self.refiner
+            .iterate(self.point, self.t, self.target, self.most)
+    }
+}
+
+/// Work space for looking closely at one point.
+pub(crate) struct Refiner<'a> {
+    homotopy: &'a Homotopy,
+    scratch: <Interpreter as Evaluate<f64>>::Scratch,
+    matrix: Matrix<f64>,
+    elimination: Matrix<f64>,
+    x: Vec<Complex<f64>>,
+    p: Vec<Complex<f64>>,
+    dp: Vec<Complex<f64>>,
+}
+
+impl<'a> Refiner<'a> {
+    pub(crate) fn new(homotopy: &'a Homotopy) -> Self {
+        let n = homotopy.dimension();
+        let zero = Complex { re: 0.0, im: 0.0 };
+        Self {
+            homotopy,
+            scratch: Evaluate::<f64>::scratch(homotopy.program(), ()),
+            matrix: Matrix::zeros((), n, n + 2),
+            elimination: Matrix::zeros((), n, n + 2),
+            x: vec![zero; n],
+            p: vec![zero; homotopy.parameter_count()],
+            dp: vec![zero; homotopy.parameter_count()],
+        }
+    }
+
+    /// Newton steps at t = 0 until they no longer shrink; `point` is replaced where they converge.
+    pub(crate) fn refine(&mut self, point: &mut [Complex64], target: u64) -> Report {
+        self.newton(point, Complex64::default(), target, 6)
+    }
+
+    /// The same facts without moving the point.
+    pub(crate) fn look(&mut self, point: &[Complex64], target: u64) -> Report {
+        let mut copy = point.to_vec();
+        self.newton(&mut copy, Complex64::default(), target, 0)
+    }
+
+    /// Condition number of the Jacobian at a point of the path.
+    pub(crate) fn condition_at(&mut self, point: &[Complex64], t: Complex64, target: u64) -> f64 {
+        let mut copy = point.to_vec();
+        self.newton(&mut copy, t, target, 0).condition
+    }
+
+    fn newton(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {
+        dispatch(Newton {
+            refiner: self,
+            point,
+            t,
+            target,
+            most,
+        })
+    }
+
+    #[inline(always)]
+    fn iterate(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {
+        let n = point.len();
+        let native = |z: Complex64| Complex { re: z.re, im: z.im };
+        let (a, b) = self.homotopy.ends(target);
+        let a: Vec<_> = a.map(native).collect();
+        let b: Vec<_> = b.map(native).collect();
+        self.homotopy
+            .path()
+            .at::<f64>((), &native(t), &a, &b, &mut self.p, &mut self.dp);
+        for (x, z) in self.x.iter_mut().zip(&*point) {
+            *x = native(*z);
+        }
+        let mut report = Report::unknown();
+        let mut last = f64::INFINITY;
+        let mut round = 0;
+        loop {
+            self.homotopy.program().linearize(
+                &self.x,
+                &self.p,
+                &self.dp,
+                &mut self.matrix,
+                &mut self.scratch,
+            );
+            report.residual = largest(&self.matrix, n);
+            if round >= most {
+                break; // the matrix of the last point stands for the condition number
+            }
+            self.elimination.clone_from(&self.matrix);
+            eliminate::<f64, 1>(&mut self.elimination, &mut 0.0);
+            let correction = largest(&self.elimination, n) / norm(point);
+            if !(correction <= 0.5 * last || correction <= 1e-12) {
+                break; // not converging, or not a number
+            }
+            for i in 0..n {
+                self.x[i].sub(self.elimination.at(i, n));
+            }
+            report.accuracy = correction.max(f64::EPSILON);
+            report.converged = correction <= 1e-8;
+            round += 1;
+            if correction > 0.5 * last || correction <= f64::EPSILON {
+                round = most; // rounding error is reached
+            }
+            last = correction;
+        }
+        if report.converged {
+            for (z, x) in point.iter_mut().zip(&self.x) {
+                *z = Complex64::new(x.re, x.im);
+            }
+        }
+        report.condition = condition_number(&self.matrix);
+        report
+    }
+}

@@ -1,0 +1,675 @@
+//! Lockstep: many paths at once, one in each lane, always in the same phase of a step.
+//!
+//! Predict; Newton; Newton and tangent from one factorisation; accept or shrink.
+//! Every lane has its own t and step, a rejected lane only shrinks its step, and
+//! a lane whose path has ended takes the next start point with a step of length
+//! 0. So there is no divergence, and no lane ever looks at another: the bits of
+//! a path are those of the same path alone (W = 1 is a width).
+
+use super::lane::{Lane, Phase};
+use super::observer::{Observer, StepEvent};
+use super::outcome::{Failure, PathOutcome};
+use crate::chart::{LEAST_NORM, norm};
+use crate::endgames::cauchy::{self, VERTICES, distance};
+use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use crate::predictor::hermite::weights;
+use crate::refine::Refiner;
+use crate::stage::PreparedStage;
+use crate::step_control::next_step;
+use cognate_numeric::linear_algebra::lu::eliminate;
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::roots_of_unity::roots_of_unity;
+use cognate_numeric::scalar::{Complex, Mask, Real};
+use cognate_systems::evaluation::{Evaluate, Interpreter};
+use num_complex::Complex64;
+use std::ops::Range;
+
+/// A step is accepted when the second Newton correction is at most this part of the first.
+const CONTRACTION: f64 = 0.1;
+/// Largest first correction at which a start point is believed.
+const START_ERROR: f64 = 1e-3;
+/// A refinement is accepted when its second correction is below this: then it is noise.
+const REFINED: f64 = 1e-6;
+
+/// The paths of all lanes: coordinates in the chart, the newest point first.
+struct Batch<R: Real> {
+    x: [Vec<Complex<R>>; 3],
+    tangent: [Vec<Complex<R>>; 3],
+    t: [Complex<R::Control>; 3],
+    candidate: Vec<Complex<R>>,
+    candidate_tangent: Vec<Complex<R>>,
+    target: Complex<R::Control>,
+    /// Wanted length of the next step.
+    h: R::Control,
+    /// Lanes with at least two, three points behind them.
+    two: R::Mask,
+    three: R::Mask,
+    /// Lanes whose next step has length 0.
+    refine: R::Mask,
+    /// Lanes whose last step was not rejected.
+    may_grow: R::Mask,
+    a: Vec<Complex<R>>,
+    b: Vec<Complex<R>>,
+    exchanges: R::Control,
+}
+
+impl<R: Real> Batch<R> {
+    fn new(context: R::Context, dimension: usize, parameters: usize) -> Self {
+        let points = || vec![Complex::<R>::zero(context); dimension];
+        let control = |v: f64| R::Control::from_f64((), v);
+        Self {
+            x: [points(), points(), points()],
+            tangent: [points(), points(), points()],
+            t: std::array::from_fn(|_| Complex::from_f64((), 1.0, 0.0)),
+            candidate: points(),
+            candidate_tangent: points(),
+            target: Complex::from_f64((), 1.0, 0.0),
+            h: control(0.0),
+            two: R::Mask::splat(false),
+            three: R::Mask::splat(false),
+            refine: R::Mask::splat(true),
+            may_grow: R::Mask::splat(true),
+            a: vec![Complex::zero(context); parameters],
+            b: vec![Complex::zero(context); parameters],
+            exchanges: control(0.0),
+        }
+    }
+
+    /// The points behind a lane no longer belong to where it goes.
+    fn forget_history(&mut self, lane: usize) {
+        self.two.set_lane(lane, false);
+        self.three.set_lane(lane, false);
+    }
+
+    fn read(
+        &self,
+        lane: usize,
+        back: usize,
+        point: &mut Vec<Complex64>,
+        tangent: &mut Vec<Complex64>,
+    ) {
+        point.clear();
+        point.extend(self.x[back].iter().map(|z| z.lane(lane)));
+        tangent.clear();
+        tangent.extend(self.tangent[back].iter().map(|z| z.lane(lane)));
+    }
+
+    fn write(&mut self, lane: usize, t: Complex64, point: &[Complex64], tangent: &[Complex64]) {
+        for (z, value) in self.x[0].iter_mut().zip(point) {
+            z.set_lane(lane, *value);
+        }
+        for (z, value) in self.tangent[0].iter_mut().zip(tangent) {
+            z.set_lane(lane, *value);
+        }
+        self.t[0].set_lane(lane, t);
+        self.forget_history(lane);
+    }
+
+    /// The lane's next step has length 0.
+    fn refine(&mut self, lane: usize) {
+        self.refine.set_lane(lane, true);
+    }
+
+    /// The lane's next steps lead to `target`, the first at most `h` long.
+    fn follow(&mut self, lane: usize, target: Complex64, h: f64) {
+        self.target.set_lane(lane, target);
+        self.h.set_lane(lane, h);
+        self.refine.set_lane(lane, false);
+        self.may_grow.set_lane(lane, true);
+    }
+}
+
+/// Tracks the paths of `items`; results in item order.
+pub(crate) struct Lockstep<'a, R: Real> {
+    stage: &'a PreparedStage,
+    context: R::Context,
+    batch: Batch<R>,
+    lanes: Vec<Lane>,
+    scratch: <Interpreter as Evaluate<R>>::Scratch,
+    matrix: Matrix<R>,
+    p: Vec<Complex<R>>,
+    dp: Vec<Complex<R>>,
+    refiner: Refiner<'a>,
+    circle: Vec<Complex64>,
+    items: Range<u64>,
+    next_item: u64,
+    results: Vec<Option<PathResult>>,
+    observer: Option<&'a mut dyn Observer>,
+    point: Vec<Complex64>,
+    tangent: Vec<Complex64>,
+}
+
+/// What one step showed in one lane.
+struct Step {
+    accepted: bool,
+    arrived: bool,
+    correction: f64,
+}
+
+impl<'a, R: Real> Lockstep<'a, R> {
+    #[inline(always)]
+    pub(crate) fn new(
+        stage: &'a PreparedStage,
+        context: R::Context,
+        items: Range<u64>,
+        observer: Option<&'a mut dyn Observer>,
+    ) -> Self {
+        let homotopy = stage.homotopy();
+        let n = homotopy.dimension();
+        let parameters = homotopy.parameter_count();
+        let count = usize::try_from(items.end - items.start).expect("a chunk fits in memory");
+        Self {
+            stage,
+            context,
+            batch: Batch::new(context, n, parameters),
+            lanes: vec![Lane::default(); R::WIDTH],
+            scratch: Evaluate::<R>::scratch(homotopy.program(), context),
+            matrix: Matrix::zeros(context, n, n + 2),
+            p: vec![Complex::zero(context); parameters],
+            dp: vec![Complex::zero(context); parameters],
+            refiner: Refiner::new(homotopy),
+            circle: roots_of_unity(VERTICES),
+            next_item: items.start,
+            results: vec![None; count],
+            items,
+            observer,
+            point: Vec::with_capacity(n),
+            tangent: Vec::with_capacity(n),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn run(mut self) -> Vec<PathResult> {
+        for lane in 0..R::WIDTH {
+            self.refill(lane);
+        }
+        while self.lanes.iter().any(|lane| lane.phase != Phase::Idle) {
+            self.step();
+        }
+        self.results
+            .into_iter()
+            .map(|result| result.expect("every item ends with exactly one result"))
+            .collect()
+    }
+
+    /// Puts the next path into a lane, if there is one.
+    fn refill(&mut self, lane: usize) {
+        while self.next_item < self.items.end {
+            let item = self.next_item;
+            self.next_item += 1;
+            let (origin, target) = self.stage.item(item);
+            let path = &mut self.lanes[lane];
+            path.item = item;
+            path.origin = origin;
+            path.phase = Phase::Starting;
+            path.steps = 0;
+            path.rejections = 0;
+            path.evaluations = 0;
+            path.cauchy.clear();
+            self.batch.exchanges.set_lane(lane, 0.0);
+            let (a, b) = self.stage.homotopy().ends(target);
+            for (slot, value) in self.batch.a.iter_mut().zip(a) {
+                slot.set_lane(lane, value);
+            }
+            for (slot, value) in self.batch.b.iter_mut().zip(b) {
+                slot.set_lane(lane, value);
+            }
+            let one = Complex64::new(1.0, 0.0);
+            match self.stage.start_point(origin) {
+                Some(point) => {
+                    self.point.clear();
+                    self.point.extend_from_slice(&point);
+                    self.batch.write(lane, one, &point, &point);
+                    self.batch.follow(lane, one, 0.0);
+                    self.batch.refine(lane);
+                    return;
+                }
+                None => {
+                    self.point.clear();
+                    self.point
+                        .resize(self.stage.homotopy().dimension(), Complex64::default());
+                    self.fail(lane, one, Failure::InvalidStartPoint);
+                }
+            }
+        }
+        self.lanes[lane].phase = Phase::Idle;
+    }
+
+    /// One step of all lanes.
+    #[inline(always)]
+    fn step(&mut self) {
+        let settings = self.stage.settings();
+        let n = self.batch.candidate.len();
+        let control = |v: f64| R::Control::from_f64((), v);
+
+        // Where to: a step of length h towards the target, or the target itself.
+        let batch = &mut self.batch;
+        let mut way = batch.target.clone();
+        way.sub(&batch.t[0]);
+        let mut remaining = way.norm_sqr();
+        remaining.sqrt();
+        let reaches = remaining.less_equal(&batch.h);
+        let mut ratio = batch.h.clone();
+        ratio.div(&remaining);
+        let mut t = batch.t[0].clone();
+        way.scale(&ratio);
+        t.add(&way);
+        t.select(reaches, &batch.target);
+        t.select(batch.refine, &batch.t[0]);
+
+        // Predict.
+        let w = weights(
+            [&batch.t[0], &batch.t[1], &batch.t[2]],
+            &t,
+            batch.two,
+            batch.three,
+        );
+        let history = if batch.three.any() {
+            3
+        } else if batch.two.any() {
+            2
+        } else {
+            1
+        };
+        for i in 0..n {
+            let mut sum = Complex::<R>::zero(self.context);
+            for k in 0..history {
+                let weight = Complex::from_control(self.context, &w.point[k]);
+                sum.mul_add(&weight, &batch.x[k][i]);
+                let weight = Complex::from_control(self.context, &w.tangent[k]);
+                sum.mul_add(&weight, &batch.tangent[k][i]);
+            }
+            sum.select(batch.refine, &batch.x[0][i]);
+            batch.candidate[i].set(&sum);
+        }
+
+        // Newton; then Newton and tangent from one factorisation.
+        let homotopy = self.stage.homotopy();
+        homotopy.path().at(
+            self.context,
+            &t,
+            &batch.a,
+            &batch.b,
+            &mut self.p,
+            &mut self.dp,
+        );
+        let mut corrections = [control(0.0), control(0.0)];
+        let mut size = control(0.0);
+        for (round, correction) in corrections.iter_mut().enumerate() {
+            homotopy.program().linearize(
+                &batch.candidate,
+                &self.p,
+                &self.dp,
+                &mut self.matrix,
+                &mut self.scratch,
+            );
+            if round == 0 {
+                eliminate::<R, 1>(&mut self.matrix, &mut batch.exchanges);
+            } else {
+                eliminate::<R, 2>(&mut self.matrix, &mut batch.exchanges);
+            }
+            size = control(LEAST_NORM * LEAST_NORM);
+            for i in 0..n {
+                let delta = self.matrix.at(i, n);
+                correction.max(&delta.norm_sqr().control());
+                batch.candidate[i].sub(delta);
+                size.max(&batch.candidate[i].norm_sqr().control());
+            }
+        }
+        for i in 0..n {
+            let tangent = &mut batch.candidate_tangent[i];
+            tangent.set(self.matrix.at(i, n + 1));
+            tangent.neg();
+        }
+        size.sqrt();
+        for correction in &mut corrections {
+            correction.sqrt();
+            correction.div(&size);
+        }
+        let [first, second] = &corrections;
+
+        // Accept: the correction contracts, and what is left of it is below the tolerance.
+        let limit = control(settings.predictor_tolerance);
+        let tolerance = control(settings.tolerance);
+        let mut contracted = control(CONTRACTION);
+        contracted.mul(first);
+        let mut left = second.clone();
+        left.mul(second);
+        let mut allowed = tolerance.clone();
+        allowed.mul(first);
+        let converging = second
+            .less_equal(&contracted)
+            .and(left.less_equal(&allowed));
+        let mut noise = control(0.1);
+        noise.mul(&tolerance);
+        let moved = first
+            .less_equal(&limit)
+            .and(converging.or(second.less_equal(&noise)))
+            .and(batch.refine.not());
+        let refined = second
+            .less_equal(&control(REFINED))
+            .and(first.less_equal(&control(START_ERROR)))
+            .and(batch.refine);
+        let accepted = moved.or(refined);
+        let wanted = next_step(
+            &batch.h,
+            first,
+            &limit,
+            batch.two,
+            batch.three,
+            moved,
+            batch.may_grow,
+        );
+        // A step that only reached its target says little about longer ones: keep the wish.
+        let mut h = wanted;
+        h.min(&control(settings.max_step));
+        h.select(batch.refine, &batch.h);
+        batch.h.set(&h);
+        let refining = batch.refine;
+        batch.may_grow = moved.or(refining);
+
+        // Move: the points behind shift by one.
+        for i in 0..n {
+            for k in (1..3).rev() {
+                let (newer, older) = batch.x.split_at_mut(k);
+                older[0][i].select(moved, &newer[k - 1][i]);
+                let (newer, older) = batch.tangent.split_at_mut(k);
+                older[0][i].select(moved, &newer[k - 1][i]);
+            }
+            batch.x[0][i].select(accepted, &batch.candidate[i]);
+            batch.tangent[0][i].select(accepted, &batch.candidate_tangent[i]);
+        }
+        for k in (1..3).rev() {
+            let (newer, older) = batch.t.split_at_mut(k);
+            older[0].select(moved, &newer[k - 1]);
+        }
+        batch.t[0].select(moved, &t);
+        batch.three = batch.three.or(moved.and(batch.two));
+        batch.two = batch.two.or(moved);
+
+        // What only single paths know: a glance at each, and more where something happened.
+        for lane in 0..R::WIDTH {
+            if self.lanes[lane].phase == Phase::Idle {
+                continue;
+            }
+            let path = &mut self.lanes[lane];
+            path.evaluations += 2;
+            let step = Step {
+                accepted: accepted.lane(lane),
+                arrived: accepted.lane(lane) && reaches.lane(lane),
+                correction: second.lane(lane),
+            };
+            if refining.lane(lane) {
+            } else if step.accepted {
+                path.steps += 1;
+            } else {
+                path.rejections += 1;
+            }
+            if let Some(observer) = &mut self.observer {
+                let event = StepEvent {
+                    phase: path.phase.name(),
+                    t: t.lane(lane),
+                    step: self.batch.h.lane(lane),
+                    accepted: step.accepted,
+                    predictor_error: first.lane(lane),
+                    correction: step.correction,
+                    point: self.batch.x[0].iter().map(|z| z.lane(lane)).collect(),
+                };
+                observer.step(path.origin, event);
+            }
+            self.attend(lane, &step);
+        }
+    }
+
+    /// Decides how one path goes on after a step.
+    fn attend(&mut self, lane: usize, step: &Step) {
+        let settings = self.stage.settings();
+        let phase = self.lanes[lane].phase;
+        let t = self.batch.t[0].lane(lane);
+        let h = self.batch.h.lane(lane);
+        let steps = self.lanes[lane].steps + self.lanes[lane].rejections;
+        if steps > settings.max_steps {
+            self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+            return self.fail_and_refill(lane, t, Failure::TooManySteps);
+        }
+        match phase {
+            Phase::Idle => {}
+            Phase::Starting => {
+                self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                if !step.accepted {
+                    return self.fail_and_refill(lane, t, Failure::InvalidStartPoint);
+                }
+                // With the tangent alone the error is about (h |x'|/|x|)^2 / 2.
+                let speed = norm(&self.tangent) / norm(&self.point);
+                let mut reach = settings.predictor_tolerance;
+                Real::sqrt(&mut reach);
+                let h = (0.5 * reach / speed).min(settings.max_step).max(1e-6);
+                self.batch.follow(lane, Complex64::default(), h);
+                self.lanes[lane].phase = Phase::Approaching;
+            }
+            Phase::Approaching => {
+                if step.arrived {
+                    self.lanes[lane].phase = Phase::Arriving;
+                    self.batch.refine(lane);
+                } else if t.re <= settings.endgame_radius && !(step.accepted && h >= t.re) {
+                    self.lanes[lane].phase = Phase::Settling;
+                    self.batch.refine(lane);
+                } else if h < settings.min_step * t.re.max(settings.endgame_radius) {
+                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                    self.fail_and_refill(lane, t, Failure::StepTooSmall);
+                }
+            }
+            Phase::Arriving => {
+                self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                let report = self
+                    .refiner
+                    .refine(&mut self.point, self.stage.item(self.lanes[lane].item).1);
+                if step.accepted
+                    && report.condition <= settings.singular_condition
+                    && report.converged
+                {
+                    return self.finish(lane, PathOutcome::Regular, report, None, Vec::new());
+                }
+                // Back to the last point before 0, from where the turns begin.
+                self.batch.read(lane, 1, &mut self.point, &mut self.tangent);
+                let before = self.batch.t[1].lane(lane);
+                let (point, tangent) = (
+                    std::mem::take(&mut self.point),
+                    std::mem::take(&mut self.tangent),
+                );
+                self.batch.write(lane, before, &point, &tangent);
+                (self.point, self.tangent) = (point, tangent);
+                if before.re > settings.endgame_boundary {
+                    let boundary = Complex64::new(settings.endgame_boundary, 0.0);
+                    self.batch.follow(lane, boundary, 0.1 * before.re);
+                    self.lanes[lane].phase = Phase::Inward;
+                } else {
+                    self.batch.refine(lane);
+                    self.lanes[lane].phase = Phase::Settling;
+                }
+            }
+            Phase::Inward | Phase::Turning => {
+                if step.arrived {
+                    self.lanes[lane].phase = match phase {
+                        Phase::Inward => Phase::Settling,
+                        _ => Phase::Sampling,
+                    };
+                    self.batch.refine(lane);
+                } else if h < settings.min_step.max(1e-9 * self.modulus(t)) {
+                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                    self.fail_and_refill(lane, t, Failure::StepTooSmall);
+                }
+            }
+            Phase::Settling | Phase::Sampling => {
+                self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                if !step.accepted {
+                    return self.fail_and_refill(lane, t, Failure::EndgameUnsettled);
+                }
+                let homogenizing = self.stage.homotopy().homogenizing(&self.point);
+                let path = &mut self.lanes[lane];
+                let next = if phase == Phase::Settling {
+                    path.cauchy.begin(
+                        t.re,
+                        &self.point,
+                        &self.tangent,
+                        step.correction,
+                        &homogenizing,
+                    )
+                } else {
+                    path.cauchy
+                        .at_vertex(&self.point, step.correction, &homogenizing, settings)
+                };
+                self.obey(lane, next);
+            }
+        }
+    }
+
+    /// Carries out what the endgame wants.
+    fn obey(&mut self, lane: usize, next: cauchy::Next) {
+        let settings = self.stage.settings();
+        let target = self.stage.item(self.lanes[lane].item).1;
+        match next {
+            cauchy::Next::Vertex { radius, vertex } => {
+                let to = self.circle[(vertex % VERTICES) as usize] * radius;
+                let h = self.batch.h.lane(lane).min(radius);
+                let h = if vertex == 1 { h.max(0.1 * radius) } else { h };
+                self.batch.follow(lane, to, h);
+                self.lanes[lane].phase = Phase::Turning;
+            }
+            cauchy::Next::Inward(radius) => {
+                // A path that closed after one turn may simply be regular.
+                if let Some(mean) = self.lanes[lane].cauchy.closed_after_one_turn() {
+                    self.point.clear();
+                    self.point.extend_from_slice(mean);
+                    let report = self.refiner.refine(&mut self.point, target);
+                    let moved = distance(&self.point, mean) / norm(mean);
+                    if report.converged
+                        && report.condition <= settings.singular_condition
+                        && moved < 1e-6
+                    {
+                        return self.finish(
+                            lane,
+                            PathOutcome::Regular,
+                            report,
+                            Some(1),
+                            Vec::new(),
+                        );
+                    }
+                }
+                let path = &self.lanes[lane];
+                let (point, tangent) = path.cauchy.start();
+                let t = Complex64::new(path.cauchy.radius(), 0.0);
+                self.batch.write(lane, t, point, tangent);
+                self.batch
+                    .follow(lane, Complex64::new(radius, 0.0), 0.1 * t.re);
+                self.lanes[lane].phase = Phase::Inward;
+            }
+            cauchy::Next::Settled(settled) => {
+                self.point.clear();
+                self.point.extend_from_slice(&settled.endpoint);
+                let mut report = self.refiner.refine(&mut self.point, target);
+                // A condition number that stops growing towards t = 0 belongs to a regular
+                // endpoint; one that grows with the accuracy of the point to a singular one.
+                let near = self.refiner.condition_at(
+                    self.lanes[lane].cauchy.start().0,
+                    Complex64::new(settled.radius, 0.0),
+                    target,
+                );
+                let moved = distance(&self.point, &settled.endpoint) / norm(&settled.endpoint);
+                let regular = settled.winding_number == 1
+                    && report.converged
+                    && report.condition <= 100.0 * near
+                    && moved <= 1e3 * settled.accuracy.max(1e-12);
+                let outcome = if regular {
+                    PathOutcome::Regular
+                } else {
+                    self.point.clear();
+                    self.point.extend_from_slice(&settled.endpoint);
+                    report = self.refiner.look(&self.point, target);
+                    report.accuracy = settled.accuracy;
+                    PathOutcome::Singular
+                };
+                self.finish(
+                    lane,
+                    outcome,
+                    report,
+                    Some(settled.winding_number),
+                    settled.infinity_turns,
+                );
+            }
+            cauchy::Next::Unsettled => {
+                let t = self.batch.t[0].lane(lane);
+                self.fail_and_refill(lane, t, Failure::EndgameUnsettled);
+            }
+        }
+    }
+
+    fn modulus(&self, t: Complex64) -> f64 {
+        t.norm_sqr().sqrt()
+    }
+
+    /// A path has ended at `self.point`; the lane takes the next one.
+    fn finish(
+        &mut self,
+        lane: usize,
+        outcome: PathOutcome,
+        report: crate::refine::Report,
+        winding_number: Option<u32>,
+        infinity_turns: Vec<i32>,
+    ) {
+        self.record(
+            lane,
+            outcome,
+            Complex64::default(),
+            report,
+            winding_number,
+            infinity_turns,
+        );
+        self.refill(lane);
+    }
+
+    fn fail_and_refill(&mut self, lane: usize, t: Complex64, why: Failure) {
+        self.fail(lane, t, why);
+        self.refill(lane);
+    }
+
+    fn fail(&mut self, lane: usize, t: Complex64, why: Failure) {
+        let report = crate::refine::Report::unknown();
+        self.record(lane, PathOutcome::Failed(why), t, report, None, Vec::new());
+    }
+
+    fn record(
+        &mut self,
+        lane: usize,
+        outcome: PathOutcome,
+        t: Complex64,
+        report: crate::refine::Report,
+        winding_number: Option<u32>,
+        infinity_turns: Vec<i32>,
+    ) {
+        let path = &self.lanes[lane];
+        let result = PathResult {
+            origin: PathIndex(path.origin),
+            attempt: self.stage.attempt(),
+            outcome,
+            endpoint: Coordinates::Double(self.stage.homotopy().endpoint(&self.point)),
+            t,
+            residual: report.residual,
+            condition: report.condition,
+            accuracy: report.accuracy,
+            winding_number,
+            infinity_turns,
+            precision_bits: 53,
+            counts: Counts {
+                steps: path.steps,
+                rejections: path.rejections,
+                evaluations: path.evaluations,
+                exchanges: self.batch.exchanges.lane(lane) as u32,
+                turns: path.cauchy.total_turns(),
+            },
+        };
+        let at = usize::try_from(path.item - self.items.start).expect("a chunk fits in memory");
+        debug_assert!(self.results[at].is_none(), "an item ends once");
+        self.results[at] = Some(result);
+    }
+}

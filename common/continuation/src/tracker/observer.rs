@@ -1,0 +1,39 @@
+//! Events of one path for tests, tables and plots; the tracker itself prints nothing.
+
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// One attempted step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepEvent {
+    /// Phase of the path.
+    pub phase: &'static str,
+    /// Where the step wanted to go.
+    pub t: Complex64,
+    /// Length of the step in t.
+    pub step: f64,
+    /// Whether it was accepted.
+    pub accepted: bool,
+    /// First Newton correction, relative: the predictor's error.
+    pub predictor_error: f64,
+    /// Second Newton correction, relative.
+    pub correction: f64,
+    /// The point after the step, in the chart.
+    pub point: Vec<Complex64>,
+}
+
+/// Is told of every attempted step.
+pub trait Observer {
+    /// One attempted step of the path with this index.
+    fn step(&mut self, origin: u64, event: StepEvent);
+}
+
+/// Keeps every event.
+#[derive(Clone, Debug, Default)]
+pub struct Recorder(pub Vec<StepEvent>);
+
+impl Observer for Recorder {
+    fn step(&mut self, _: u64, event: StepEvent) {
+        self.0.push(event);
+    }
+}

@@ -1,0 +1,3 @@
+//! The services: decode, one call inwards, encode.
+
+pub mod error;
