@@ -15,6 +15,8 @@ use std::time::{Duration, Instant};
 pub trait ChunkTracker: Send + Sync {
     /// One result for each item, in order; the same at every width.
     fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult>;
+    /// How many items there are; a chunk is a range below it.
+    fn items(&self) -> u64;
     /// The width that suits the size of the stage's program and matrix.
     fn preferred_width(&self) -> usize;
 }
@@ -292,6 +294,10 @@ pub(crate) mod tests {
                 "told to break"
             );
             items.map(result_of).collect()
+        }
+
+        fn items(&self) -> u64 {
+            u64::MAX
         }
 
         fn preferred_width(&self) -> usize {

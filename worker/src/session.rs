@@ -42,6 +42,8 @@ pub struct Grant {
     pub lease: LeaseId,
     /// How long it lasts from the moment of granting.
     pub lasts: Duration,
+    /// The chunk is suspected to kill its worker: nothing else may be lost with it.
+    pub alone: bool,
 }
 
 /// What happened.
@@ -124,6 +126,8 @@ pub enum Ending {
 enum Step {
     /// The answer took as long as the lease lasts: renewed before it is begun.
     Confirming,
+    /// To be begun as soon as nothing forbids it: a chunk that is to run alone does.
+    Waiting,
     /// On the threads.
     Tracking,
     /// Finished; `Reports` keeps it. The lease is renewed until the verdict, or until it is lost.
@@ -137,6 +141,7 @@ struct Held {
     /// The lease is known to have been valid at this moment: when the call that was answered was made.
     since: Moment,
     lasts: Duration,
+    alone: bool,
 }
 
 impl Held {
@@ -154,7 +159,7 @@ impl Held {
     }
 
     fn is_unfinished(&self) -> bool {
-        matches!(self.step, Step::Confirming | Step::Tracking)
+        matches!(self.step, Step::Confirming | Step::Waiting | Step::Tracking)
     }
 
     fn is_renewed(&self) -> bool {
@@ -264,10 +269,18 @@ impl<C> Session<C> {
                     held.step = Step::GivingBack(GiveBack::Failed(why), Retry::default());
                 }
             }
-            Input::Reported(lease, _verdict) => {
+            Input::Reported(lease, verdict) => {
                 self.answered();
                 self.reports.answered(&lease);
-                self.held.remove(&lease);
+                match (verdict, self.held.get_mut(&lease)) {
+                    // The chunk is still leased, and its results are of no use: a failure of the chunk.
+                    (Verdict::Invalid(why), Some(held)) => {
+                        held.step = Step::GivingBack(GiveBack::Failed(why), Retry::default());
+                    }
+                    _ => {
+                        self.held.remove(&lease);
+                    }
+                }
             }
             Input::ReportFailed(lease) => {
                 self.unanswered(now);
@@ -301,6 +314,7 @@ impl<C> Session<C> {
         if self.phase != Phase::Ended {
             self.fence(now);
             self.change_phase(now);
+            self.begin_waiting();
             self.renew(now);
             let due = self.reports.send_due(now).into_iter();
             let due = due.map(|(lease, content)| Command::Report(lease, content));
@@ -325,7 +339,7 @@ impl<C> Session<C> {
                         .due_at()
                         .map_or(held.fence(), |due| due.min(held.fence())),
                 ),
-                Step::Reporting | Step::Confirming | Step::Tracking => Some(held.fence()),
+                _ => Some(held.fence()),
             });
         }
         if let Some(due) = self.renewal.due_at() {
@@ -378,12 +392,12 @@ impl<C> Session<C> {
             step: Step::Confirming,
             since,
             lasts: grant.lasts,
+            alone: grant.alone,
         };
         if self.phase != Phase::Working {
             held.step = Step::GivingBack(GiveBack::Draining, Retry::default());
         } else if now < held.fence() {
-            held.step = Step::Tracking;
-            self.commands.push(Command::Track(grant.lease.clone()));
+            held.step = Step::Waiting;
         } else {
             // Long under way: whether it is still ours is asked first. The fence counts from now,
             // because nothing is tracked until the renewal's answer sets it right.
@@ -403,15 +417,14 @@ impl<C> Session<C> {
                 held.since = self.renewal_made;
                 held.lasts = lasts;
                 if confirmed {
-                    held.step = Step::Tracking;
-                    self.commands.push(Command::Track(lease.clone()));
+                    held.step = Step::Waiting;
                 }
             }
             (Renewal::Lost, Step::Reporting) => {
                 // Perhaps it was accepted and the reply was lost: the report says so.
                 self.held.remove(lease);
             }
-            (Renewal::Lost, Step::Confirming) => {
+            (Renewal::Lost, Step::Confirming | Step::Waiting) => {
                 self.held.remove(lease);
             }
             (Renewal::Lost, Step::Tracking) => {
@@ -463,6 +476,21 @@ impl<C> Session<C> {
         }
         if passed(self.give_up_at()) {
             self.begin_draining(Ending::Unreachable, now);
+        }
+    }
+
+    /// Begins what waits, a chunk that is to run alone only when nothing else runs.
+    fn begin_waiting(&mut self) {
+        let tracking = |held: &&Held| matches!(held.step, Step::Tracking);
+        let mut running = self.held.values().filter(tracking).count();
+        let mut alone = self.held.values().filter(tracking).any(|held| held.alone);
+        for (lease, held) in &mut self.held {
+            if matches!(held.step, Step::Waiting) && !alone && (running == 0 || !held.alone) {
+                held.step = Step::Tracking;
+                running += 1;
+                alone = held.alone;
+                self.commands.push(Command::Track(lease.clone()));
+            }
         }
     }
 
@@ -526,12 +554,14 @@ impl<C> Session<C> {
     }
 
     fn free_slots(&self) -> usize {
-        let unfinished = self
-            .held
-            .values()
-            .filter(|held| held.is_unfinished())
-            .count();
-        let for_work = self.limits.chunks_at_once.saturating_sub(unfinished);
+        let unfinished = self.held.values().filter(|held| held.is_unfinished());
+        let (mut count, mut alone) = (0, false);
+        for held in unfinished {
+            count += 1;
+            alone |= held.alone;
+        }
+        let at_once = if alone { 0 } else { self.limits.chunks_at_once };
+        let for_work = at_once.saturating_sub(count);
         let for_results = self
             .limits
             .unacknowledged

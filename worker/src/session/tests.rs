@@ -32,6 +32,7 @@ fn grant(chunk: u64, lasts: u64) -> Grant {
     Grant {
         lease: lease(chunk),
         lasts: milliseconds(lasts),
+        alone: false,
     }
 }
 
@@ -95,6 +96,7 @@ fn a_worker_that_cannot_renew_fences_itself_before_the_lease_ends() {
     let mut now = at(5);
     let mut abandoned = 0;
     while abandoned < 2 {
+        assert!(now < at(2_000), "nothing is fenced");
         now = session.wake_at().unwrap();
         for command in session.poll(now) {
             match command {
@@ -249,6 +251,7 @@ fn draining_does_not_wait_for_a_dead_coordinator() {
     session.poll(at(20));
     let mut now = at(20);
     loop {
+        assert!(now < at(60_000), "it waits for ever");
         now = session.wake_at().unwrap_or(now);
         let commands = session.poll(now);
         if commands.contains(&Command::Exit(Ending::Stopped)) {
@@ -285,6 +288,43 @@ fn an_untrackable_chunk_is_given_back_with_its_reason() {
 }
 
 #[test]
+fn a_report_that_makes_no_sense_is_a_failure_of_its_chunk() {
+    let mut session = with_two_chunks(limits());
+    session.handle(Input::Tracked(lease(1), "one"), at(10));
+    session.poll(at(10));
+    let invalid = Verdict::Invalid("too long".to_owned());
+    session.handle(Input::Reported(lease(1), invalid), at(11));
+    let failed = GiveBack::Failed("too long".to_owned());
+    assert_eq!(session.poll(at(11)), [Command::GiveBack(lease(1), failed)]);
+}
+
+#[test]
+fn a_suspected_chunk_runs_alone() {
+    let mut session = Session::new(limits(), at(0));
+    session.poll(at(0));
+    let suspected = Grant {
+        alone: true,
+        ..grant(2, 100_000)
+    };
+    session.handle(Input::Pulled(vec![grant(1, 100_000), suspected]), at(1));
+    assert_eq!(session.poll(at(1)), [Command::Track(lease(1))]);
+    session.handle(Input::Tracked(lease(1), "one"), at(2));
+    let report = Command::Report(lease(1), Arc::new("one"));
+    let commands = session.poll(at(2));
+    assert_eq!(
+        commands,
+        [Command::Track(lease(2)), report],
+        "and nothing is pulled"
+    );
+    session.handle(Input::Tracked(lease(2), "two"), at(3));
+    let commands = session.poll(at(3));
+    assert!(matches!(
+        commands[..],
+        [Command::Report(..), Command::Pull { free: 2, .. }]
+    ));
+}
+
+#[test]
 fn ends_are_kept() {
     let idle = Limits {
         idle_timeout: Some(milliseconds(700)),
@@ -308,6 +348,7 @@ fn check_end(limits: Limits, dead: bool, expected: Ending, when: Moment) {
     let mut session = Session::<()>::new(limits, at(0));
     let mut now = at(0);
     loop {
+        assert!(now < at(120_000), "it never ends");
         for command in session.poll(now) {
             match command {
                 Command::Pull { .. } if dead => session.handle(Input::PullFailed, now),
@@ -386,6 +427,7 @@ impl Books {
                         grants.push(Grant {
                             lease: Self::named(chunk, *epoch),
                             lasts: self.lasts,
+                            alone: chunk % 7 == 3,
                         });
                     }
                 }

@@ -3,6 +3,8 @@
 //! One trait in this crate's own types; only the implementations below know
 //! what a message looks like. Shared memory on one host will be a second one.
 
+pub mod grpc;
+
 use crate::chunk_runner::TrackedChunk;
 use crate::machine::Machine;
 use crate::reports::Verdict;
@@ -52,6 +54,8 @@ pub struct Lease {
     pub items: Range<u64>,
     /// How long the lease lasts, unless it is renewed.
     pub lasts: Duration,
+    /// Suspected to kill its worker: nothing else should run beside it.
+    pub alone: bool,
 }
 
 /// What a pull brought.
@@ -94,8 +98,8 @@ pub struct Announcement {
     pub machine: Machine,
     /// Threads that track.
     pub threads: usize,
-    /// Lanes of each thread; `None`: chosen for each stage.
-    pub lane_width: Option<usize>,
+    /// Most lanes of each thread.
+    pub lane_width: usize,
 }
 
 /// Why a call has no answer.

@@ -1,0 +1,194 @@
+//! Problem cache: what was made of the stages that this worker has met lately.
+//!
+//! A stage is fetched, checked and compiled once, however many of its chunks
+//! arrive together; the least recently used one makes room for a new one.
+
+use crate::chunk_runner::ChunkTracker;
+use crate::transport::{Lease, Transport, TransportError};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::stage::PreparedStage;
+use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_systems::system::System;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::sync::OnceCell;
+
+/// Why there is no tracker for a chunk.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PrepareFailure {
+    /// It could not be fetched now.
+    #[error(transparent)]
+    Unavailable(TransportError),
+    /// It cannot be tracked here, today or ever.
+    #[error("{0}")]
+    Untrackable(String),
+}
+
+impl From<TransportError> for PrepareFailure {
+    fn from(error: TransportError) -> Self {
+        match error {
+            TransportError::Unavailable(_) => Self::Unavailable(error),
+            TransportError::Refused(text) | TransportError::Malformed(text) => {
+                Self::Untrackable(text)
+            }
+        }
+    }
+}
+
+/// A stage that is ready to be tracked, or the reason why it never will be.
+type Prepared = Result<Arc<dyn ChunkTracker>, String>;
+
+/// The most recently used few of something.
+struct Recent<K, V> {
+    capacity: usize,
+    /// The most recently used last.
+    entries: Vec<(K, Arc<OnceCell<V>>)>,
+}
+
+impl<K: PartialEq, V> Recent<K, V> {
+    fn new(capacity: usize) -> Self {
+        Self {
+            capacity: capacity.max(1),
+            entries: Vec::new(),
+        }
+    }
+
+    /// The cell of this key, perhaps still empty.
+    fn cell(&mut self, key: K) -> Arc<OnceCell<V>> {
+        let found = self.entries.iter().position(|(known, _)| *known == key);
+        let entry = match found {
+            Some(place) => self.entries.remove(place),
+            None => {
+                if self.entries.len() >= self.capacity {
+                    self.entries.remove(0);
+                }
+                (key, Arc::default())
+            }
+        };
+        let cell = Arc::clone(&entry.1);
+        self.entries.push(entry);
+        cell
+    }
+}
+
+/// Prepared stages and the systems they belong to.
+pub struct ProblemCache {
+    systems: Mutex<Recent<Digest, Arc<System>>>,
+    stages: Mutex<Recent<(Digest, Digest), Prepared>>,
+}
+
+impl ProblemCache {
+    /// Keeps up to `capacity` stages.
+    pub fn new(capacity: usize) -> Self {
+        Self {
+            systems: Mutex::new(Recent::new(capacity)),
+            stages: Mutex::new(Recent::new(capacity)),
+        }
+    }
+
+    /// The tracker of a chunk's stage, made now if need be.
+    pub async fn tracker(
+        &self,
+        transport: &dyn Transport,
+        lease: &Lease,
+    ) -> Result<Arc<dyn ChunkTracker>, PrepareFailure> {
+        let key = (lease.problem, lease.stage);
+        let cell = lock(&self.stages).cell(key);
+        let prepared = cell.get_or_try_init(|| self.prepare(transport, lease));
+        prepared.await?.clone().map_err(PrepareFailure::Untrackable)
+    }
+
+    async fn prepare(
+        &self,
+        transport: &dyn Transport,
+        lease: &Lease,
+    ) -> Result<Prepared, PrepareFailure> {
+        let stage = transport.stage(&lease.id.job, lease.id.stage).await?;
+        let cell = lock(&self.systems).cell(lease.problem);
+        let fetch = || async { transport.system(lease.problem).await.map(Arc::new) };
+        let system = Arc::clone(cell.get_or_try_init(fetch).await?);
+        let points = match stored_points(&stage.start_points) {
+            Some(object) => Some((object, Arc::new(transport.points(object).await?))),
+            None => None,
+        };
+        // Compiling may take seconds: not on the threads that talk to the coordinator.
+        let compile = move || {
+            let find = |wanted: Digest| -> Option<Arc<StoredPoints>> {
+                let found = points.as_ref().filter(|(object, _)| *object == wanted);
+                found.map(|(_, points)| Arc::clone(points))
+            };
+            PreparedStage::new(&system, &stage, &find)
+        };
+        // What cannot be compiled is kept as such; what could not be fetched is asked for again.
+        Ok(match tokio::task::spawn_blocking(compile).await {
+            Ok(Ok(prepared)) => Ok(Arc::new(prepared)),
+            Ok(Err(error)) => Err(error.to_string()),
+            Err(panic) => Err(panic.to_string()),
+        })
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The object that the start points are read from, if they are data.
+fn stored_points(points: &StartPoints) -> Option<Digest> {
+    match points {
+        StartPoints::Stored { object, .. } => Some(*object),
+        StartPoints::Selected { base, .. } => stored_points(base),
+        StartPoints::TotalDegree { .. } | StartPoints::Multihomogeneous { .. } => None,
+    }
+}
+
+/// Unknowns up to which sixteen lanes of program and matrix fit in about 64 KB: n (n + 2)
+/// complex numbers of 16 bytes for the matrix alone are 31 KB at n = 10.
+const SIXTEEN_LANES_UP_TO: usize = 10;
+
+impl ChunkTracker for PreparedStage {
+    fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
+        PreparedStage::track(self, items, width)
+    }
+
+    fn items(&self) -> u64 {
+        PreparedStage::items(self)
+    }
+
+    fn preferred_width(&self) -> usize {
+        if self.homotopy().dimension() <= SIXTEEN_LANES_UP_TO {
+            16
+        } else {
+            8
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_recently_used_makes_room() {
+        let mut recent = Recent::<u32, u32>::new(2);
+        for key in [1, 2] {
+            recent.cell(key).set(key).unwrap();
+        }
+        assert!(recent.cell(1).initialized());
+        assert!(!recent.cell(3).initialized(), "new; 2 had to go");
+        assert!(recent.cell(1).initialized());
+        assert!(!recent.cell(2).initialized());
+    }
+
+    #[test]
+    fn stored_points_are_found_under_a_selection() {
+        let object = Digest([7; 32]);
+        let stored = StartPoints::Stored { object, count: 3 };
+        let selected = StartPoints::Selected {
+            base: Box::new(stored),
+            indices: vec![0, 2],
+        };
+        assert_eq!(stored_points(&selected), Some(object));
+        let degrees = vec![2, 2];
+        assert_eq!(stored_points(&StartPoints::TotalDegree { degrees }), None);
+    }
+}

@@ -1,0 +1,451 @@
+//! gRPC over TCP or a Unix socket: the calls of a worker as messages.
+//!
+//! Connections are made when they are needed and again when they broke; where
+//! several coordinators are named, a call without an answer is made to the next.
+
+use super::{Announcement, GiveBack, Lease, LeaseId, Pulled, Renewal, Transport, TransportError};
+use crate::chunk_runner::TrackedChunk;
+use crate::config::{Address, Config};
+use crate::reports::Verdict;
+use async_trait::async_trait;
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::work::{Stage, StageId};
+use cognate_numeric::NUMERICS_REVISION;
+use cognate_protocol::error::ProtocolError;
+use cognate_protocol::limits::OBJECT_BYTES;
+use cognate_protocol::v1::worker_api_client::WorkerApiClient;
+use cognate_protocol::{PROTOCOL_VERSION, digest, from_proto, to_proto, v1};
+use cognate_systems::system::System;
+use std::future::Future;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+use tonic::transport::{Channel, Endpoint, Uri};
+use tonic::{Code, Status};
+
+type Client = WorkerApiClient<Channel>;
+
+/// How long a coordinator may take to accept a connection.
+const CONNECT: Duration = Duration::from_secs(5);
+/// A connection that is silent for so long is asked whether it lives, also while idle.
+const KEEP_ALIVE: Duration = Duration::from_secs(10);
+/// And is given up if it does not answer within this.
+const KEEP_ALIVE_ANSWER: Duration = Duration::from_secs(10);
+/// A call that should be answered at once is given up after this.
+const ANSWER: Duration = Duration::from_secs(20);
+/// A report may be large and is durable before it is answered.
+const REPORT_ANSWER: Duration = Duration::from_secs(120);
+
+/// Why an address cannot be used at all.
+#[derive(Debug, thiserror::Error)]
+#[error("{address} cannot be used as an address: {source}")]
+pub struct UnusableAddress {
+    address: Address,
+    source: tonic::transport::Error,
+}
+
+/// Calls by gRPC.
+pub struct Grpc {
+    clients: Vec<Client>,
+    /// The client that answered last.
+    current: AtomicUsize,
+    identity: v1::WorkerIdentity,
+    machine: v1::Machine,
+}
+
+impl Grpc {
+    /// Prepares the connections; none is made yet. Must be called within a tokio runtime.
+    pub fn new(config: &Config, announcement: &Announcement) -> Result<Self, UnusableAddress> {
+        let clients = config
+            .coordinators
+            .iter()
+            .map(|address| client(address, config.message_bytes))
+            .collect::<Result<Vec<_>, _>>()?;
+        assert!(!clients.is_empty(), "a configuration names a coordinator");
+        let machine = &announcement.machine;
+        Ok(Self {
+            clients,
+            current: AtomicUsize::new(0),
+            identity: v1::WorkerIdentity {
+                worker: announcement.worker.clone(),
+                session: announcement.session.clone(),
+            },
+            machine: v1::Machine {
+                version: env!("CARGO_PKG_VERSION").to_owned(),
+                protocol_version: PROTOCOL_VERSION,
+                numerics_revision: NUMERICS_REVISION,
+                instruction_set: machine.instruction_set.name().to_owned(),
+                lane_width: u32::try_from(announcement.lane_width).unwrap_or(u32::MAX),
+                threads: u32::try_from(announcement.threads).unwrap_or(u32::MAX),
+                host: machine.host.clone(),
+                transport: "grpc".to_owned(),
+            },
+        })
+    }
+
+    fn identity(&self) -> Option<v1::WorkerIdentity> {
+        Some(self.identity.clone())
+    }
+
+    /// Makes a call to the coordinator that answered last; after a failure the next one is asked.
+    async fn call<T, F>(
+        &self,
+        patience: Duration,
+        call: impl FnOnce(Client) -> F + Send,
+    ) -> Result<T, TransportError>
+    where
+        F: Future<Output = Result<T, Status>> + Send,
+    {
+        let current = self.current.load(Ordering::Relaxed);
+        let client = self.clients[current % self.clients.len()].clone();
+        let error = match tokio::time::timeout(patience, call(client)).await {
+            Ok(Ok(answer)) => return Ok(answer),
+            Ok(Err(status)) => explain(&status),
+            Err(_) => {
+                TransportError::Unavailable(format!("no answer within {} s", patience.as_secs()))
+            }
+        };
+        if matches!(error, TransportError::Unavailable(_)) {
+            // Of several calls that fail at once, one moves on.
+            let _ = self.current.compare_exchange(
+                current,
+                current.wrapping_add(1),
+                Ordering::Relaxed,
+                Ordering::Relaxed,
+            );
+        }
+        Err(error)
+    }
+}
+
+fn client(address: &Address, message_bytes: usize) -> Result<Client, UnusableAddress> {
+    let uri = match address {
+        Address::Tcp(authority) => format!("http://{authority}"),
+        // The host is never looked up: the connector below goes to the socket.
+        Address::Unix(_) => "http://localhost".to_owned(),
+    };
+    let endpoint = Endpoint::from_shared(uri)
+        .map_err(|source| UnusableAddress {
+            address: address.clone(),
+            source,
+        })?
+        .connect_timeout(CONNECT)
+        .http2_keep_alive_interval(KEEP_ALIVE)
+        .keep_alive_timeout(KEEP_ALIVE_ANSWER)
+        .keep_alive_while_idle(true)
+        .tcp_nodelay(true);
+    let channel = match address {
+        Address::Tcp(_) => endpoint.connect_lazy(),
+        Address::Unix(path) => {
+            let path = path.clone();
+            endpoint.connect_with_connector_lazy(tower::service_fn(move |_: Uri| {
+                let path = path.clone();
+                async move {
+                    let stream = tokio::net::UnixStream::connect(path).await?;
+                    Ok::<_, std::io::Error>(hyper_util::rt::TokioIo::new(stream))
+                }
+            }))
+        }
+    };
+    Ok(Client::new(channel)
+        .max_decoding_message_size(message_bytes)
+        .max_encoding_message_size(message_bytes))
+}
+
+/// Which errors are worth asking again.
+fn explain(status: &Status) -> TransportError {
+    let mut text = status.message().to_owned();
+    let mut source = std::error::Error::source(status);
+    while let Some(cause) = source {
+        // The innermost cause is what a person can act on ("connection refused").
+        text = cause.to_string();
+        source = cause.source();
+    }
+    if text.is_empty() {
+        text = status.code().description().to_owned();
+    }
+    match status.code() {
+        Code::InvalidArgument
+        | Code::NotFound
+        | Code::AlreadyExists
+        | Code::PermissionDenied
+        | Code::Unauthenticated
+        | Code::FailedPrecondition
+        | Code::OutOfRange
+        | Code::Unimplemented
+        | Code::DataLoss => TransportError::Refused(text),
+        Code::Ok
+        | Code::Cancelled
+        | Code::Unknown
+        | Code::DeadlineExceeded
+        | Code::ResourceExhausted
+        | Code::Aborted
+        | Code::Internal
+        | Code::Unavailable => TransportError::Unavailable(text),
+    }
+}
+
+impl From<ProtocolError> for TransportError {
+    fn from(error: ProtocolError) -> Self {
+        Self::Malformed(error.to_string())
+    }
+}
+
+fn lease_id_to_proto(lease: &LeaseId) -> v1::LeaseId {
+    v1::LeaseId {
+        job: lease.job.clone(),
+        stage: lease.stage.0,
+        chunk: lease.chunk,
+        epoch: lease.epoch,
+    }
+}
+
+fn lease_from_proto(lease: v1::Lease) -> Result<Lease, ProtocolError> {
+    let id = lease.id.ok_or_else(|| ProtocolError::missing("id"))?;
+    let end = lease
+        .first
+        .checked_add(lease.count)
+        .ok_or_else(|| ProtocolError::invalid("count", lease.count, "a range of 64-bit numbers"))?;
+    Ok(Lease {
+        id: LeaseId {
+            job: id.job,
+            stage: StageId(id.stage),
+            chunk: id.chunk,
+            epoch: id.epoch,
+        },
+        problem: from_proto::digest("problem", &lease.problem)?,
+        stage: from_proto::digest("stage_digest", &lease.stage_digest)?,
+        items: lease.first..end,
+        lasts: Duration::from_millis(lease.duration_ms.into()),
+        alone: lease.alone,
+    })
+}
+
+fn verdict_from_proto(verdict: v1::ReportVerdict) -> Result<Verdict, TransportError> {
+    match verdict.verdict() {
+        v1::Verdict::Accepted => Ok(Verdict::Accepted),
+        v1::Verdict::AlreadyAccepted => Ok(Verdict::AlreadyAccepted),
+        v1::Verdict::Stale => Ok(Verdict::Stale),
+        v1::Verdict::HashDiffers => Ok(Verdict::HashDiffers),
+        v1::Verdict::Invalid => Ok(Verdict::Invalid(verdict.message)),
+        v1::Verdict::Unspecified => Err(TransportError::Malformed("an unknown verdict".to_owned())),
+    }
+}
+
+fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+#[async_trait]
+impl Transport for Grpc {
+    async fn pull(
+        &self,
+        sequence: u64,
+        free: usize,
+        wait: Duration,
+    ) -> Result<Pulled, TransportError> {
+        let request = v1::PullRequest {
+            identity: self.identity(),
+            sequence,
+            free_slots: u32::try_from(free).unwrap_or(u32::MAX),
+            wait_ms: u32::try_from(wait.as_millis()).unwrap_or(u32::MAX),
+            machine: Some(self.machine.clone()),
+        };
+        let call = |mut client: Client| async move { client.pull(request).await };
+        let response = self.call(wait + ANSWER, call).await?.into_inner();
+        let leases = response.leases.into_iter().enumerate();
+        let leases = leases.map(|(number, lease)| {
+            lease_from_proto(lease).map_err(|error| error.within(format!("leases[{number}]")))
+        });
+        Ok(Pulled {
+            leases: leases.collect::<Result<_, _>>()?,
+            refused: (!response.refused.is_empty()).then_some(response.refused),
+            draining: response.draining,
+        })
+    }
+
+    async fn renew(&self, leases: &[LeaseId]) -> Result<Vec<Renewal>, TransportError> {
+        let request = v1::RenewRequest {
+            identity: self.identity(),
+            leases: leases.iter().map(lease_id_to_proto).collect(),
+        };
+        let call = |mut client: Client| async move { client.renew(request).await };
+        let renewals = self.call(ANSWER, call).await?.into_inner().renewals;
+        if renewals.len() != leases.len() {
+            let (found, asked) = (renewals.len(), leases.len());
+            let text = format!("{found} renewals for {asked} leases");
+            return Err(TransportError::Malformed(text));
+        }
+        let renewals = renewals.into_iter().map(|renewal| {
+            if renewal.held {
+                Renewal::Held(Duration::from_millis(renewal.duration_ms.into()))
+            } else {
+                Renewal::Lost
+            }
+        });
+        Ok(renewals.collect())
+    }
+
+    async fn report(
+        &self,
+        lease: &LeaseId,
+        chunk: &TrackedChunk,
+    ) -> Result<Verdict, TransportError> {
+        let request = v1::ReportRequest {
+            identity: self.identity(),
+            chunks: vec![v1::ChunkReport {
+                lease: Some(lease_id_to_proto(lease)),
+                results: chunk
+                    .results
+                    .iter()
+                    .map(to_proto::path::path_result)
+                    .collect(),
+                cpu_nanoseconds: nanoseconds(chunk.cpu),
+                wall_nanoseconds: nanoseconds(chunk.wall),
+            }],
+        };
+        let call = |mut client: Client| async move { client.report(request).await };
+        let mut verdicts = self.call(REPORT_ANSWER, call).await?.into_inner().verdicts;
+        match (verdicts.pop(), verdicts.pop()) {
+            (Some(verdict), None) => verdict_from_proto(verdict),
+            _ => {
+                let text = "not one verdict for one report".to_owned();
+                Err(TransportError::Malformed(text))
+            }
+        }
+    }
+
+    async fn give_back(&self, leases: &[LeaseId], why: &GiveBack) -> Result<(), TransportError> {
+        let (reason, message) = match why {
+            GiveBack::Draining => (v1::GiveBackReason::Draining, String::new()),
+            GiveBack::Failed(message) => (v1::GiveBackReason::Failed, message.clone()),
+        };
+        let request = v1::GiveBackRequest {
+            identity: self.identity(),
+            leases: leases.iter().map(lease_id_to_proto).collect(),
+            reason: reason.into(),
+            message,
+            leaving: false,
+        };
+        let call = |mut client: Client| async move { client.give_back(request).await };
+        self.call(ANSWER, call).await.map(|_| ())
+    }
+
+    async fn leave(&self) -> Result<(), TransportError> {
+        let request = v1::GiveBackRequest {
+            identity: self.identity(),
+            leases: Vec::new(),
+            reason: v1::GiveBackReason::Draining.into(),
+            message: String::new(),
+            leaving: true,
+        };
+        let call = |mut client: Client| async move { client.give_back(request).await };
+        self.call(ANSWER, call).await.map(|_| ())
+    }
+
+    async fn system(&self, problem: Digest) -> Result<System, TransportError> {
+        let request = v1::GetProblemRequest {
+            digest: to_proto::digest(problem),
+        };
+        let call = |mut client: Client| async move { client.get_problem(request).await };
+        let message = self.call(ANSWER, call).await?.into_inner();
+        let system = from_proto::problem::system(&message)?;
+        let found = digest::of_system(&system);
+        if found == problem {
+            Ok(system)
+        } else {
+            let text = format!("asked for system {problem}, got {found}");
+            Err(TransportError::Malformed(text))
+        }
+    }
+
+    async fn stage(&self, job: &str, stage: StageId) -> Result<Stage, TransportError> {
+        let request = v1::GetStageRequest {
+            job: job.to_owned(),
+            stage: stage.0,
+        };
+        let call = |mut client: Client| async move { client.get_stage(request).await };
+        let message = self.call(ANSWER, call).await?.into_inner();
+        Ok(from_proto::path::stage(&message)?)
+    }
+
+    async fn points(&self, object: Digest) -> Result<StoredPoints, TransportError> {
+        let request = v1::GetObjectRequest {
+            digest: to_proto::digest(object),
+        };
+        let call = |mut client: Client| async move {
+            let mut pieces = client.get_object(request).await?.into_inner();
+            let mut bytes = Vec::new();
+            while let Some(piece) = pieces.message().await? {
+                bytes.extend_from_slice(&piece.data);
+                if bytes.len() as u64 > OBJECT_BYTES.value {
+                    return Err(Status::out_of_range("the object is larger than any may be"));
+                }
+            }
+            Ok(bytes)
+        };
+        let bytes = self.call(REPORT_ANSWER, call).await?;
+        let found = digest::of_bytes(&bytes);
+        if found != object {
+            let text = format!("asked for object {object}, got {found}");
+            return Err(TransportError::Malformed(text));
+        }
+        StoredPoints::from_bytes(&bytes)
+            .map_err(|error| TransportError::Malformed(error.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_worth_asking_again_are_told_apart() {
+        let check = |status: Status, expected: TransportError| {
+            assert_eq!(explain(&status), expected);
+        };
+        check(
+            Status::unavailable("down"),
+            TransportError::Unavailable("down".to_owned()),
+        );
+        check(
+            Status::not_found("no such stage"),
+            TransportError::Refused("no such stage".to_owned()),
+        );
+        let refused = std::io::Error::new(std::io::ErrorKind::ConnectionRefused, "refused");
+        let mut status = Status::unavailable("transport error");
+        status.set_source(std::sync::Arc::new(refused));
+        check(status, TransportError::Unavailable("refused".to_owned()));
+    }
+
+    #[test]
+    fn a_lease_is_checked() {
+        let lease = v1::Lease {
+            id: Some(v1::LeaseId {
+                job: "j".to_owned(),
+                stage: 3,
+                chunk: 4,
+                epoch: 5,
+            }),
+            problem: vec![1; 32].into(),
+            first: 10,
+            count: 7,
+            duration_ms: 1500,
+            stage_digest: vec![2; 32].into(),
+            alone: false,
+        };
+        let read = lease_from_proto(lease.clone()).unwrap();
+        assert_eq!(read.items, 10..17);
+        assert_eq!(read.lasts, Duration::from_millis(1500));
+        assert_eq!(read.id.to_string(), "j/3/4/5");
+        let check = |broken: v1::Lease, field: &str| {
+            assert_eq!(lease_from_proto(broken).unwrap_err().field(), field);
+        };
+        let (mut no_id, mut short, mut endless) = (lease.clone(), lease.clone(), lease);
+        no_id.id = None;
+        short.problem = vec![1; 31].into();
+        endless.count = u64::MAX;
+        check(no_id, "id");
+        check(short, "problem");
+        check(endless, "count");
+    }
+}
