@@ -1,3 +1,10 @@
 //! Chunks: who gets what, how large, until when.
+//!
+//! Plain decisions only. Whose turn it is, the ledger decides where it can see
+//! all jobs at once (virtual time per tenant, then per job); how large a chunk
+//! is cut, [`sizing`]; what becomes of one that no worker survives, [`expiry`];
+//! the numbers behind it, [`leasing`].
 
+pub mod expiry;
+pub mod leasing;
 pub mod sizing;

@@ -1,0 +1,114 @@
+//! What becomes of a chunk that keeps losing its workers: split down to the path at fault.
+//!
+//! A lost lease is a suspicion, not a verdict: the machine may have failed, or
+//! another chunk beside it. At the limit a chunk is split, and its pieces are
+//! leased alone; a piece needs one more suspicion to be split again, a single
+//! path as many as a fresh chunk before it is named.
+
+use super::leasing::Policy;
+use crate::ledger::identity::ItemRange;
+use crate::ledger::rows::{ChunkRow, Piece};
+use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::work::Stage;
+use num_complex::Complex64;
+
+/// What is done with a suspect.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Sentence {
+    /// It is cut into these pieces.
+    Split(Vec<Piece>),
+    /// It is one path, and that path is named as failed.
+    Condemn,
+}
+
+/// What is done with a ready chunk whose suspicions have reached the limit.
+pub fn sentence(chunk: &ChunkRow, policy: &Policy) -> Sentence {
+    let ItemRange { first, last } = chunk.items;
+    let items = chunk.items.len();
+    if items <= 1 {
+        return Sentence::Condemn;
+    }
+    let pieces = policy.split_into.clamp(2, items);
+    let cut = |k: u64| {
+        let offset = u128::from(items) * u128::from(k) / u128::from(pieces);
+        first + u64::try_from(offset).unwrap_or(items)
+    };
+    let piece = |k: u64| {
+        let items = ItemRange {
+            first: cut(k),
+            last: if k + 1 == pieces { last } else { cut(k + 1) },
+        };
+        Piece {
+            items,
+            suspicions: match items.len() {
+                1 => 0,
+                _ => policy.suspicion_limit.saturating_sub(1),
+            },
+            alone: true,
+        }
+    };
+    Sentence::Split((0..pieces).map(piece).collect())
+}
+
+/// The result of a path that no worker survived.
+pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
+    PathResult {
+        origin: PathIndex(stage.origin(item)),
+        attempt: stage.attempt,
+        outcome: PathOutcome::Failed(Failure::KilledItsWorker),
+        endpoint: Coordinates::Double(Vec::new()),
+        t: Complex64::new(1.0, 0.0),
+        residual: f64::INFINITY,
+        condition: f64::INFINITY,
+        accuracy: f64::INFINITY,
+        winding_number: None,
+        infinity_turns: Vec::new(),
+        precision_bits: 53,
+        counts: Counts::default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ledger::identity::{ChunkId, Epoch, JobId};
+    use crate::ledger::memory::make_up;
+    use crate::ledger::rows::ChunkState;
+    use cognate_continuation::work::StageId;
+
+    fn chunk(first: u64, last: u64) -> ChunkRow {
+        ChunkRow {
+            chunk: ChunkId {
+                job: JobId(1),
+                stage: StageId(0),
+                first,
+            },
+            items: ItemRange { first, last },
+            state: ChunkState::Ready,
+            epoch: Epoch(3),
+            suspicions: 3,
+            alone: false,
+        }
+    }
+
+    #[test]
+    fn pieces_make_up_the_chunk() {
+        for items in [2, 3, 7, 8, 9, 64, 1001] {
+            let whole = chunk(5, 5 + items);
+            let Sentence::Split(pieces) = sentence(&whole, &Policy::default()) else {
+                panic!("more than one path is split");
+            };
+            assert!(make_up(pieces.iter().map(|p| p.items), whole.items));
+            assert_eq!(pieces.len() as u64, items.min(8));
+            for piece in pieces {
+                assert!(piece.alone);
+                assert_eq!(piece.suspicions, if piece.items.len() == 1 { 0 } else { 2 });
+            }
+        }
+        assert_eq!(
+            sentence(&chunk(5, 6), &Policy::default()),
+            Sentence::Condemn
+        );
+    }
+}

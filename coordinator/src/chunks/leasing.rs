@@ -1,0 +1,67 @@
+//! Policy: the numbers by which chunks are leased, renewed and taken back.
+
+use super::sizing::Sizing;
+use crate::ledger::identity::{RequestId, WorkerId};
+use crate::ledger::rows::LeaseRequest;
+
+/// The numbers by which chunks are leased, renewed and taken back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Policy {
+    /// How long a worker keeps a chunk without renewal, in milliseconds. Default 15,000: a worker
+    /// renews every third of it, so that two lost renewals are survived; a killed worker's chunks
+    /// wait no longer than this.
+    pub lease_ms: u64,
+    /// How long a coordinator keeps the right to drive a job without renewal, in milliseconds.
+    /// Default 10,000.
+    pub steward_ms: u64,
+    /// How often expired leases are looked for, in milliseconds. Default 1000.
+    pub expiry_ms: u64,
+    /// So many suspicions on different leases isolate a chunk. Default 3: one is a machine that
+    /// was switched off, two a bad day.
+    pub suspicion_limit: u32,
+    /// Into how many pieces an isolated chunk is split. Default 8: a chunk of 512 paths is down to
+    /// one path after three rounds.
+    pub split_into: u64,
+    /// A job has at most this many chunks with workers. Default 20,000.
+    pub in_flight_limit: u32,
+    /// How large chunks are.
+    pub sizing: Sizing,
+}
+
+impl Default for Policy {
+    fn default() -> Self {
+        Self {
+            lease_ms: 15_000,
+            steward_ms: 10_000,
+            expiry_ms: 1000,
+            suspicion_limit: 3,
+            split_into: 8,
+            in_flight_limit: 20_000,
+            sizing: Sizing::default(),
+        }
+    }
+}
+
+impl Policy {
+    /// What a worker's question asks of the ledger.
+    pub fn request(
+        &self,
+        worker: WorkerId,
+        request: RequestId,
+        numerics_revision: u32,
+        threads: u32,
+        slots: u32,
+    ) -> LeaseRequest {
+        LeaseRequest {
+            worker,
+            request,
+            numerics_revision,
+            threads,
+            slots,
+            duration_ms: self.lease_ms,
+            sizing: self.sizing,
+            suspicion_limit: self.suspicion_limit,
+            in_flight_limit: self.in_flight_limit,
+        }
+    }
+}

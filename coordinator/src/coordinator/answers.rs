@@ -1,0 +1,323 @@
+//! What clients ask: progress, results, lists, explanations.
+
+use super::{Coordinator, CoordinatorError, job_row};
+use crate::jobs::planning::Planned;
+use crate::jobs::progress::JobProgress;
+use crate::ledger::identity::JobId;
+use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
+use crate::results::summary::{SOLUTIONS, Summary};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::Stage;
+use cognate_solutions::classification::{Tolerances, Verdict, classify};
+use cognate_solutions::point_shape::PointShape;
+use cognate_solutions::solution_set::SolutionSet;
+use serde_json::json;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::mpsc;
+use tokio::time::{sleep, timeout};
+
+/// Clients that watch hear of a change at most this often.
+const SHORTEST: Duration = Duration::from_millis(50);
+/// ... and at least this often: another coordinator may have changed something.
+const LONGEST: Duration = Duration::from_secs(1);
+
+/// One path of a finished job.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClassifiedPath {
+    /// Its last result.
+    pub result: PathResult,
+    /// Its class.
+    pub verdict: Verdict,
+    /// The solution that it ended at, by its index among all solutions.
+    pub solution: Option<u64>,
+}
+
+/// What was planned and why, and what became of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Explanation {
+    /// For people.
+    pub text: String,
+    /// For programs: one JSON object.
+    pub json: String,
+}
+
+/// What a stage is for, in words.
+fn purpose(stage: &Stage) -> String {
+    match stage.attempt {
+        0 => "tracking".to_owned(),
+        attempt => format!("tracking again, more carefully ({attempt})"),
+    }
+}
+
+impl Coordinator {
+    /// How far a job is.
+    pub async fn progress(&self, job: JobId) -> Result<JobProgress, CoordinatorError> {
+        let row = job_row(&*self.ledger, job).await?;
+        let stages = self.ledger.stages(job).await?;
+        let mut purposes = HashMap::new();
+        for stage in &stages {
+            let definition = self.stage_of(stage.definition).await?;
+            purposes.insert(stage.stage, purpose(&definition));
+        }
+        let now = self.ledger.now().await?;
+        Ok(JobProgress::new(&row, &stages, now, |stage: &StageRow| {
+            purposes.get(&stage.stage).cloned().unwrap_or_default()
+        }))
+    }
+
+    /// A job's progress: at once, then after every change; the last is the end.
+    pub fn watch(
+        self: &Arc<Self>,
+        job: JobId,
+    ) -> mpsc::Receiver<Result<JobProgress, CoordinatorError>> {
+        let (sender, receiver) = mpsc::channel(4);
+        let coordinator = Arc::clone(self);
+        tokio::spawn(async move {
+            let mut changes = coordinator.changes();
+            let mut last: Option<JobProgress> = None;
+            loop {
+                changes.mark_unchanged();
+                let progress = coordinator.progress(job).await;
+                let ends = progress.as_ref().map_or(true, |p| p.state.has_ended());
+                let news = match (&progress, &last) {
+                    (Ok(now), Some(before)) => {
+                        (now.state, &now.stages) != (before.state, &before.stages)
+                            || now.elapsed_ms >= before.elapsed_ms + 1000
+                    }
+                    _ => true,
+                };
+                if news {
+                    last = progress.as_ref().ok().cloned();
+                    if sender.send(progress).await.is_err() {
+                        return;
+                    }
+                }
+                if ends {
+                    return;
+                }
+                tokio::select! {
+                    () = sender.closed() => return,
+                    () = sleep(SHORTEST) => {}
+                }
+                tokio::select! {
+                    () = sender.closed() => return,
+                    // A change, or not: the ledger says what there is.
+                    _ = timeout(LONGEST, changes.changed()) => {}
+                }
+            }
+        });
+        receiver
+    }
+
+    /// The latest jobs, newest first, each with its stages.
+    pub async fn jobs(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, CoordinatorError> {
+        let mut jobs = Vec::new();
+        for row in self.ledger.jobs(limit).await?.into_iter().rev() {
+            let stages = self.ledger.stages(row.job).await?;
+            jobs.push((row, stages));
+        }
+        Ok(jobs)
+    }
+
+    /// The workers that were heard of last, latest first.
+    pub async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, CoordinatorError> {
+        Ok(self.ledger.workers(limit).await?)
+    }
+
+    async fn solved(&self, job: JobId) -> Result<JobRow, CoordinatorError> {
+        let row = job_row(&*self.ledger, job).await?;
+        if row.state == JobState::Solved {
+            return Ok(row);
+        }
+        Err(CoordinatorError::NoResult {
+            job,
+            state: row.state,
+            reason: row.reason,
+        })
+    }
+
+    /// The summary of a solved job, as it was written.
+    pub async fn summary(&self, job: JobId) -> Result<(Summary, String), CoordinatorError> {
+        let row = self.solved(job).await?;
+        let missing = || CoordinatorError::NoResult {
+            job,
+            state: row.state,
+            reason: Some("its summary was not written".into()),
+        };
+        let bytes = self.store.get(row.summary.ok_or_else(missing)?).await?;
+        let damaged = |what: String| {
+            CoordinatorError::Problem(format!("the summary of job {job} cannot be read: {what}"))
+        };
+        let text = String::from_utf8(bytes.to_vec()).map_err(|e| damaged(e.to_string()))?;
+        let summary = serde_json::from_str(&text).map_err(|e| damaged(e.to_string()))?;
+        Ok((summary, text))
+    }
+
+    /// The solution sets of a solved job, one for each target.
+    pub async fn solutions(&self, job: JobId) -> Result<Arc<Vec<SolutionSet>>, CoordinatorError> {
+        let row = self.solved(job).await?;
+        let digest = row.solutions.ok_or(CoordinatorError::NoResult {
+            job,
+            state: row.state,
+            reason: Some("its solutions were not written".into()),
+        })?;
+        if let Some(sets) = self.solutions.get(&digest) {
+            return Ok(sets);
+        }
+        let sets: Arc<Vec<SolutionSet>> = Arc::new(self.store.record(&SOLUTIONS, digest).await?);
+        self.solutions.keep(digest, Arc::clone(&sets));
+        Ok(sets)
+    }
+
+    /// All paths of a solved job, by their indices.
+    pub async fn paths(&self, job: JobId) -> Result<Vec<ClassifiedPath>, CoordinatorError> {
+        let row = self.solved(job).await?;
+        let sets = self.solutions(job).await?;
+        let system = self.problem(row.asked.problem).await?;
+        let mut results = Vec::new();
+        for stage in self.ledger.stages(job).await? {
+            let (mut from, first) = (0, results.is_empty());
+            loop {
+                let rows = self
+                    .ledger
+                    .finished_chunks(job, stage.stage, from, 1000)
+                    .await?;
+                let Some(last) = rows.last() else { break };
+                from = last.items.last;
+                for row in rows {
+                    let (ChunkState::Accepted { result, .. } | ChunkState::Failed { result }) =
+                        row.state
+                    else {
+                        continue;
+                    };
+                    for result in self.store.results(&result).await? {
+                        if first {
+                            results.push(result);
+                        } else if let Ok(place) = usize::try_from(result.origin.0)
+                            && place < results.len()
+                        {
+                            results[place] = result;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(classified(results, &sets, &PointShape::of(&system)))
+    }
+
+    /// What was planned and why, and what became of it.
+    pub async fn explain(&self, job: JobId) -> Result<Explanation, CoordinatorError> {
+        let row = job_row(&*self.ledger, job).await?;
+        let planned = Planned::from_bytes(&row.asked.options)?;
+        let progress = self.progress(job).await?;
+        let summary = match row.state {
+            JobState::Solved => Some(self.summary(job).await?.0),
+            _ => None,
+        };
+        let mut lines = vec![
+            format!("job {job}: {} ({})", planned.name, row.state.name()),
+            format!(
+                "problem {}: {} equations in {} variables",
+                planned.problem, planned.equations, planned.variables
+            ),
+            format!(
+                "start {}: {}; {} paths, seed {}",
+                planned.start, planned.why, planned.paths, planned.seed
+            ),
+        ];
+        if !progress.message.is_empty() {
+            lines.push(format!("reason: {}", progress.message));
+        }
+        for stage in &progress.stages {
+            lines.push(format!(
+                "stage {} ({}): {} paths; {} done, {} given up, {} with workers, {} waiting",
+                stage.stage.0,
+                stage.purpose,
+                stage.total,
+                stage.accepted,
+                stage.failed,
+                stage.leased,
+                stage.ready
+            ));
+        }
+        if let Some(summary) = &summary {
+            let paths = &summary.paths;
+            lines.push(format!(
+                "paths: {} finite, {} singular, {} at infinity, {} failed; {} tracked again; \
+                 {} crossings seen, {} came apart",
+                paths.finite,
+                paths.singular,
+                paths.at_infinity,
+                paths.failed,
+                paths.retracked,
+                paths.crossings_found,
+                paths.crossings_resolved
+            ));
+            for (reason, count) in &summary.failures {
+                lines.push(format!("failed: {count} because {reason}"));
+            }
+            lines.extend(summary.warnings.iter().map(|w| format!("warning: {w}")));
+        }
+        let stages: Vec<_> = progress
+            .stages
+            .iter()
+            .map(|stage| {
+                json!({
+                    "stage": stage.stage.0, "purpose": stage.purpose, "paths": stage.total,
+                    "ready": stage.ready, "leased": stage.leased, "accepted": stage.accepted,
+                    "failed": stage.failed,
+                })
+            })
+            .collect();
+        let json = json!({
+            "job": job.to_string(),
+            "name": planned.name,
+            "state": row.state.name(),
+            "reason": row.reason,
+            "problem": planned.problem.to_string(),
+            "start": planned.start,
+            "why": planned.why,
+            "paths": planned.paths,
+            "seed": planned.seed,
+            "stages": stages,
+            "summary": summary,
+        });
+        Ok(Explanation {
+            text: lines.join("\n"),
+            json: json.to_string(),
+        })
+    }
+}
+
+/// Every path with its class and its solution; solutions are counted through all targets.
+fn classified(
+    results: Vec<PathResult>,
+    sets: &[SolutionSet],
+    shape: &PointShape,
+) -> Vec<ClassifiedPath> {
+    let mut solution_of = HashMap::new();
+    let mut failed = HashSet::new();
+    let mut number = 0;
+    for set in sets {
+        for solution in &set.solutions {
+            solution_of.extend(solution.paths.iter().map(|&path| (path, number)));
+            number += 1;
+        }
+        failed.extend(set.failed.iter().map(|f| f.path));
+    }
+    let tolerances = Tolerances::default();
+    results
+        .into_iter()
+        .map(|result| ClassifiedPath {
+            verdict: if failed.contains(&result.origin.0) {
+                Verdict::Failed
+            } else {
+                classify(&result, shape, &tolerances).verdict
+            },
+            solution: solution_of.get(&result.origin.0).copied(),
+            result,
+        })
+        .collect()
+}

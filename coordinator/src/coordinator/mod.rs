@@ -1,0 +1,287 @@
+//! Coordinator: everything that the services call, without sockets and messages.
+//!
+//! Any number of coordinators may share a ledger and a store; each answers any
+//! client and any worker, and drives the jobs that no other drives.
+
+mod answers;
+mod error;
+mod run;
+mod work;
+
+pub use answers::{ClassifiedPath, Explanation};
+pub use error::CoordinatorError;
+pub use work::{Pull, Report};
+
+use crate::chunks::leasing::Policy;
+use crate::jobs::planning::{Planned, STATE, plan_job};
+use crate::ledger::identity::{CoordinatorId, JobId, RequestId, Tenant, WorkerId};
+use crate::ledger::rows::{Cancelled, JobState, NewJob, WorkerSeen};
+use crate::ledger::{Ledger, LedgerError};
+use crate::recent::Recent;
+use crate::results::store::Store;
+use bytes::Bytes;
+use cognate_algorithms::PathAlgorithm;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::{Stage, StageId};
+use cognate_numeric::NUMERICS_REVISION;
+use cognate_protocol::submission::{Options, StartSolutions};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+use tokio::sync::{Notify, watch};
+
+/// Systems, stages and solutions that are kept decoded.
+const KEPT: usize = 64;
+
+/// A problem that has passed the door: the checked system and the resolved options.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewProblem {
+    /// The system, with the groups and conjugates of the options.
+    pub system: System,
+    /// The options; settings and seed are named.
+    pub options: Options,
+    /// Start solutions that were sent along: the object that the options name.
+    pub start_solutions: Option<Bytes>,
+    /// What of the problem is not followed.
+    pub warnings: Vec<String>,
+}
+
+/// What became of a submission.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Accepted {
+    /// The job.
+    pub job: JobId,
+    /// False when the same request had made it before.
+    pub is_new: bool,
+    /// What a person should know about it.
+    pub warnings: Vec<String>,
+}
+
+/// One coordinator process.
+pub struct Coordinator {
+    ledger: Arc<dyn Ledger>,
+    store: Store,
+    who: CoordinatorId,
+    policy: Policy,
+    /// Something may be leased that could not be before.
+    work: Notify,
+    /// Counts everything that clients may see of jobs.
+    changes: watch::Sender<u64>,
+    /// Jobs that this coordinator drives.
+    drives: Mutex<HashMap<JobId, Arc<Notify>>>,
+    /// A job may want a steward.
+    unattended: Notify,
+    /// What workers said last, and when that was written.
+    seen: Mutex<HashMap<WorkerId, (WorkerSeen, i64)>>,
+    systems: Recent<Digest, System>,
+    stages: Recent<Digest, Stage>,
+    definitions: Recent<(JobId, StageId), Digest>,
+    solutions: Recent<Digest, Vec<SolutionSet>>,
+}
+
+impl Coordinator {
+    /// A coordinator on this ledger and store. [`Self::run`] does what must be done by itself.
+    pub fn new(
+        ledger: Arc<dyn Ledger>,
+        store: Store,
+        who: CoordinatorId,
+        policy: Policy,
+    ) -> Arc<Self> {
+        Arc::new(Self {
+            ledger,
+            store,
+            who,
+            policy,
+            work: Notify::new(),
+            changes: watch::Sender::new(0),
+            drives: Mutex::default(),
+            unattended: Notify::new(),
+            seen: Mutex::default(),
+            systems: Recent::new(KEPT),
+            stages: Recent::new(KEPT),
+            definitions: Recent::new(64 * KEPT),
+            solutions: Recent::new(4),
+        })
+    }
+
+    /// The numbers that it goes by.
+    pub fn policy(&self) -> &Policy {
+        &self.policy
+    }
+
+    /// Its ledger.
+    pub fn ledger(&self) -> &dyn Ledger {
+        &*self.ledger
+    }
+
+    /// Its objects.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    /// Makes a job of a problem. The same request sent again is the same job.
+    pub async fn submit(
+        &self,
+        request: RequestId,
+        tenant: Tenant,
+        problem: NewProblem,
+    ) -> Result<Accepted, CoordinatorError> {
+        let NewProblem {
+            system,
+            options,
+            start_solutions,
+            warnings,
+        } = problem;
+        let start_solutions = match (&options.start_solutions, start_solutions) {
+            (Some(StartSolutions::Object(object)), Some(bytes)) => {
+                if self.store.put(bytes.clone()).await? != *object {
+                    return Err(CoordinatorError::Problem(
+                        "the start solutions are not the object that the options name".into(),
+                    ));
+                }
+                Some(bytes)
+            }
+            (Some(StartSolutions::Object(object)), None) => Some(self.store.get(*object).await?),
+            (Some(StartSolutions::Points(_)), _) => {
+                return Err(CoordinatorError::Problem(
+                    "start solutions must be an object when a job is made of them".into(),
+                ));
+            }
+            (None, _) => None,
+        };
+        // Counting the paths of some starts takes long; it must not hold up the runtime.
+        let planning = tokio::task::spawn_blocking(move || {
+            let plan = plan_job(&system, &options, start_solutions.as_deref());
+            (system, options, plan)
+        });
+        let (system, options, plan) = match planning.await {
+            Ok(done) => done,
+            Err(error) => std::panic::resume_unwind(error.into_panic()),
+        };
+        let plan = plan?;
+        let planned = Planned {
+            name: options.name.clone(),
+            problem: self.store.put_problem(&system).await?,
+            variables: system.variable_count() as u64,
+            equations: system.equation_count() as u64,
+            start: plan.start.to_string(),
+            why: plan.why.clone(),
+            paths: plan.paths,
+            seed: options.seed.unwrap_or_default(),
+            first_state: self
+                .store
+                .put_record(&STATE, &plan.algorithm.snapshot())
+                .await?,
+            warnings: warnings.clone(),
+        };
+        let job = NewJob {
+            tenant,
+            label: options.name.clone(),
+            problem: self.store.put_problem(&plan.system).await?,
+            options: planned.to_bytes(),
+            numerics_revision: NUMERICS_REVISION,
+        };
+        let submitted = self.ledger.submit(request, job).await?;
+        if submitted.is_new {
+            tracing::info!(job = %submitted.job, name = planned.name, start = planned.start,
+                paths = planned.paths, "a job is submitted");
+        }
+        self.unattended.notify_one();
+        self.changed();
+        Ok(Accepted {
+            job: submitted.job,
+            is_new: submitted.is_new,
+            warnings,
+        })
+    }
+
+    /// Ends a job; its state afterwards.
+    pub async fn cancel(&self, job: JobId, reason: &str) -> Result<JobState, CoordinatorError> {
+        let cancelled = self.ledger.cancel(job, reason).await?;
+        tracing::info!(%job, reason, ?cancelled, "a job is cancelled");
+        self.wake_steward(job);
+        self.changed();
+        Ok(match cancelled {
+            Cancelled::Now => JobState::Cancelled,
+            Cancelled::HadEnded(state) => state,
+        })
+    }
+
+    /// Keeps an object of a client: start solutions.
+    pub async fn put_object(&self, bytes: Bytes) -> Result<Digest, CoordinatorError> {
+        Ok(self.store.put(bytes).await?)
+    }
+
+    /// The bytes of an object.
+    pub async fn object(&self, digest: Digest) -> Result<Bytes, CoordinatorError> {
+        Ok(self.store.get(digest).await?)
+    }
+
+    /// The system of a problem.
+    pub async fn problem(&self, digest: Digest) -> Result<Arc<System>, CoordinatorError> {
+        if let Some(system) = self.systems.get(&digest) {
+            return Ok(system);
+        }
+        let system = Arc::new(self.store.problem(digest).await?);
+        self.systems.keep(digest, Arc::clone(&system));
+        Ok(system)
+    }
+
+    /// A stage of a job.
+    pub async fn stage(&self, job: JobId, stage: StageId) -> Result<Arc<Stage>, CoordinatorError> {
+        let digest = match self.definitions.get(&(job, stage)) {
+            Some(digest) => *digest,
+            None => {
+                let rows = self.ledger.stages(job).await?;
+                let row = rows.iter().find(|row| row.stage == stage);
+                let digest = row
+                    .ok_or(CoordinatorError::UnknownStage { job, stage })?
+                    .definition;
+                self.definitions.keep((job, stage), Arc::new(digest));
+                digest
+            }
+        };
+        self.stage_of(digest).await
+    }
+
+    async fn stage_of(&self, definition: Digest) -> Result<Arc<Stage>, CoordinatorError> {
+        if let Some(stage) = self.stages.get(&definition) {
+            return Ok(stage);
+        }
+        let stage = Arc::new(self.store.stage(definition).await?);
+        self.stages.keep(definition, Arc::clone(&stage));
+        Ok(stage)
+    }
+
+    /// Grows with everything that clients may see of jobs.
+    pub fn changes(&self) -> watch::Receiver<u64> {
+        self.changes.subscribe()
+    }
+
+    fn changed(&self) {
+        self.changes.send_modify(|count| *count += 1);
+    }
+
+    fn wake_steward(&self, job: JobId) {
+        let drives = self.drives();
+        if let Some(wake) = drives.get(&job) {
+            wake.notify_one();
+        }
+    }
+
+    fn drives(&self) -> std::sync::MutexGuard<'_, HashMap<JobId, Arc<Notify>>> {
+        self.drives
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
+
+/// The row of a job that must exist.
+async fn job_row(
+    ledger: &dyn Ledger,
+    job: JobId,
+) -> Result<crate::ledger::rows::JobRow, CoordinatorError> {
+    let row = ledger.job(job).await?;
+    Ok(row.ok_or(LedgerError::UnknownJob(job))?)
+}

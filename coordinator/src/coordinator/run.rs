@@ -1,0 +1,177 @@
+//! What a coordinator does by itself: drives jobs and takes back what fell silent.
+
+use super::{Coordinator, CoordinatorError};
+use crate::jobs::drive::{Drive, DriveError, Driven, Tools};
+use crate::ledger::identity::JobId;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::Notify;
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep, timeout};
+use tokio_util::sync::CancellationToken;
+use tokio_util::task::TaskTracker;
+
+/// A driven job is looked at again at least after this time, whoever else may have changed it.
+const LOOK: Duration = Duration::from_secs(1);
+/// ... and at most this often.
+const PAUSE: Duration = Duration::from_millis(5);
+/// After a failure of ledger or store, a job is tried again after this time.
+const RETRY: Duration = Duration::from_secs(1);
+
+impl Coordinator {
+    fn tools(&self) -> Tools<'_> {
+        Tools {
+            ledger: &*self.ledger,
+            store: &self.store,
+            who: &self.who,
+            policy: &self.policy,
+        }
+    }
+
+    /// Works until it is told to stop; then ends what it has begun.
+    pub async fn run(self: Arc<Self>, stop: CancellationToken) {
+        let tasks = TaskTracker::new();
+        let expiry = tasks.track_future(Arc::clone(&self).run_expiry(stop.clone()));
+        let stewards = Arc::clone(&self).run_stewards(stop.clone(), tasks.clone());
+        tokio::join!(expiry, stewards);
+        tasks.close();
+        tasks.wait().await;
+    }
+
+    /// Takes back expired leases.
+    ///
+    /// Not before one lease has passed: while no coordinator was there, no worker could renew,
+    /// and silence was nobody's fault.
+    async fn run_expiry(self: Arc<Self>, stop: CancellationToken) {
+        let grace = Duration::from_millis(self.policy.lease_ms);
+        let every = Duration::from_millis(self.policy.expiry_ms.max(1));
+        tokio::select! {
+            () = stop.cancelled() => return,
+            () = sleep(grace) => {}
+        }
+        let mut ticks = interval(every);
+        ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            tokio::select! {
+                () = stop.cancelled() => return,
+                _ = ticks.tick() => {}
+            }
+            if let Err(error) = self.expire().await {
+                tracing::warn!(%error, "expired leases could not be taken back");
+            }
+        }
+    }
+
+    /// Takes back the leases that have expired by now.
+    pub async fn expire(&self) -> Result<(), CoordinatorError> {
+        let expired = self.ledger.expire().await?;
+        for gone in &expired {
+            tracing::warn!(lease = %gone.lease, worker = %gone.worker,
+                suspicions = gone.suspicions, "a worker fell silent: its chunk goes to another");
+            self.wake_steward(gone.lease.chunk.job);
+        }
+        if !expired.is_empty() {
+            self.work.notify_waiters();
+            self.changed();
+        }
+        Ok(())
+    }
+
+    /// Finds jobs that nobody drives.
+    async fn run_stewards(self: Arc<Self>, stop: CancellationToken, tasks: TaskTracker) {
+        loop {
+            match self.ledger.unfinished_jobs().await {
+                Ok(jobs) => {
+                    for job in jobs {
+                        self.attend(job, &stop, &tasks);
+                    }
+                }
+                Err(error) => tracing::warn!(%error, "the jobs could not be listed"),
+            }
+            tokio::select! {
+                () = stop.cancelled() => return,
+                () = self.unattended.notified() => {}
+                () = sleep(LOOK) => {}
+            }
+        }
+    }
+
+    fn attend(self: &Arc<Self>, job: JobId, stop: &CancellationToken, tasks: &TaskTracker) {
+        let wake = Arc::new(Notify::new());
+        {
+            let mut drives = self.drives();
+            if drives.contains_key(&job) {
+                return;
+            }
+            drives.insert(job, Arc::clone(&wake));
+        }
+        let (coordinator, stop) = (Arc::clone(self), stop.clone());
+        tasks.spawn(async move {
+            let _attended = Attended {
+                coordinator: Arc::clone(&coordinator),
+                job,
+            };
+            if let Err(error) = coordinator.drive(job, &wake, &stop).await {
+                if error.is_fenced() {
+                    tracing::info!(%job, "another coordinator drives the job");
+                } else {
+                    tracing::warn!(%job, %error, "the job is tried again");
+                    sleep(RETRY).await;
+                }
+            }
+        });
+    }
+
+    /// Drives one job until it ends, another coordinator has it, or this one stops.
+    async fn drive(
+        &self,
+        job: JobId,
+        wake: &Notify,
+        stop: &CancellationToken,
+    ) -> Result<(), DriveError> {
+        let tools = self.tools();
+        let Some(mut drive) = Drive::take(&tools, job).await? else {
+            return Ok(());
+        };
+        let renewal = Duration::from_millis(self.policy.steward_ms / 3);
+        let mut renewed = Instant::now();
+        while !stop.is_cancelled() {
+            if renewed.elapsed() >= renewal {
+                if !drive.renew(&tools).await? {
+                    return Ok(());
+                }
+                renewed = Instant::now();
+            }
+            match drive.step(&tools).await? {
+                Driven::Went => {
+                    self.work.notify_waiters();
+                    self.changed();
+                }
+                Driven::Ended => {
+                    self.changed();
+                    return Ok(());
+                }
+                Driven::Waits => {
+                    sleep(PAUSE).await;
+                    tokio::select! {
+                        () = stop.cancelled() => {}
+                        // Woken, or not: the ledger says what there is.
+                        _ = timeout(LOOK.min(renewal), wake.notified()) => {}
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// While it lives, this coordinator drives the job or waits to try again.
+struct Attended {
+    coordinator: Arc<Coordinator>,
+    job: JobId,
+}
+
+impl Drop for Attended {
+    fn drop(&mut self) {
+        self.coordinator.drives().remove(&self.job);
+    }
+}

@@ -1,0 +1,215 @@
+//! What workers call: pull, renew, report, give back.
+
+use super::{Coordinator, CoordinatorError};
+use crate::ledger::identity::{ItemRange, LeaseId, RequestId, WorkerId};
+use crate::ledger::rows::{Completion, GiveBack, Lease, LeaseRequest, Renewal, WorkerSeen};
+use crate::results::store::StoreError;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::Stage;
+use std::time::Duration;
+use tokio::time::{Instant, timeout_at};
+
+/// A worker that says the same again is written down again after this time.
+const SEEN_MS: i64 = 5000;
+/// While a worker waits, the ledger is asked again after this time: another coordinator may have
+/// opened a stage.
+const POLL: Duration = Duration::from_secs(1);
+
+/// A worker asks for chunks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pull {
+    /// What it says about itself.
+    pub worker: WorkerSeen,
+    /// The same for a question that is sent again.
+    pub request: RequestId,
+    /// How many chunks it wants at most.
+    pub slots: u32,
+    /// How long it waits for some.
+    pub wait: Duration,
+}
+
+/// What a worker found out about a chunk.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Its lease.
+    pub lease: LeaseId,
+    /// One result for each item, in order.
+    pub results: Vec<PathResult>,
+    /// CPU time of the tracking, in microseconds.
+    pub cpu_micros: u64,
+}
+
+impl Coordinator {
+    /// Leases chunks to a worker; waits for some, if there are none. A worker that wants none is
+    /// only written down.
+    pub async fn pull(&self, pull: Pull) -> Result<Vec<Lease>, CoordinatorError> {
+        self.note(&pull.worker).await?;
+        if pull.slots == 0 || pull.worker.draining {
+            return Ok(Vec::new());
+        }
+        let deadline = Instant::now() + pull.wait;
+        let request = self.lease_request(&pull);
+        loop {
+            // Listening begins before the question, so that no wake-up is lost in between.
+            let woken = self.work.notified();
+            tokio::pin!(woken);
+            woken.as_mut().enable();
+            let leases = self.ledger.lease(request.clone()).await?;
+            if !leases.is_empty() {
+                self.changed();
+                return Ok(leases);
+            }
+            if Instant::now() >= deadline {
+                return Ok(leases);
+            }
+            // Woken, or not: the ledger says what there is.
+            let _ = timeout_at(deadline.min(Instant::now() + POLL), woken).await;
+        }
+    }
+
+    fn lease_request(&self, pull: &Pull) -> LeaseRequest {
+        let WorkerSeen {
+            worker,
+            numerics_revision,
+            threads,
+            ..
+        } = &pull.worker;
+        self.policy.request(
+            worker.clone(),
+            pull.request.clone(),
+            *numerics_revision,
+            *threads,
+            pull.slots,
+        )
+    }
+
+    /// Remembers that a worker was here; not every time.
+    async fn note(&self, says: &WorkerSeen) -> Result<(), CoordinatorError> {
+        let now = self.ledger.now().await?.0;
+        {
+            let mut seen = self
+                .seen
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            match seen.get(&says.worker) {
+                Some((said, when)) if said == says && now - when < SEEN_MS => return Ok(()),
+                _ => seen.insert(says.worker.clone(), (says.clone(), now)),
+            };
+            if seen.len() > 100_000 {
+                seen.retain(|_, (_, when)| now - *when < SEEN_MS);
+            }
+        }
+        Ok(self.ledger.seen(says.clone()).await?)
+    }
+
+    /// A worker says that it leaves.
+    pub async fn worker_leaves(&self, worker: &WorkerId) -> Result<(), CoordinatorError> {
+        let said = {
+            let mut seen = self
+                .seen
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            seen.remove(worker)
+        };
+        if let Some((mut says, _)) = said {
+            says.draining = true;
+            self.ledger.seen(says).await?;
+        }
+        Ok(())
+    }
+
+    /// Prolongs leases.
+    pub async fn renew(&self, leases: &[LeaseId]) -> Result<Vec<Renewal>, CoordinatorError> {
+        Ok(self.ledger.renew(leases, self.policy.lease_ms).await?)
+    }
+
+    /// Takes the results of a chunk: the object, then the row, then the answer.
+    pub async fn complete(&self, report: Report) -> Result<Completion, CoordinatorError> {
+        let Report {
+            lease,
+            results,
+            cpu_micros,
+        } = report;
+        let stage = self.stage(lease.chunk.job, lease.chunk.stage).await?;
+        let first = lease.chunk.first;
+        let items = ItemRange {
+            first,
+            last: first.saturating_add(results.len() as u64),
+        };
+        check_report(&stage, items, &results).map_err(|what| CoordinatorError::Report {
+            lease: lease.to_string(),
+            what,
+        })?;
+        let object = match self
+            .store
+            .put_results(lease, items, results, cpu_micros)
+            .await
+        {
+            Ok(object) => object,
+            Err(StoreError::Differs(address)) => {
+                tracing::error!(%lease, address, "two executions of one lease differ");
+                return Ok(Completion::HashDiffers);
+            }
+            Err(error @ StoreError::Damaged { .. }) => {
+                // The place is taken by something broken: the next lease has another place.
+                let reason = error.to_string();
+                tracing::error!(%lease, reason, "the chunk is tracked again");
+                self.give_back(&[lease], GiveBack::Failed { reason })
+                    .await?;
+                return Ok(Completion::Stale);
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let completion = self.ledger.complete(lease, object).await?;
+        match completion {
+            Completion::Accepted => {
+                tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
+                self.changed();
+                self.wake_steward(lease.chunk.job);
+            }
+            Completion::HashDiffers => {
+                tracing::error!(%lease, "a chunk was accepted before with other results: one of \
+                    two workers computes wrongly");
+            }
+            Completion::AlreadyAccepted | Completion::Stale => {
+                tracing::debug!(%lease, ?completion, "a report changes nothing");
+            }
+        }
+        Ok(completion)
+    }
+
+    /// Takes chunks back without results.
+    pub async fn give_back(
+        &self,
+        leases: &[LeaseId],
+        why: GiveBack,
+    ) -> Result<(), CoordinatorError> {
+        for lease in leases {
+            if let GiveBack::Failed { reason } = &why {
+                tracing::warn!(%lease, reason, "a worker could not do a chunk");
+            }
+            self.ledger.give_back(*lease, why.clone()).await?;
+            self.wake_steward(lease.chunk.job);
+        }
+        self.work.notify_waiters();
+        self.changed();
+        Ok(())
+    }
+}
+
+/// Results must be those of the items: the algorithms rely on it.
+fn check_report(stage: &Stage, items: ItemRange, results: &[PathResult]) -> Result<(), String> {
+    if items.is_empty() || stage.items().is_none_or(|all| items.last > all) {
+        return Err(format!("items {}..{}", items.first, items.last));
+    }
+    for (item, result) in (items.first..items.last).zip(results) {
+        let origin = stage.origin(item);
+        if result.origin.0 != origin || result.attempt != stage.attempt {
+            return Err(format!(
+                "item {item} is path {origin} in attempt {}, the report has path {} in attempt {}",
+                stage.attempt, result.origin.0, result.attempt
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,361 @@
+//! Drive: a steward's decisions carried out on ledger and store, one step at a time.
+//!
+//! Objects are written first, then one fenced row; what was not acknowledged
+//! may have happened, and doing it again is harmless. A drive that is fenced
+//! has another steward by now, and is dropped.
+
+use super::planning::{Planned, STATE, first_chunks};
+use super::steward::{Steward, Wanted, next_to_absorb};
+use crate::chunks::expiry::{Sentence, killed_its_worker, sentence};
+use crate::chunks::leasing::Policy;
+use crate::ledger::identity::{CoordinatorId, Epoch, JobId, LeaseId};
+use crate::ledger::rows::*;
+use crate::ledger::{Ledger, LedgerError};
+use crate::results::store::{Store, StoreError};
+use crate::results::summary::{self, Summary};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::StageId;
+use futures::{StreamExt, TryStreamExt};
+use std::sync::Arc;
+
+/// Result objects that are read at once.
+const READ_AHEAD: usize = 8;
+/// Chunk rows that are read at once.
+const PAGE: u32 = 1000;
+
+/// What a drive works with.
+pub struct Tools<'a> {
+    /// The ledger.
+    pub ledger: &'a dyn Ledger,
+    /// The objects.
+    pub store: &'a Store,
+    /// Who drives.
+    pub who: &'a CoordinatorId,
+    /// The numbers.
+    pub policy: &'a Policy,
+}
+
+/// Why a step was not made.
+#[derive(Debug, thiserror::Error)]
+pub enum DriveError {
+    /// The ledger refused or failed.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+    /// An object could not be written or read.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The job's state cannot be read back.
+    #[error("the job's state cannot be read: {0}")]
+    State(String),
+}
+
+impl DriveError {
+    /// True where another steward, or nobody, drives the job now.
+    pub fn is_fenced(&self) -> bool {
+        matches!(self, Self::Ledger(LedgerError::Fenced(_)))
+    }
+
+    /// True where trying again later cannot help: the job ends with this reason.
+    pub fn is_permanent(&self) -> bool {
+        match self {
+            Self::Ledger(LedgerError::Damaged(_) | LedgerError::TooLarge(_)) | Self::State(_) => {
+                true
+            }
+            Self::Ledger(_) => false,
+            Self::Store(error) => error.is_permanent(),
+        }
+    }
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driven {
+    /// Nothing: chunks are with workers, or wait for them.
+    Waits,
+    /// Something: ask again at once.
+    Went,
+    /// The job has ended.
+    Ended,
+}
+
+/// A job that this coordinator drives.
+pub struct Drive {
+    job: JobId,
+    epoch: Epoch,
+    planned: Planned,
+    steward: Steward,
+    /// Nothing was opened yet, or the algorithm is done and the job must be ended.
+    pending: Option<Wanted>,
+}
+
+impl Drive {
+    /// Takes the right to drive a job, where nobody else has it, and the job's state.
+    pub async fn take(tools: &Tools<'_>, job: JobId) -> Result<Option<Self>, DriveError> {
+        let Tools {
+            ledger,
+            store,
+            who,
+            policy,
+        } = tools;
+        let Some(epoch) = ledger.steward(job, who, policy.steward_ms).await? else {
+            return Ok(None);
+        };
+        match Self::load(*ledger, store, job, epoch).await {
+            Ok(drive) => Ok(Some(drive)),
+            Err(error) if error.is_permanent() => {
+                let reason = error.to_string();
+                tracing::error!(%job, reason, "the job cannot be driven");
+                ledger.finish(job, epoch, JobEnd::Failed { reason }).await?;
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    async fn load(
+        ledger: &dyn Ledger,
+        store: &Store,
+        job: JobId,
+        epoch: Epoch,
+    ) -> Result<Self, DriveError> {
+        let row = ledger.job(job).await?.ok_or(LedgerError::UnknownJob(job))?;
+        let planned = Planned::from_bytes(&row.asked.options)
+            .map_err(|error| DriveError::State(error.to_string()))?;
+        let system = Arc::new(store.problem(row.asked.problem).await?);
+        let state = row.snapshot.unwrap_or(planned.first_state);
+        let state: Vec<u8> = store.record(&STATE, state).await?;
+        let mut steward = Steward::restore(system, &state)
+            .map_err(|error| DriveError::State(error.to_string()))?;
+        let stages = ledger.stages(job).await?;
+        // A state is kept after the algorithm was asked, together with what it opened. So it
+        // wants something new only at the beginning and at the end.
+        let pending = if stages.iter().all(|stage| stage.closed) {
+            Some(steward.ask())
+        } else {
+            None
+        };
+        Ok(Self {
+            job,
+            epoch,
+            planned,
+            steward,
+            pending,
+        })
+    }
+
+    /// The job.
+    pub fn job(&self) -> JobId {
+        self.job
+    }
+
+    /// The steward with the job's state.
+    pub fn steward(&self) -> &Steward {
+        &self.steward
+    }
+
+    /// Keeps the right to drive; false once it is lost.
+    pub async fn renew(&self, tools: &Tools<'_>) -> Result<bool, DriveError> {
+        let duration = tools.policy.steward_ms;
+        let epoch = tools.ledger.steward(self.job, tools.who, duration).await?;
+        Ok(epoch == Some(self.epoch))
+    }
+
+    /// Does what can be done now.
+    pub async fn step(&mut self, tools: &Tools<'_>) -> Result<Driven, DriveError> {
+        match self.try_step(tools).await {
+            Err(error) if error.is_permanent() => {
+                let reason = error.to_string();
+                tracing::error!(job = %self.job, reason, "the job has failed");
+                let end = JobEnd::Failed { reason };
+                tools.ledger.finish(self.job, self.epoch, end).await?;
+                Ok(Driven::Ended)
+            }
+            other => other,
+        }
+    }
+
+    async fn try_step(&mut self, tools: &Tools<'_>) -> Result<Driven, DriveError> {
+        if let Some(wanted) = self.pending.take() {
+            let went = self.carry_out(tools, &[], &wanted).await;
+            if went.is_err() {
+                self.pending = Some(wanted);
+            }
+            return went;
+        }
+        let stages = tools.ledger.stages(self.job).await?;
+        let Some(stage) = next_to_absorb(&stages) else {
+            return self.judge_suspects(tools).await;
+        };
+        let stage = stage.stage;
+        let results = self.results(tools, stage).await?;
+        tracing::info!(job = %self.job, stage = stage.0, items = results.len(), "absorbing a stage");
+        // Absorbed on a copy: if a write fails, the step is made again from the state before it.
+        let mut next = self.steward.clone();
+        let (next, wanted) = off_thread(results.len() > 5000, move || {
+            let wanted = next.absorb(stage, results);
+            (next, wanted)
+        })
+        .await;
+        let before = std::mem::replace(&mut self.steward, next);
+        let went = self.carry_out(tools, &[stage], &wanted).await;
+        if went.is_err() {
+            self.steward = before;
+        }
+        went
+    }
+
+    /// Writes what the algorithm wants: objects, then one row.
+    async fn carry_out(
+        &mut self,
+        tools: &Tools<'_>,
+        close: &[StageId],
+        wanted: &Wanted,
+    ) -> Result<Driven, DriveError> {
+        let mut step = Advance {
+            close: close.to_vec(),
+            ..Advance::default()
+        };
+        for stage in &wanted.open {
+            let items = stage
+                .items()
+                .ok_or(LedgerError::TooLarge("the number of items of a stage"))?;
+            step.open.push(NewStage {
+                stage: stage.id,
+                definition: tools.store.put_stage(stage).await?,
+                items,
+                chunks: first_chunks(items),
+            });
+        }
+        if !step.close.is_empty() || !step.open.is_empty() {
+            let state = self.steward.snapshot();
+            step.snapshot = Some(tools.store.put_record(&STATE, &state).await?);
+            for stage in &step.open {
+                let (number, items) = (stage.stage.0, stage.items);
+                tracing::info!(job = %self.job, stage = number, items, "opening a stage");
+            }
+            tools.ledger.advance(self.job, self.epoch, step).await?;
+        }
+        if wanted.done {
+            if let Err(error) = self.finish(tools).await {
+                // The stage is closed; only the end is to be written again.
+                self.pending = Some(Wanted {
+                    open: Vec::new(),
+                    done: true,
+                });
+                return if error.is_permanent() || error.is_fenced() {
+                    Err(error)
+                } else {
+                    tracing::warn!(job = %self.job, %error, "the job's end is written again");
+                    Ok(Driven::Waits)
+                };
+            }
+            return Ok(Driven::Ended);
+        }
+        Ok(Driven::Went)
+    }
+
+    async fn finish(&self, tools: &Tools<'_>) -> Result<(), DriveError> {
+        let Tools { ledger, store, .. } = tools;
+        let steward = self.steward.clone();
+        let sets = off_thread(self.planned.paths > 5000, move || steward.solution_sets()).await;
+        let row = ledger.job(self.job).await?;
+        let row = row.ok_or(LedgerError::UnknownJob(self.job))?;
+        let stages = ledger.stages(self.job).await?;
+        let workers = ledger.contributions(self.job).await?;
+        let now = ledger.now().await?;
+        let summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
+        let solutions = store.put_record(&summary::SOLUTIONS, &sets).await?;
+        let summary = store.put(summary.to_json().into()).await?;
+        let end = JobEnd::Solved { solutions, summary };
+        ledger.finish(self.job, self.epoch, end).await?;
+        tracing::info!(job = %self.job, "the job is solved");
+        Ok(())
+    }
+
+    /// All results of a complete stage, in the order of its items.
+    async fn results(
+        &self,
+        tools: &Tools<'_>,
+        stage: StageId,
+    ) -> Result<Vec<PathResult>, DriveError> {
+        let mut results = Vec::new();
+        let mut from = 0;
+        loop {
+            let rows = tools
+                .ledger
+                .finished_chunks(self.job, stage, from, PAGE)
+                .await?;
+            let Some(last) = rows.last() else {
+                return Ok(results);
+            };
+            from = last.items.last;
+            let objects = rows.into_iter().filter_map(|row| match row.state {
+                ChunkState::Accepted { result, .. } | ChunkState::Failed { result } => Some(result),
+                _ => None,
+            });
+            let mut read = futures::stream::iter(objects)
+                .map(|object| async move { tools.store.results(&object).await })
+                .buffered(READ_AHEAD);
+            while let Some(chunk) = read.try_next().await? {
+                results.extend(chunk);
+            }
+        }
+    }
+
+    /// Splits the chunks that no worker survives, down to the path at fault.
+    async fn judge_suspects(&self, tools: &Tools<'_>) -> Result<Driven, DriveError> {
+        let Tools {
+            ledger,
+            store,
+            policy,
+            ..
+        } = tools;
+        let suspects = ledger.suspects(self.job, policy.suspicion_limit).await?;
+        for suspect in &suspects {
+            let (chunk, items) = (suspect.chunk, suspect.items);
+            match sentence(suspect, policy) {
+                Sentence::Split(pieces) => {
+                    let pieces_count = pieces.len();
+                    tracing::warn!(job = %self.job, ?items, pieces_count,
+                        "workers die of this chunk: it is split");
+                    ledger.split(chunk, self.epoch, &pieces).await?;
+                }
+                Sentence::Condemn => {
+                    let stages = ledger.stages(self.job).await?;
+                    let row = stages.iter().find(|s| s.stage == chunk.stage);
+                    let row = row.ok_or_else(|| {
+                        LedgerError::Damaged("a chunk without its stage".to_owned())
+                    })?;
+                    let stage = store.stage(row.definition).await?;
+                    let results = (items.first..items.last)
+                        .map(|item| killed_its_worker(&stage, item))
+                        .collect();
+                    tracing::warn!(job = %self.job, ?items, "workers die of this path: it failed");
+                    // No worker ever has this epoch of the chunk: leases begin above the last.
+                    let own = LeaseId {
+                        chunk,
+                        epoch: Epoch(suspect.epoch.0 + 1),
+                    };
+                    let object = store.put_results(own, items, results, 0).await?;
+                    ledger.condemn(chunk, self.epoch, object).await?;
+                }
+            }
+        }
+        Ok(if suspects.is_empty() {
+            Driven::Waits
+        } else {
+            Driven::Went
+        })
+    }
+}
+
+/// Runs long work where it holds nobody up.
+async fn off_thread<T: Send + 'static>(long: bool, work: impl FnOnce() -> T + Send + 'static) -> T {
+    if !long {
+        return work();
+    }
+    match tokio::task::spawn_blocking(work).await {
+        Ok(value) => value,
+        Err(error) => std::panic::resume_unwind(error.into_panic()),
+    }
+}

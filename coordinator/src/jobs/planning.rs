@@ -1,0 +1,133 @@
+//! Planning: from a problem and options to the algorithm that a job begins with.
+//!
+//! Done once, when the job is submitted, so that what cannot be solved is
+//! refused with its reason; the algorithm's first state is kept as an object.
+
+use crate::ledger::identity::ItemRange;
+use crate::results::store::RecordKind;
+use cognate_algorithms::PlanError;
+use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
+use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
+use cognate_protocol::submission::{Options, StartKind, StartSolutions};
+use cognate_systems::system::System;
+use serde::{Deserialize, Serialize};
+
+/// How a job was planned: the job's record, which the ledger keeps beside its row.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Planned {
+    /// What people call the problem.
+    pub name: String,
+    /// Digest of the system as it was submitted.
+    pub problem: Digest,
+    /// How many variables it has.
+    pub variables: u64,
+    /// How many equations it has.
+    pub equations: u64,
+    /// How its paths begin: `total-degree`, for instance.
+    pub start: String,
+    /// Why they begin so.
+    pub why: String,
+    /// Number of paths of the first stage.
+    pub paths: u64,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// The algorithm's first state, as an object.
+    pub first_state: Digest,
+    /// What of the problem is not followed.
+    pub warnings: Vec<String>,
+}
+
+/// Algorithm states as objects.
+pub const STATE: RecordKind = RecordKind(b"CGNALG01");
+
+/// A record of a job's row that this program did not write.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the plan of the job cannot be read: {0}")]
+pub struct UnreadablePlan(String);
+
+/// Version of the encoding of [`Planned`].
+const VERSION: u8 = 1;
+
+impl Planned {
+    /// The bytes that the ledger keeps.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        postcard::to_extend(self, vec![VERSION]).expect("memory takes every byte")
+    }
+
+    /// Reads what [`Self::to_bytes`] wrote.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, UnreadablePlan> {
+        match bytes.split_first() {
+            Some((&VERSION, rest)) => {
+                postcard::from_bytes(rest).map_err(|error| UnreadablePlan(error.to_string()))
+            }
+            _ => Err(UnreadablePlan("it is of another version".into())),
+        }
+    }
+}
+
+/// Why a problem cannot be planned.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlanningError {
+    /// The algorithms refuse it.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The object of start solutions is none.
+    #[error("the start solutions cannot be used: {0}")]
+    StartSolutions(#[from] DamagedPoints),
+}
+
+/// The options as the algorithms know them. `start_solutions` is the object that they name.
+pub fn plan_options(
+    options: &Options,
+    start_solutions: Option<&[u8]>,
+) -> Result<PlanOptions, PlanningError> {
+    let start_points = match (&options.start_solutions, start_solutions) {
+        (Some(StartSolutions::Object(object)), Some(bytes)) => {
+            let points = StoredPoints::from_bytes(bytes)?;
+            Some(GivenStart {
+                object: *object,
+                count: points.len() as u64,
+                dimension: points.dimension,
+            })
+        }
+        _ => None,
+    };
+    let start_parameters = (start_points.is_some() && !options.start_parameters.is_empty())
+        .then(|| options.start_parameters.clone());
+    Ok(PlanOptions {
+        start: match options.start {
+            StartKind::Auto => StartChoice::Auto,
+            StartKind::TotalDegree => StartChoice::TotalDegree,
+            StartKind::Multihomogeneous => StartChoice::Multihomogeneous,
+            StartKind::Given => StartChoice::Given,
+        },
+        start_points,
+        start_parameters,
+        target_parameters: options.target_parameters.clone(),
+        seed: options.seed.unwrap_or_default(),
+        settings: options.settings.resolve(),
+        ..PlanOptions::default()
+    })
+}
+
+/// The plan of a system.
+pub fn plan_job(
+    system: &System,
+    options: &Options,
+    start_solutions: Option<&[u8]>,
+) -> Result<Plan, PlanningError> {
+    Ok(plan(system, &plan_options(options, start_solutions)?)?)
+}
+
+/// The first chunks of a stage: one, from which every lease cuts its size.
+pub fn first_chunks(items: u64) -> Vec<ItemRange> {
+    let whole = ItemRange {
+        first: 0,
+        last: items,
+    };
+    if whole.is_empty() {
+        Vec::new()
+    } else {
+        vec![whole]
+    }
+}

@@ -1,0 +1,80 @@
+//! Progress: what of a job is done, running, waiting. The counts add up.
+
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::identity::JobId;
+use crate::ledger::rows::{JobRow, JobState, Outcomes, StageRow};
+use cognate_continuation::work::StageId;
+
+/// How far a job is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct JobProgress {
+    /// The job.
+    pub job: JobId,
+    /// Its state.
+    pub state: JobState,
+    /// Every stage opened so far, in order.
+    pub stages: Vec<StageProgress>,
+    /// How the paths of finished chunks ended, in all stages together.
+    pub outcomes: Outcomes,
+    /// Why it failed or was cancelled, else empty.
+    pub message: String,
+    /// From its submission until now or until its end, in milliseconds.
+    pub elapsed_ms: u64,
+}
+
+/// Items of one stage: ready, leased, accepted and failed make up the total.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StageProgress {
+    /// Its number.
+    pub stage: StageId,
+    /// All items.
+    pub total: u64,
+    /// Waiting for a worker.
+    pub ready: u64,
+    /// With a worker.
+    pub leased: u64,
+    /// Done.
+    pub accepted: u64,
+    /// Given up.
+    pub failed: u64,
+    /// What the stage is for, in words.
+    pub purpose: String,
+}
+
+impl JobProgress {
+    /// From the ledger's rows; `purpose` says what a stage is for.
+    pub fn new(
+        job: &JobRow,
+        stages: &[StageRow],
+        now: LedgerTime,
+        purpose: impl Fn(&StageRow) -> String,
+    ) -> Self {
+        let mut outcomes = Outcomes::default();
+        let stages = stages.iter().map(|row| {
+            assert_eq!(
+                row.accounted(),
+                row.items,
+                "every item of a stage is in exactly one place"
+            );
+            outcomes.add(row.outcomes);
+            StageProgress {
+                stage: row.stage,
+                total: row.items,
+                ready: row.ready.items,
+                leased: row.leased.items,
+                accepted: row.accepted.items,
+                failed: row.failed.items,
+                purpose: purpose(row),
+            }
+        });
+        let stages = stages.collect();
+        Self {
+            job: job.job,
+            state: job.state,
+            stages,
+            outcomes,
+            message: job.reason.clone().unwrap_or_default(),
+            elapsed_ms: job.ended.unwrap_or(now).since_ms(job.submitted),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Steward: the one coordinator that drives a job, as plain code.
+//!
+//! It absorbs stages in their order, each in the order of its items, never in
+//! the order of arrival. So a state that was replayed from the ledger is the
+//! state that lived through it.
+
+use crate::ledger::rows::StageRow;
+use cognate_algorithms::{AnyAlgorithm, Next, PathAlgorithm, RestoreError};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::{Stage, StageId};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
+use std::sync::Arc;
+
+/// A job in the hands of its steward.
+#[derive(Clone, Debug)]
+pub struct Steward {
+    system: Arc<System>,
+    algorithm: AnyAlgorithm,
+}
+
+/// What the algorithm wants now.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wanted {
+    /// Stages to open.
+    pub open: Vec<Stage>,
+    /// All is known.
+    pub done: bool,
+}
+
+/// The stage that is absorbed next, once it is complete: the first that is not closed.
+pub fn next_to_absorb(stages: &[StageRow]) -> Option<&StageRow> {
+    let open = stages.iter().filter(|stage| !stage.closed);
+    open.min_by_key(|stage| stage.stage)
+        .filter(|stage| stage.is_complete())
+}
+
+impl Steward {
+    /// A job that begins, with its first stages.
+    pub fn begin(system: Arc<System>, algorithm: AnyAlgorithm) -> (Self, Wanted) {
+        let mut steward = Self { system, algorithm };
+        let wanted = steward.ask();
+        (steward, wanted)
+    }
+
+    /// A job that another steward left in this state.
+    pub fn restore(system: Arc<System>, snapshot: &[u8]) -> Result<Self, RestoreError> {
+        let algorithm = AnyAlgorithm::restore(snapshot)?;
+        Ok(Self { system, algorithm })
+    }
+
+    /// What the algorithm wants, until it waits or is done.
+    pub fn ask(&mut self) -> Wanted {
+        let mut wanted = Wanted::default();
+        loop {
+            match self.algorithm.next() {
+                Next::Open(stage) => wanted.open.push(*stage),
+                Next::Wait => return wanted,
+                Next::Done => {
+                    wanted.done = true;
+                    return wanted;
+                }
+            }
+        }
+    }
+
+    /// Takes the results of a complete stage, in the order of its items.
+    pub fn absorb(
+        &mut self,
+        stage: StageId,
+        results: impl IntoIterator<Item = PathResult>,
+    ) -> Wanted {
+        self.algorithm.absorb(stage, &mut results.into_iter());
+        self.ask()
+    }
+
+    /// The state, from which [`Self::restore`] goes on.
+    pub fn snapshot(&self) -> Vec<u8> {
+        self.algorithm.snapshot()
+    }
+
+    /// What was found, one set for each target.
+    pub fn solution_sets(&self) -> Vec<SolutionSet> {
+        self.algorithm.solution_sets(&self.system)
+    }
+
+    /// What is done at the moment, in a few words.
+    pub fn description(&self) -> String {
+        self.algorithm.progress().description
+    }
+}

@@ -1,0 +1,70 @@
+//! Recent: the values that were asked for lately, so that they are not read and decoded again.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// At most so many values; the one that was asked for longest ago goes first.
+pub struct Recent<K, V> {
+    capacity: usize,
+    values: Mutex<Values<K, V>>,
+}
+
+struct Values<K, V> {
+    asked: u64,
+    by_key: HashMap<K, (u64, Arc<V>)>,
+}
+
+impl<K: Eq + Hash + Clone, V> Recent<K, V> {
+    /// Empty.
+    pub fn new(capacity: usize) -> Self {
+        Self {
+            capacity: capacity.max(1),
+            values: Mutex::new(Values {
+                asked: 0,
+                by_key: HashMap::new(),
+            }),
+        }
+    }
+
+    /// The value of this key, if it is here.
+    pub fn get(&self, key: &K) -> Option<Arc<V>> {
+        let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
+        values.asked += 1;
+        let now = values.asked;
+        let (asked, value) = values.by_key.get_mut(key)?;
+        *asked = now;
+        Some(Arc::clone(value))
+    }
+
+    /// Keeps a value.
+    pub fn keep(&self, key: K, value: Arc<V>) {
+        let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
+        values.asked += 1;
+        let now = values.asked;
+        values.by_key.insert(key, (now, value));
+        if values.by_key.len() > self.capacity {
+            let oldest = values.by_key.iter().min_by_key(|(_, (asked, _))| *asked);
+            if let Some(key) = oldest.map(|(key, _)| key.clone()) {
+                values.by_key.remove(&key);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_asked_for_goes_first() {
+        let recent = Recent::new(2);
+        recent.keep(1, Arc::new("a"));
+        recent.keep(2, Arc::new("b"));
+        assert!(recent.get(&1).is_some());
+        recent.keep(3, Arc::new("c"));
+        assert_eq!(recent.get(&2), None);
+        assert_eq!(recent.get(&1).as_deref(), Some(&"a"));
+        assert_eq!(recent.get(&3).as_deref(), Some(&"c"));
+    }
+}

@@ -1,0 +1,4 @@
+//! Results: write-once objects, and the summary of a finished job.
+
+pub mod store;
+pub mod summary;

@@ -1,0 +1,427 @@
+//! Store: objects that are written once and never change.
+//!
+//! Most are named by the digest of their bytes. A chunk's results are named by
+//! job, stage, items and epoch, so that a coordinator that died between object
+//! and ledger row finds its object again. Every object is checked when it is
+//! read: a damaged one is reported, never believed.
+
+use crate::ledger::identity::{ItemRange, LeaseId, digest_of};
+use crate::ledger::rows::{Outcomes, ResultObject};
+use bytes::Bytes;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::Stage;
+use cognate_protocol::v1;
+use cognate_protocol::{digest, from_proto, records, to_proto};
+use cognate_systems::system::System;
+use object_store::local::LocalFileSystem;
+use object_store::memory::InMemory;
+use object_store::path::Path as Address;
+use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions};
+use prost::Message;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Why an object was not written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// There is no such object.
+    #[error("there is no object {0}")]
+    Missing(String),
+    /// It is not what was written.
+    #[error("object {address} is damaged: {what}")]
+    Damaged {
+        /// Where it is.
+        address: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// Another execution of the same lease wrote other results there.
+    #[error("object {0} holds other results for the same lease")]
+    Differs(String),
+    /// The storage failed.
+    #[error("the result store failed: {0}")]
+    Storage(#[from] object_store::Error),
+    /// A folder cannot be used.
+    #[error("cannot use the folder `{folder}` for results: {error}")]
+    Folder {
+        /// The folder.
+        folder: String,
+        /// Why not.
+        error: std::io::Error,
+    },
+}
+
+impl StoreError {
+    /// True where trying again later cannot help.
+    pub fn is_permanent(&self) -> bool {
+        !matches!(self, Self::Storage(_) | Self::Folder { .. })
+    }
+}
+
+/// Magic and version of a chunk's results; then the length of the records, then the records'
+/// hash, then the records, compressed.
+const MAGIC: &[u8; 8] = b"CGNCHK01";
+/// Records are compressed with zstd's fastest common level: endpoints are nearly random bits,
+/// and more effort gains under 2 % on them.
+const LEVEL: i32 = 1;
+/// No chunk's records are longer; a larger length in an object is damage.
+const LONGEST_RECORDS: u64 = 1 << 32;
+/// Chunks above this size leave the runtime's thread for compression.
+const SMALL: usize = 256 << 10;
+
+/// Kind and version of a record: the first eight bytes of its object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordKind(pub &'static [u8; 8]);
+
+/// The objects of all jobs.
+#[derive(Clone, Debug)]
+pub struct Store {
+    objects: Arc<dyn ObjectStore>,
+}
+
+impl Store {
+    /// Objects in this folder, which is made where it is missing.
+    pub fn folder(folder: &Path) -> Result<Self, StoreError> {
+        std::fs::create_dir_all(folder).map_err(|error| StoreError::Folder {
+            folder: folder.display().to_string(),
+            error,
+        })?;
+        // A row in the ledger may name an object only once the object is on the disk.
+        let local = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
+        Ok(Self {
+            objects: Arc::new(local),
+        })
+    }
+
+    /// Objects that live as long as this process.
+    pub fn in_memory() -> Self {
+        Self {
+            objects: Arc::new(InMemory::new()),
+        }
+    }
+
+    /// Writes an object unless it is there; true if it was not.
+    async fn create(&self, address: &Address, bytes: Bytes) -> Result<bool, StoreError> {
+        let mode = PutOptions::from(PutMode::Create);
+        match self.objects.put_opts(address, bytes.into(), mode).await {
+            Ok(_) => Ok(true),
+            Err(object_store::Error::AlreadyExists { .. }) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    async fn read(&self, address: &Address) -> Result<Bytes, StoreError> {
+        match self.objects.get(address).await {
+            Ok(found) => Ok(found.bytes().await?),
+            Err(object_store::Error::NotFound { .. }) => {
+                Err(StoreError::Missing(address.to_string()))
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Keeps bytes under their digest.
+    pub async fn put(&self, bytes: Bytes) -> Result<Digest, StoreError> {
+        let digest = digest_of(&bytes);
+        self.create(&object_address(digest), bytes).await?;
+        Ok(digest)
+    }
+
+    /// The bytes of this digest.
+    pub async fn get(&self, digest: Digest) -> Result<Bytes, StoreError> {
+        let address = object_address(digest);
+        let bytes = self.read(&address).await?;
+        if digest_of(&bytes) != digest {
+            return Err(damaged(&address, "its bytes have another digest"));
+        }
+        Ok(bytes)
+    }
+
+    /// Keeps a checked system; its digest is the problem's.
+    pub async fn put_problem(&self, system: &System) -> Result<Digest, StoreError> {
+        self.put(digest::encode_system(system).into()).await
+    }
+
+    /// The system of this digest.
+    pub async fn problem(&self, digest: Digest) -> Result<System, StoreError> {
+        let bytes = self.get(digest).await?;
+        digest::decode_system(&bytes).map_err(|error| damaged(&object_address(digest), error))
+    }
+
+    /// Keeps a stage.
+    pub async fn put_stage(&self, stage: &Stage) -> Result<Digest, StoreError> {
+        let message = to_proto::path::stage(stage);
+        self.put(message.encode_to_vec().into()).await
+    }
+
+    /// The stage of this digest.
+    pub async fn stage(&self, digest: Digest) -> Result<Stage, StoreError> {
+        let bytes = self.get(digest).await?;
+        let bad = |error: String| damaged(&object_address(digest), error);
+        let message = v1::Stage::decode(bytes).map_err(|error| bad(error.to_string()))?;
+        from_proto::path::stage(&message).map_err(|error| bad(error.to_string()))
+    }
+
+    /// Keeps what serde can write, compressed, with a name for its kind before it.
+    pub async fn put_record<T: Serialize>(
+        &self,
+        kind: &RecordKind,
+        value: &T,
+    ) -> Result<Digest, StoreError> {
+        let plain = postcard::to_stdvec(value).expect("memory takes every byte");
+        let mut bytes = kind.0.to_vec();
+        bytes.extend_from_slice(&(plain.len() as u64).to_le_bytes());
+        let compressed =
+            zstd::bulk::compress(&plain, LEVEL).expect("memory takes whatever zstd writes");
+        bytes.extend_from_slice(&compressed);
+        self.put(bytes.into()).await
+    }
+
+    /// Reads what [`Self::put_record`] kept.
+    pub async fn record<T: DeserializeOwned>(
+        &self,
+        kind: &RecordKind,
+        digest: Digest,
+    ) -> Result<T, StoreError> {
+        let bytes = self.get(digest).await?;
+        let address = object_address(digest);
+        let (head, compressed) = bytes
+            .split_at_checked(16)
+            .filter(|(head, _)| head.starts_with(kind.0))
+            .ok_or_else(|| damaged(&address, "it is of another kind or version"))?;
+        let word = head[8..16].first_chunk::<8>();
+        let capacity = word
+            .map(|word| u64::from_le_bytes(*word))
+            .filter(|&length| length <= LONGEST_RECORDS)
+            .and_then(|length| usize::try_from(length).ok())
+            .ok_or_else(|| damaged(&address, "it claims to be absurdly long"))?;
+        let plain = zstd::bulk::decompress(compressed, capacity)
+            .map_err(|error| damaged(&address, error))?;
+        postcard::from_bytes(&plain).map_err(|error| damaged(&address, error))
+    }
+
+    /// Keeps the results of a lease. Sent twice, they are kept once.
+    pub async fn put_results(
+        &self,
+        lease: LeaseId,
+        items: ItemRange,
+        results: Vec<PathResult>,
+        cpu_micros: u64,
+    ) -> Result<ResultObject, StoreError> {
+        let outcomes = Outcomes::of(&results);
+        let (hash, bytes) = off_thread(results.len() * 256 > SMALL, move || pack(&results)).await;
+        let address = results_address(lease, items);
+        let object = ResultObject {
+            items,
+            address: address.to_string(),
+            hash,
+            cpu_micros,
+            outcomes,
+        };
+        if !self.create(&address, bytes.into()).await? {
+            // A reply was lost, or this coordinator died before it wrote the ledger's row.
+            let there = self.read(&address).await?;
+            let (found, _) = unpack(&address, &there)?;
+            if found != hash {
+                return Err(StoreError::Differs(address.to_string()));
+            }
+        }
+        Ok(object)
+    }
+
+    /// The results that an object holds, in the order of their items.
+    pub async fn results(&self, object: &ResultObject) -> Result<Vec<PathResult>, StoreError> {
+        let address = Address::parse(&object.address)
+            .map_err(|error| damaged(&Address::from(object.address.as_str()), error))?;
+        let bytes = self.read(&address).await?;
+        let object = object.clone();
+        off_thread(bytes.len() > SMALL, move || {
+            let (hash, records) = unpack(&address, &bytes)?;
+            if hash != object.hash {
+                return Err(damaged(&address, "it is not the object that was accepted"));
+            }
+            let results = records::decode(&records).map_err(|error| damaged(&address, error))?;
+            if results.len() as u64 != object.items.len() {
+                return Err(damaged(&address, "it has another number of results"));
+            }
+            Ok(results)
+        })
+        .await
+    }
+}
+
+/// Runs long work where it holds nobody up.
+async fn off_thread<T: Send + 'static>(long: bool, work: impl FnOnce() -> T + Send + 'static) -> T {
+    if !long {
+        return work();
+    }
+    match tokio::task::spawn_blocking(work).await {
+        Ok(value) => value,
+        Err(error) => std::panic::resume_unwind(error.into_panic()),
+    }
+}
+
+fn damaged(address: &Address, what: impl std::fmt::Display) -> StoreError {
+    StoreError::Damaged {
+        address: address.to_string(),
+        what: what.to_string(),
+    }
+}
+
+/// Objects by digest are spread over 256 folders, which file systems like better than one.
+fn object_address(digest: Digest) -> Address {
+    let name = digest.to_string();
+    Address::from(format!("objects/{}/{name}", &name[..2]))
+}
+
+fn results_address(lease: LeaseId, items: ItemRange) -> Address {
+    let ItemRange { first, last } = items;
+    let (job, stage) = (lease.chunk.job, lease.chunk.stage.0);
+    let epoch = lease.epoch.0;
+    Address::from(format!("jobs/{job}/stages/{stage}/{first}-{last}.{epoch}"))
+}
+
+/// The hash of the results' records and the object that holds them.
+fn pack(results: &[PathResult]) -> (Digest, Vec<u8>) {
+    let records = records::encode(results);
+    let hash = records::hash(&records);
+    let compressed =
+        zstd::bulk::compress(&records, LEVEL).expect("memory takes whatever zstd writes");
+    let mut bytes = Vec::with_capacity(48 + compressed.len());
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&(records.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(&hash.0);
+    bytes.extend_from_slice(&compressed);
+    (hash, bytes)
+}
+
+/// The hash of the records and the records, checked against each other.
+fn unpack(address: &Address, bytes: &[u8]) -> Result<(Digest, Vec<u8>), StoreError> {
+    let (head, compressed) = bytes
+        .split_at_checked(48)
+        .filter(|(head, _)| head.starts_with(MAGIC))
+        .ok_or_else(|| damaged(address, "it is no chunk of results"))?;
+    let word = head[8..16].first_chunk::<8>();
+    let length = word.map_or(u64::MAX, |word| u64::from_le_bytes(*word));
+    let capacity = usize::try_from(length)
+        .ok()
+        .filter(|_| length <= LONGEST_RECORDS)
+        .ok_or_else(|| damaged(address, "it claims to be absurdly long"))?;
+    let records =
+        zstd::bulk::decompress(compressed, capacity).map_err(|error| damaged(address, error))?;
+    let hash = records::hash(&records);
+    if records.len() != capacity || head[16..48] != hash.0 {
+        return Err(damaged(address, "its records have another hash"));
+    }
+    Ok((hash, records))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ledger::identity::{ChunkId, Epoch, JobId};
+    use cognate_continuation::path_result::{Coordinates, Counts, PathIndex};
+    use cognate_continuation::tracker::outcome::PathOutcome;
+    use cognate_continuation::work::StageId;
+    use num_complex::Complex64;
+
+    fn results(count: u64, value: f64) -> Vec<PathResult> {
+        let result = |k| PathResult {
+            origin: PathIndex(k),
+            attempt: 0,
+            outcome: PathOutcome::Regular,
+            endpoint: Coordinates::Double(vec![Complex64::new(value, k as f64); 3]),
+            t: Complex64::new(0.0, 0.0),
+            residual: 1e-16,
+            condition: f64::INFINITY,
+            accuracy: 1e-15,
+            winding_number: None,
+            infinity_turns: vec![],
+            precision_bits: 53,
+            counts: Counts::default(),
+        };
+        (0..count).map(result).collect()
+    }
+
+    fn lease(epoch: u64) -> LeaseId {
+        LeaseId {
+            chunk: ChunkId {
+                job: JobId(1),
+                stage: StageId(0),
+                first: 0,
+            },
+            epoch: Epoch(epoch),
+        }
+    }
+
+    const ITEMS: ItemRange = ItemRange { first: 0, last: 5 };
+
+    #[tokio::test]
+    async fn results_come_back_and_are_kept_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::folder(folder.path()).unwrap();
+        let put = |epoch, value| store.put_results(lease(epoch), ITEMS, results(5, value), 7);
+        let object = put(1, 0.5).await.unwrap();
+        assert_eq!(object.outcomes.regular, 5);
+        assert_eq!(store.results(&object).await.unwrap(), results(5, 0.5));
+        assert_eq!(put(1, 0.5).await.unwrap(), object);
+        let other = put(1, 0.25).await;
+        assert!(matches!(other, Err(StoreError::Differs(_))));
+        // Another execution is another object with the same hash.
+        let again = put(2, 0.5).await.unwrap();
+        assert_ne!(again.address, object.address);
+        assert_eq!(again.hash, object.hash);
+    }
+
+    #[tokio::test]
+    async fn every_damage_is_seen() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::folder(folder.path()).unwrap();
+        let object = store
+            .put_results(lease(1), ITEMS, results(5, 0.5), 7)
+            .await
+            .unwrap();
+        let path = folder.path().join(&object.address);
+        let good = std::fs::read(&path).unwrap();
+        for at in 0..good.len() {
+            let mut bad = good.clone();
+            bad[at] ^= 0x41;
+            std::fs::write(&path, &bad).unwrap();
+            let error = store.results(&object).await.expect_err("damage is seen");
+            assert!(matches!(error, StoreError::Damaged { .. }), "byte {at}");
+            std::fs::write(&path, &good[..at]).unwrap();
+            assert!(store.results(&object).await.is_err(), "cut at {at}");
+        }
+        std::fs::remove_file(&path).unwrap();
+        let error = store.results(&object).await.expect_err("it is gone");
+        assert!(matches!(error, StoreError::Missing(_)));
+    }
+
+    #[tokio::test]
+    async fn objects_and_problems_are_checked_when_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::folder(folder.path()).unwrap();
+        let digest = store.put(Bytes::from_static(b"start")).await.unwrap();
+        assert_eq!(
+            store.put(Bytes::from_static(b"start")).await.unwrap(),
+            digest
+        );
+        assert_eq!(&store.get(digest).await.unwrap()[..], b"start");
+        let path = folder.path().join(object_address(digest).to_string());
+        std::fs::write(&path, b"stare").unwrap();
+        assert!(store.get(digest).await.is_err());
+        let content = b"variable_group x;\nfunction f;\nf = x^2 - 2;\n";
+        let system = cognate_systems::formats::read("test", content)
+            .unwrap()
+            .system;
+        let digest = store.put_problem(&system).await.unwrap();
+        assert_eq!(store.problem(digest).await.unwrap(), system);
+        let path = folder.path().join(object_address(digest).to_string());
+        std::fs::write(&path, b"nonsense").unwrap();
+        let error = store.problem(digest).await.expect_err("damage is seen");
+        assert!(matches!(error, StoreError::Damaged { .. }));
+    }
+}

@@ -1,0 +1,295 @@
+//! Summary: what a finished job is in one JSON object, field by field as the contract has it.
+//!
+//! With several targets the blocks hold the sums, and `targets` the blocks of each.
+
+use super::store::RecordKind;
+use crate::jobs::planning::Planned;
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::rows::{Contribution, JobRow, StageRow};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::summary::{ClassCounts, PathCounts, SolutionCounts};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Solution sets as objects.
+pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL01");
+
+/// A finished job.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Which job.
+    pub job: String,
+    /// What was solved.
+    pub problem: ProblemBlock,
+    /// Every path, counted once.
+    pub paths: PathCounts,
+    /// The solutions, counted.
+    pub solutions: SolutionCounts,
+    /// Symmetry classes, counted.
+    pub classes: ClassCounts,
+    /// How long it took.
+    pub time: TimeBlock,
+    /// Who tracked how much.
+    pub workers: Vec<WorkerBlock>,
+    /// Why paths failed: how many for each reason.
+    pub failures: BTreeMap<String, u64>,
+    /// Each target's counts, where there are several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub targets: Vec<TargetBlock>,
+    /// True when every path is accounted for and every count is settled.
+    pub settled: bool,
+    /// What a reader should know.
+    pub warnings: Vec<String>,
+}
+
+/// What was solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProblemBlock {
+    /// What people call it.
+    pub name: String,
+    /// Digest of the system.
+    pub digest: String,
+    /// How many variables.
+    pub variables: u64,
+    /// How many equations.
+    pub equations: u64,
+    /// How the paths began.
+    pub start: String,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+/// How long it took.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TimeBlock {
+    /// From submission to the end.
+    pub wall_seconds: f64,
+    /// CPU time of all processes, as far as it is known: that of the tracking.
+    pub cpu_seconds: f64,
+    /// CPU time of the tracking.
+    pub tracking_cpu_seconds: f64,
+    /// Items of all stages by wall time.
+    pub paths_per_second: f64,
+}
+
+/// What one worker did.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorkerBlock {
+    /// Its name.
+    pub id: String,
+    /// Items that it finished.
+    pub paths: u64,
+    /// How it was connected.
+    pub transport: String,
+}
+
+/// The counts of one target.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TargetBlock {
+    /// Its paths.
+    pub paths: PathCounts,
+    /// Its solutions.
+    pub solutions: SolutionCounts,
+    /// Its classes.
+    pub classes: ClassCounts,
+}
+
+impl Summary {
+    /// The summary of a job whose algorithm is done.
+    pub fn new(
+        job: &JobRow,
+        planned: &Planned,
+        sets: &[SolutionSet],
+        stages: &[StageRow],
+        workers: &[Contribution],
+        now: LedgerTime,
+    ) -> Self {
+        let wall_seconds = now.since_ms(job.submitted) as f64 / 1000.0;
+        let tracking: u64 = stages.iter().map(|s| s.cpu_micros).sum();
+        let items: u64 = stages.iter().map(|s| s.items).sum();
+        let tracking_cpu_seconds = tracking as f64 / 1e6;
+        let mut warnings = planned.warnings.clone();
+        let mut failures = BTreeMap::new();
+        for (target, set) in sets.iter().enumerate() {
+            for path in &set.failed {
+                *failures
+                    .entry(path.reason.describe().to_owned())
+                    .or_default() += 1;
+            }
+            warnings.extend(set.warnings.iter().map(|warning| match sets.len() {
+                1 => warning.clone(),
+                _ => format!("target {target}: {warning}"),
+            }));
+        }
+        let block = |set: &SolutionSet| TargetBlock {
+            paths: set.paths.clone(),
+            solutions: set.counts.clone(),
+            classes: set.classes.clone(),
+        };
+        let sum = match sets {
+            [one] => block(one),
+            _ => sum(sets),
+        };
+        Self {
+            job: job.job.to_string(),
+            problem: ProblemBlock {
+                name: planned.name.clone(),
+                digest: planned.problem.to_string(),
+                variables: planned.variables,
+                equations: planned.equations,
+                start: planned.start.clone(),
+                seed: planned.seed,
+            },
+            paths: sum.paths,
+            solutions: sum.solutions,
+            classes: sum.classes,
+            time: TimeBlock {
+                wall_seconds,
+                cpu_seconds: tracking_cpu_seconds,
+                tracking_cpu_seconds,
+                paths_per_second: items as f64 / wall_seconds.max(0.001),
+            },
+            workers: workers
+                .iter()
+                .map(|worker| WorkerBlock {
+                    id: worker.worker.to_string(),
+                    paths: worker.items,
+                    transport: worker.transport.clone(),
+                })
+                .collect(),
+            failures,
+            targets: match sets {
+                [_] => Vec::new(),
+                several => several.iter().map(block).collect(),
+            },
+            settled: sets.iter().all(SolutionSet::settled),
+            warnings,
+        }
+    }
+
+    /// As JSON.
+    pub fn to_json(&self) -> Vec<u8> {
+        serde_json::to_vec_pretty(self).expect("names and numbers can be written as JSON")
+    }
+}
+
+/// The counts of several targets together.
+fn sum(sets: &[SolutionSet]) -> TargetBlock {
+    /// A sum is known where every term is.
+    fn add(sum: &mut Option<u64>, term: Option<u64>) {
+        *sum = sum.zip(term).map(|(a, b)| a + b);
+    }
+    let mut paths = PathCounts {
+        positive_dimensional: Some(0),
+        excess: Some(0),
+        ..PathCounts::default()
+    };
+    let mut counts = SolutionCounts {
+        real: Some(0),
+        certified: Some(0),
+        positive_dimensional: Some(false),
+        ..SolutionCounts::default()
+    };
+    for set in sets {
+        let PathCounts {
+            total,
+            finite,
+            singular,
+            positive_dimensional,
+            excess,
+            at_infinity,
+            failed,
+            retracked,
+            crossings_found,
+            crossings_resolved,
+            decided_by_precision_limit,
+            by_precision,
+            highest_precision_bits,
+        } = &set.paths;
+        paths.total += total;
+        paths.finite += finite;
+        paths.singular += singular;
+        add(&mut paths.positive_dimensional, *positive_dimensional);
+        add(&mut paths.excess, *excess);
+        paths.at_infinity += at_infinity;
+        paths.failed += failed;
+        paths.retracked += retracked;
+        paths.crossings_found += crossings_found;
+        paths.crossings_resolved += crossings_resolved;
+        paths.decided_by_precision_limit += decided_by_precision_limit;
+        for (bits, number) in by_precision {
+            *paths.by_precision.entry(*bits).or_default() += number;
+        }
+        paths.highest_precision_bits = paths.highest_precision_bits.max(*highest_precision_bits);
+        let SolutionCounts {
+            distinct,
+            nonsingular,
+            singular,
+            real,
+            real_reason,
+            with_multiplicity,
+            certified,
+            positive_dimensional,
+            degenerate,
+        } = &set.counts;
+        counts.distinct += distinct;
+        counts.nonsingular += nonsingular;
+        counts.singular += singular;
+        add(&mut counts.real, *real);
+        counts.real_reason = counts.real_reason.or_else(|| real_reason.clone());
+        counts.with_multiplicity += with_multiplicity;
+        add(&mut counts.certified, *certified);
+        counts.positive_dimensional = counts
+            .positive_dimensional
+            .zip(*positive_dimensional)
+            .map(|(a, b)| a || b);
+        for (name, number) in degenerate {
+            *counts.degenerate.entry(name.clone()).or_default() += number;
+        }
+    }
+    TargetBlock {
+        paths,
+        solutions: counts,
+        classes: ClassCounts::default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(finite: u64, real: Option<u64>) -> SolutionSet {
+        SolutionSet {
+            paths: PathCounts {
+                total: finite + 1,
+                finite,
+                failed: 1,
+                positive_dimensional: Some(0),
+                by_precision: [(53, finite + 1)].into(),
+                highest_precision_bits: 53,
+                ..PathCounts::default()
+            },
+            counts: SolutionCounts {
+                distinct: finite,
+                nonsingular: finite,
+                real,
+                real_reason: real.is_none().then(|| "because".to_owned()),
+                degenerate: [("no pose".to_owned(), 1)].into(),
+                ..SolutionCounts::default()
+            },
+            ..SolutionSet::default()
+        }
+    }
+
+    #[test]
+    fn sums_add_up_and_know_what_they_do_not_know() {
+        let both = sum(&[set(3, Some(1)), set(4, Some(2))]);
+        assert_eq!((both.paths.total, both.paths.sum()), (9, 9));
+        assert_eq!(both.solutions.real, Some(3));
+        assert_eq!(both.solutions.degenerate["no pose"], 2);
+        assert_eq!(both.paths.by_precision[&53], 9);
+        let unknown = sum(&[set(3, Some(1)), set(4, None)]);
+        assert_eq!(unknown.solutions.real, None);
+        assert_eq!(unknown.solutions.real_reason.as_deref(), Some("because"));
+    }
+}
