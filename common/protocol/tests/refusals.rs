@@ -50,6 +50,25 @@ fn a_good_system_is_accepted_with_the_group_that_goes_without_saying() {
 }
 
 #[test]
+fn a_symmetry_may_be_a_rational_map() {
+    let mut message = circle();
+    message.nodes.push(v1::Node {
+        kind: Some(Kind::Divide(v1::Binary { left: 2, right: 0 })),
+    });
+    let map = v1::NodeList { nodes: vec![4] };
+    message.symmetry = vec![v1::SymmetryGenerator {
+        action: Some(v1::symmetry_generator::Action::Map(map)),
+    }];
+    assert_eq!(
+        from_proto::problem::system(&message)
+            .unwrap()
+            .symmetry
+            .len(),
+        1
+    );
+}
+
+#[test]
 fn bad_systems_are_refused_with_the_field() {
     refused(
         |m| {
@@ -85,7 +104,18 @@ fn bad_systems_are_refused_with_the_field() {
                 kind: Some(Kind::Divide(v1::Binary { left: 1, right: 0 })),
             }
         },
-        "nodes[3].divide.right is an expression of variables; expected a denominator without variables that is not 0",
+        ": `f` divides by an expression with variables",
+    );
+    refused(
+        |m| {
+            m.nodes[2] = v1::Node {
+                kind: Some(Kind::Constant(v1::ExactComplex::default())),
+            };
+            m.nodes[3] = v1::Node {
+                kind: Some(Kind::Divide(v1::Binary { left: 1, right: 2 })),
+            }
+        },
+        "nodes[3].divide.right is 0; expected a denominator that is not 0",
     );
     refused(
         |m| {

@@ -446,17 +446,15 @@ impl Graph {
                     .expressions
                     .as_constant(b)
                     .is_some_and(ComplexRational::is_zero);
-                if zero || self.expressions.dependence(b) == Dependence::Variables {
+                if zero {
                     return Err(ProtocolError::invalid(
                         "divide.right",
-                        if zero {
-                            "0"
-                        } else {
-                            "an expression of variables"
-                        },
-                        "a denominator without variables that is not 0",
+                        "0",
+                        "a denominator that is not 0",
                     ));
                 }
+                // Variables may stand in the denominators of a rational map, and nowhere
+                // else: `System::check` looks at that.
                 (Node::Divide(a, b), d)
             }
             Kind::Negate(a) => {

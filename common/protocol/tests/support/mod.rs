@@ -167,7 +167,17 @@ impl Draw {
             equation_names: (0..equations.len()).map(|i| format!("f{i}")).collect(),
             equations,
             path_variable: (p > 0 && self.coin()).then(|| self.below(p)),
-            conjugates: self.many(2, |draw| (draw.below(n), draw.below(n))),
+            conjugates: {
+                let mut free = vec![true; n];
+                let mut pairs = self.many(2, |draw| (draw.below(n), draw.below(n)));
+                pairs.retain(|&(a, b)| {
+                    let fits = a != b && free[a] && free[b];
+                    free[a] &= !fits;
+                    free[b] &= !fits;
+                    fits
+                });
+                pairs
+            },
             degenerate: degenerate.into_iter().collect(),
             symmetry,
             expressions,
