@@ -1,9 +1,13 @@
 //! What people see, against files that a person can read: tests/golden/client_output.
 //! UPDATE_GOLDEN=1 rewrites them.
 
+use cognate_algorithms::start_costs::StartCosts;
+use cognate_coordinator::client::commands::{info, jobs, workers};
 use cognate_coordinator::client::output::summary::Summary;
-use cognate_coordinator::client::output::table::{self, SolutionRow};
+use cognate_coordinator::client::output::table;
 use cognate_coordinator::client::output::text::Look;
+use cognate_protocol::v1;
+use cognate_solutions::solution::{NamedValues, Solution};
 use num_complex::Complex64;
 use std::path::PathBuf;
 
@@ -65,15 +69,22 @@ const UNSETTLED: &str = r#"{
   "a field of a newer service": 1
 }"#;
 
-fn real_row(seed: u32) -> SolutionRow {
+fn real_row(seed: u32) -> Solution {
     let value = |v: u32| f64::from((seed * 37 + v * 101) % 199) / 99.0 - 1.0;
-    SolutionRow {
-        variables: ["x0", "x1", "x2", "x3", "y0", "y1", "y2", "y3"]
-            .iter()
-            .zip(0..)
-            .map(|(name, v)| (name.to_string(), Complex64::new(value(v), 1e-16)))
-            .collect(),
+    Solution {
+        variables: NamedValues(
+            ["x0", "x1", "x2", "x3", "y0", "y1", "y2", "y3"]
+                .iter()
+                .zip(0..)
+                .map(|(name, v)| (name.to_string(), Complex64::new(value(v), 1e-16)))
+                .collect(),
+        ),
         multiplicity: 1,
+        cycles: vec![1],
+        precision_bits: 53,
+        class: None,
+        paths: vec![u64::from(seed)],
+        certificate: None,
         real: Some(true),
         singular: false,
         residual: 1e-16,
@@ -85,7 +96,7 @@ fn real_row(seed: u32) -> SolutionRow {
 #[test]
 fn a_settled_answer() {
     let summary = Summary::read(PLATFORM).expect("the contract's example is a summary");
-    let rows: Vec<SolutionRow> = (0..40).map(real_row).collect();
+    let rows: Vec<Solution> = (0..40).map(real_row).collect();
     check_widths("settled", |look| {
         table::summary("stewart_gough.bertini", &summary, &rows, look)
     });
@@ -99,7 +110,7 @@ fn an_answer_with_open_questions() {
     row.real = None;
     row.singular = true;
     row.multiplicity = 4;
-    row.variables[1].1.im = -0.5;
+    row.variables.0[1].1.im = -0.5;
     row.condition = f64::INFINITY;
     check_widths("unsettled", |look| {
         table::summary(
@@ -110,5 +121,78 @@ fn an_answer_with_open_questions() {
         )
     });
     assert_eq!(summary.exit() as u8, 1);
-    assert_eq!(summary.open_questions().len(), 3);
+    assert_eq!(summary.open_questions().len(), 2);
+}
+
+fn read(file: &str) -> cognate_systems::formats::Problem {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../deploy/examples")
+        .join(file);
+    let content = std::fs::read(&path).expect("the example is there");
+    cognate_systems::formats::read(file, &content).expect("the example is well formed")
+}
+
+#[test]
+fn what_a_file_holds() {
+    for file in ["three_rpr.bertini", "stewart_gough_dietmaier.bertini"] {
+        let problem = read(file);
+        let costs = StartCosts::of(&problem.system).expect("the example is polynomial");
+        let name = format!("info_{}", file.trim_end_matches(".bertini"));
+        check_widths(&name, |look| info::table(file, &problem, &costs, look));
+    }
+}
+
+#[test]
+fn lists_of_jobs_and_workers() {
+    let job = |job: &str, name: &str, state: v1::JobState, done, total, age: i64| v1::JobOverview {
+        job: job.into(),
+        name: name.into(),
+        state: state.into(),
+        submitted_unix_ms: (1_000_000 - age) * 1000,
+        items_accepted: done,
+        items_total: total,
+        ..Default::default()
+    };
+    let jobs = [
+        job(
+            "01j9",
+            "nine_point.bertini",
+            v1::JobState::Running,
+            81_000,
+            143_360,
+            95,
+        ),
+        job(
+            "01j8",
+            "a_system_with_a_name_that_is_much_too_long_for_a_table.bertini",
+            v1::JobState::Solved,
+            128,
+            128,
+            4_000,
+        ),
+        job("01j7", "", v1::JobState::Cancelled, 0, 16, 400_000),
+        // The ledger's clock may be a little ahead of ours.
+        job("01j6", "x.phc", v1::JobState::Queued, 0, 0, -1),
+    ];
+    check_widths("jobs", |look| jobs::table(&jobs, 1e6, look));
+    let worker = |worker: &str, chunks, refused: &str| v1::WorkerOverview {
+        worker: worker.into(),
+        host: "node-17".into(),
+        threads: 16,
+        lane_width: 16,
+        instruction_set: "avx512".into(),
+        transport: "grpc".into(),
+        idle_seconds: 3.2,
+        leased_chunks: chunks,
+        accepted_chunks: 12,
+        accepted_paths: 48_000,
+        refused: refused.into(),
+        ..Default::default()
+    };
+    let workers = [
+        worker("node-17-4711", 2, ""),
+        worker("node-18-4712", 0, ""),
+        worker("node-19-4713", 0, "numerics revision 1; this service has 2"),
+    ];
+    check_widths("workers", |look| workers::table(&workers, look));
 }

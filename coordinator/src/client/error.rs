@@ -47,6 +47,9 @@ pub enum ClientError {
         /// Where and what was expected.
         message: String,
     },
+    /// A file was not understood; the message names file, line and column.
+    #[error("{0}")]
+    Format(String),
     /// The coordinator refused the request.
     #[error("the coordinator refused: {0}")]
     Refused(String),
@@ -81,6 +84,7 @@ impl ClientError {
             Self::NotInThisVersion { .. }
             | Self::File { .. }
             | Self::Input { .. }
+            | Self::Format(_)
             | Self::Refused(_) => Exit::BadInput,
             Self::Unreachable { .. } | Self::GaveUp(_) | Self::Local(_) => Exit::Unavailable,
             Self::Cancelled => Exit::Cancelled,

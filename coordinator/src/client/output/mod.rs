@@ -1,17 +1,24 @@
 //! The same answers for people and for programs.
 
+pub mod files;
+pub mod json;
 pub mod progress;
 pub mod summary;
 pub mod table;
 pub mod text;
 
+use super::error::ClientError;
 use std::io::Write;
 
 /// Writes to standard output. A reader that has gone away (`| head`) is no error.
-pub fn print(text: &str) -> std::io::Result<()> {
+pub fn print(text: &str) -> Result<(), ClientError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => other,
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(ClientError::File {
+            action: "cannot write",
+            path: "standard output".into(),
+            source: e,
+        }),
+        _ => Ok(()),
     }
 }

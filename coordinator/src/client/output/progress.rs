@@ -16,9 +16,7 @@ pub struct Standing {
     pub done: u64,
     /// Paths that are known to be asked for so far.
     pub total: u64,
-    /// Workers that hold leases or poll.
-    pub workers: u64,
-    /// Paths that failed so far.
+    /// Paths in chunks that failed so far.
     pub failed: u64,
 }
 
@@ -110,11 +108,10 @@ fn style() -> ProgressStyle {
 }
 
 fn notes(standing: &Standing) -> String {
-    let mut notes = counted(standing.workers, "worker");
-    if standing.failed > 0 {
-        notes.push_str(&format!(", {} failed", count(standing.failed)));
+    match standing.failed {
+        0 => String::new(),
+        n => format!("{} failed", count(n)),
     }
-    notes
 }
 
 fn plain_line(standing: &Standing, elapsed: Duration) -> String {
@@ -131,7 +128,10 @@ fn plain_line(standing: &Standing, elapsed: Duration) -> String {
             rate(standing.done as f64 / elapsed)
         ));
     }
-    line.push_str(&format!(", {}, {}", notes(standing), seconds(elapsed)));
+    if standing.failed > 0 {
+        line.push_str(&format!(", {}", notes(standing)));
+    }
+    line.push_str(&format!(", {}", seconds(elapsed)));
     line
 }
 
@@ -145,12 +145,11 @@ mod tests {
             phase: "tracking".into(),
             done: 12_000,
             total: 143_360,
-            workers: 2,
             failed: 3,
         };
         assert_eq!(
             plain_line(&standing, Duration::from_secs(60)),
-            "tracking: 12,000 of 143,360 paths, 200 paths/s, 2 workers, 3 failed, 1 min 00 s"
+            "tracking: 12,000 of 143,360 paths, 200 paths/s, 3 failed, 1 min 00 s"
         );
     }
 

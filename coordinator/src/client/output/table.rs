@@ -2,27 +2,9 @@
 
 use super::summary::Summary;
 use super::text::{Look, complex, count, counted, cut, magnitude, rate, real, seconds, wrapped};
+use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::fmt::Write as _;
-
-/// A solution as a table shows it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SolutionRow {
-    /// Names and values, in the order of the system's variables.
-    pub variables: Vec<(String, Complex64)>,
-    /// Multiplicity as a solution of the tracked system.
-    pub multiplicity: u32,
-    /// Fixed by complex conjugation; `None` where that was not asked.
-    pub real: Option<bool>,
-    /// Whether the Jacobian is singular there.
-    pub singular: bool,
-    /// Largest residual.
-    pub residual: f64,
-    /// Condition number.
-    pub condition: f64,
-    /// Estimated relative error.
-    pub accuracy: f64,
-}
 
 /// Solutions shown before a table says how many more there are.
 pub const SOLUTIONS_SHOWN: usize = 8;
@@ -81,7 +63,7 @@ impl Lines {
 }
 
 /// The whole table; `name` says what was solved, `solutions` are the first of them.
-pub fn summary(name: &str, summary: &Summary, solutions: &[SolutionRow], look: Look) -> String {
+pub fn summary(name: &str, summary: &Summary, solutions: &[Solution], look: Look) -> String {
     let paths = &summary.paths;
     let mut lines = Lines {
         text: String::new(),
@@ -106,26 +88,22 @@ pub fn summary(name: &str, summary: &Summary, solutions: &[SolutionRow], look: L
 
 /// One or two lines that answer the question.
 fn headline(name: &str, summary: &Summary, look: Look) -> String {
-    let s = &summary.solutions;
-    let mut answer = counted(s.distinct, "solution");
-    match s.real {
-        Some(n) if s.distinct == 0 && n == 0 => {}
-        Some(n) if n == s.distinct && n > 1 => answer.push_str(", all real"),
-        Some(n) => {
-            let _ = write!(answer, ", {} real", count(n));
-        }
-        None => {}
-    }
-    if s.singular > 0 {
-        let _ = write!(answer, ", {} singular", count(s.singular));
-    }
     let open = summary.open_questions();
-    let failed = paths_failed(summary) > 0;
-    let answer = match (open.is_empty(), failed) {
-        (true, _) => look.good(&answer),
-        (false, false) => look.warn(&answer),
-        (false, true) => look.bad(&answer),
+    let answer = answer(summary);
+    let color = |line: &str| match (open.is_empty(), summary.paths.failed > 0) {
+        (true, _) => look.good(line),
+        (false, false) => look.warn(line),
+        (false, true) => look.bad(line),
     };
+    let mut text = format!("{}:", look.bold(name));
+    if name.chars().count() + 2 + answer.chars().count() <= look.width {
+        let _ = writeln!(text, " {}", color(&answer));
+    } else {
+        text.push('\n');
+        for line in wrapped(&answer, look.width - 2) {
+            let _ = writeln!(text, "  {}", color(&line));
+        }
+    }
     let p = &summary.problem;
     let what = format!(
         "{}, {}, {} start, seed {}",
@@ -134,12 +112,11 @@ fn headline(name: &str, summary: &Summary, look: Look) -> String {
         p.start,
         p.seed
     );
-    let mut text = format!("{}: {answer}\n", look.bold(name));
     for line in wrapped(&what, look.width) {
         let _ = writeln!(text, "{}", look.dim(&line));
     }
-    for question in open {
-        for (i, line) in wrapped(&question, look.width - 15).iter().enumerate() {
+    for question in &open {
+        for (i, line) in wrapped(question, look.width - 15).iter().enumerate() {
             let lead = if i == 0 {
                 "not settled: "
             } else {
@@ -151,16 +128,40 @@ fn headline(name: &str, summary: &Summary, look: Look) -> String {
     text
 }
 
-fn paths_failed(summary: &Summary) -> u64 {
-    summary.paths.failed.unwrap_or(0)
+/// The answer in one phrase.
+pub fn answer(summary: &Summary) -> String {
+    let s = &summary.solutions;
+    // While it is not known whether singular endpoints are isolated, they are no solutions in this phrase.
+    let undecided = s.singular > 0 && summary.paths.positive_dimensional.is_none();
+    let mut answer = match (undecided, s.singular) {
+        (_, 0) => counted(s.nonsingular, "solution"),
+        (true, n) => format!(
+            "{}, {} that may not be isolated",
+            counted(s.nonsingular, "nonsingular solution"),
+            counted(n, "singular point"),
+        ),
+        (false, n) => format!("{}, {} singular", counted(s.distinct, "solution"), count(n)),
+    };
+    match s.real {
+        Some(n) if n == s.distinct && n > 1 => answer.push_str(", all real"),
+        Some(n) if s.distinct > 0 => {
+            let _ = write!(answer, ", {} real", count(n));
+        }
+        _ => {}
+    }
+    answer
 }
 
 fn paths_block(lines: &mut Lines, summary: &Summary) {
     let p = &summary.paths;
     let undecided = "not decided in this version; such paths are counted in the next class";
     let classes = [
-        ("failed", p.failed, "given up; `cognate explain` says why"),
-        ("at infinity", p.at_infinity, "no solution there"),
+        (
+            "failed",
+            Some(p.failed),
+            "given up; `cognate explain` says why",
+        ),
+        ("at infinity", Some(p.at_infinity), "no solution there"),
         ("excess", p.excess, "no solution before randomisation"),
         (
             "positive-dimensional",
@@ -169,10 +170,14 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
         ),
         (
             "singular",
-            p.singular,
+            Some(p.singular),
             "at a multiple or otherwise singular point",
         ),
-        ("finite", p.finite, "at a nonsingular isolated solution"),
+        (
+            "finite",
+            Some(p.finite),
+            "at a nonsingular isolated solution",
+        ),
     ];
     lines.heading("Paths", "", "each in the first class that holds");
     for (name, number, meaning) in classes {
@@ -211,13 +216,8 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
         );
     }
     if p.by_precision.len() > 1 {
-        let mut rungs: Vec<(u64, u64)> = p
+        let words: Vec<String> = p
             .by_precision
-            .iter()
-            .filter_map(|(bits, &n)| Some((bits.parse().ok()?, n)))
-            .collect();
-        rungs.sort_unstable();
-        let words: Vec<String> = rungs
             .iter()
             .map(|(bits, n)| format!("{} with {bits} bits", count(*n)))
             .collect();
@@ -312,14 +312,14 @@ fn warnings(summary: &Summary, look: Look) -> String {
 }
 
 /// The first solutions, one a line, as many variables as fit; `total` is how many there are.
-pub fn solution_list(solutions: &[SolutionRow], total: u64, look: Look) -> String {
+pub fn solution_list(solutions: &[Solution], total: u64, look: Look) -> String {
     let mut text = String::new();
     let Some(first) = solutions.first() else {
         return text;
     };
     let shown = &solutions[..solutions.len().min(SOLUTIONS_SHOWN)];
     let digits = shown.len().to_string().len().max(1);
-    let kind = |s: &SolutionRow| {
+    let kind = |s: &Solution| {
         let mut kind = match s.real {
             Some(true) => "real".to_string(),
             Some(false) => "complex".to_string(),
@@ -348,11 +348,12 @@ pub fn solution_list(solutions: &[SolutionRow], total: u64, look: Look) -> Strin
         columns.remove(1);
     }
     let fixed = columns.len();
-    for (v, (name, _)) in first.variables.iter().enumerate() {
+    for (v, (name, _)) in first.variables.0.iter().enumerate() {
         let mut cells: Vec<String> = shown
             .iter()
             .map(|s| {
                 s.variables
+                    .0
                     .get(v)
                     .map_or(String::new(), |(_, z)| coordinate(s, *z))
             })
@@ -416,11 +417,12 @@ pub fn solution_list(solutions: &[SolutionRow], total: u64, look: Look) -> Strin
 }
 
 /// A coordinate without what is only rounding.
-fn coordinate(solution: &SolutionRow, z: Complex64) -> String {
+fn coordinate(solution: &Solution, z: Complex64) -> String {
     // A part below the solution's own error estimate says nothing.
     let noise = solution.accuracy.clamp(1e-14, 1e-6);
     let scale = solution
         .variables
+        .0
         .iter()
         .map(|(_, z)| z.re.abs().max(z.im.abs()))
         .fold(0.0, f64::max);

@@ -1,0 +1,409 @@
+//! What people type: every command and option of `cognate`, with its help.
+//!
+//! Options that belong to the command line but not to this version are parsed
+//! here and refused by `not_yet`, so that nothing is half there in silence.
+
+use clap::builder::Styles;
+use clap::builder::styling::{AnsiColor, Effects};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().effects(Effects::BOLD))
+    .usage(AnsiColor::Green.on_default().effects(Effects::BOLD))
+    .literal(AnsiColor::Cyan.on_default().effects(Effects::BOLD))
+    .placeholder(AnsiColor::Cyan.on_default());
+
+/// The address that a coordinator listens on and its clients look for, unless told otherwise.
+pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7654";
+
+/// Finds all solutions of a system of polynomial equations, on as many machines as there are.
+#[derive(Debug, Parser)]
+#[command(
+    name = "cognate",
+    version,
+    styles = STYLES,
+    propagate_version = true,
+    max_term_width = 100,
+    after_help = "\
+Examples:
+  cognate solve system.bertini                solve here, with two local workers
+  cognate coordinator --ledger sqlite:jobs.db start the service
+  cognate worker --coordinator http://head:7654
+  cognate submit system.bertini | xargs cognate watch
+
+Exit codes: 0 solved, 1 solved but something is not settled, 2 bad input,
+            3 the service could not be reached or gave up, 4 cancelled, 130 interrupted"
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve a system here: a coordinator and workers for this one problem
+    Solve(Solve),
+    /// What a file holds and what each start would cost; solves nothing
+    Info(Info),
+    /// One path again, step by step
+    Path(TracePath),
+    /// Run the service that plans jobs and hands out their paths
+    Coordinator(Coordinator),
+    /// Run a worker that tracks paths for a coordinator
+    Worker(Worker),
+    /// Hand a system to a coordinator; prints the job's id
+    Submit(Submit),
+    /// Follow a job until it ends
+    Watch(OneJob),
+    /// The results of a job
+    Results(Results),
+    /// How a job's numbers came about: stages, retries, reasons of failure
+    Explain(OneJob),
+    /// Stop a job
+    Cancel(OneJob),
+    /// All jobs of a coordinator
+    Jobs(Listing),
+    /// All workers of a coordinator
+    Workers(Listing),
+    /// Mechanisms as systems (not in this version)
+    #[command(hide = true)]
+    Synthesize(Refused),
+    /// As many workers in Slurm as the backlog asks for (not in this version)
+    #[command(hide = true)]
+    Fleet(Refused),
+}
+
+/// Arguments of a command that is not in this version: all are taken, none is used.
+#[derive(Debug, Args)]
+#[command(disable_help_flag = true)]
+pub struct Refused {
+    /// Whatever was typed.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub rest: Vec<String>,
+}
+
+/// How results are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A table for people
+    #[default]
+    Table,
+    /// One JSON object on standard output, nothing else there
+    Json,
+}
+
+/// Where the paths begin, as typed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Start {
+    /// The cheapest of total degree and multihomogeneous; given where start solutions are
+    #[default]
+    Auto,
+    /// As many paths as the product of the degrees
+    TotalDegree,
+    /// Fewer paths, by the file's variable groups (or --groups)
+    Multihomogeneous,
+    /// From known solutions: --start-solutions
+    Given,
+    /// Not in this version
+    #[value(hide = true)]
+    LinearProduct,
+    /// Not in this version
+    #[value(hide = true)]
+    Polyhedral,
+    /// Not in this version
+    #[value(hide = true)]
+    Regeneration,
+    /// Not in this version
+    #[value(hide = true)]
+    Monodromy,
+}
+
+/// Named settings of the tracker, as typed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum PresetName {
+    /// Tighter steps, slower, fewest path jumps
+    Careful,
+    /// What the known answers are checked with
+    #[default]
+    Default,
+    /// Faster, more path jumps for the crossing check to repair
+    Fast,
+    /// Fastest; for experiments
+    Reckless,
+}
+
+/// What is solved and how: the options of everything that takes a system.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Problem")]
+pub struct ProblemArguments {
+    /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
+    pub file: PathBuf,
+    /// Where the paths begin
+    #[arg(
+        long,
+        value_enum,
+        default_value_t,
+        hide_possible_values = true,
+        value_name = "auto|total-degree|multihomogeneous|given"
+    )]
+    pub start: Start,
+    /// Known solutions to start from: our solutions.jsonl, Bertini's start format or PHCpack's list
+    #[arg(long, value_name = "FILE")]
+    pub start_solutions: Option<PathBuf>,
+    /// The parameters that the start solutions belong to: Bertini's format or JSON
+    #[arg(long, value_name = "FILE")]
+    pub start_parameters: Option<PathBuf>,
+    /// The parameters wanted, one set or many
+    #[arg(long, value_name = "FILE")]
+    pub target_parameters: Option<PathBuf>,
+    /// Variable groups instead of those in the file: "x,y;z,w"
+    #[arg(long, value_name = "GROUPS")]
+    pub groups: Option<String>,
+    /// Pairs of variables that are conjugates at a real solution: "p~P,t1~T1"
+    #[arg(long, value_name = "PAIRS")]
+    pub conjugates: Option<String>,
+    /// Named sets of endpoints that are no answers (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub degenerate: Option<PathBuf>,
+    /// Seed of everything random; the same seed gives the same bits [default: made from the problem]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// Arithmetic of the paths
+    #[arg(long, value_name = "double")]
+    pub precision: Option<String>,
+    /// Generators of a symmetry group of the solutions (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub symmetry: Option<PathBuf>,
+    /// Proofs that there is one solution in each box (not in this version)
+    #[arg(long, hide = true)]
+    pub certify: bool,
+    /// Singular solutions made regular (not in this version)
+    #[arg(long, hide = true)]
+    pub deflate: bool,
+    /// Whether a set of solutions is complete (not in this version)
+    #[arg(long, hide = true)]
+    pub trace_test: bool,
+}
+
+/// Where the answer goes.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Output")]
+pub struct OutputArguments {
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+    /// Also write summary.json, solutions.jsonl and Bertini's files here
+    #[arg(long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+/// Which coordinator is asked.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Service")]
+pub struct ServiceArguments {
+    /// The coordinator's address: http://HOST:PORT or unix:PATH
+    #[arg(long, value_name = "URL", env = "COGNATE_COORDINATOR", default_value_t = format!("http://{DEFAULT_ADDRESS}"))]
+    pub coordinator: String,
+    /// A file with the token that the coordinator asks for (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub token_file: Option<PathBuf>,
+    /// A file with the authority that the coordinator's certificate is checked by (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub tls_ca: Option<PathBuf>,
+}
+
+/// `cognate solve`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate solve system.bertini
+  cognate solve system.phc --workers 4 --format json > summary.json
+  cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
+  cognate solve family.bertini --start-solutions solutions.jsonl \\
+                --start-parameters start.json --target-parameters wanted.json")]
+pub struct Solve {
+    /// What is solved.
+    #[command(flatten)]
+    pub problem: ProblemArguments,
+    /// Local worker processes
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub workers: u32,
+    /// Threads of each worker [default: cores / workers]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+    /// Where the answer goes.
+    #[command(flatten)]
+    pub output: OutputArguments,
+}
+
+/// `cognate info`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate info system.bertini
+  cognate info system.bertini --groups \"x,y;z,w\" --format json")]
+pub struct Info {
+    /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
+    pub file: PathBuf,
+    /// Variable groups instead of those in the file: "x,y;z,w"
+    #[arg(long, value_name = "GROUPS")]
+    pub groups: Option<String>,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `cognate path`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate path system.bertini --index 17            how path 17 ends
+  cognate path system.bertini --index 17 --trace    every step, and a drawing in path_17.svg")]
+pub struct TracePath {
+    /// What is solved.
+    #[command(flatten)]
+    pub problem: ProblemArguments,
+    /// The path's number, as results show it
+    #[arg(long, value_name = "N")]
+    pub index: u64,
+    /// Every step as a table, and a drawing
+    #[arg(long)]
+    pub trace: bool,
+    /// Where the drawing goes [default: path_N.svg]
+    #[arg(long, value_name = "FILE", requires = "trace")]
+    pub svg: Option<PathBuf>,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `cognate coordinator`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate coordinator
+  cognate coordinator --listen unix:/run/cognate.sock --listen 127.0.0.1:7654 \\
+                      --ledger sqlite:/var/lib/cognate/ledger.db --results /var/lib/cognate/results
+
+It can be killed at any moment and started again on the same ledger: jobs go on.")]
+pub struct Coordinator {
+    /// Addresses to listen on: HOST:PORT or unix:PATH; may be given several times
+    #[arg(long, value_name = "ADDR", num_args = 1.., default_value = DEFAULT_ADDRESS)]
+    pub listen: Vec<String>,
+    /// What is remembered: sqlite:PATH
+    #[arg(
+        long,
+        value_name = "URL",
+        default_value = "sqlite:cognate-data/ledger.db"
+    )]
+    pub ledger: String,
+    /// Where results are kept
+    #[arg(long, value_name = "DIR", default_value = "cognate-data/results")]
+    pub results: String,
+    /// Settings as a file; options on the command line win
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Serve addresses beyond this machine without asking anybody who they are
+    #[arg(long)]
+    pub insecure: bool,
+    /// Certificate chain (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub tls_certificate: Option<PathBuf>,
+    /// Private key (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub tls_key: Option<PathBuf>,
+    /// Authority of clients and workers (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub tls_client_ca: Option<PathBuf>,
+    /// Tokens of clients and workers (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub token_file: Option<PathBuf>,
+}
+
+/// `cognate worker`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate worker --coordinator http://head:7654 --threads 16
+
+Workers join and leave at any moment; Ctrl-C gives back what is unfinished.")]
+pub struct Worker {
+    /// What the worker itself reads.
+    #[command(flatten)]
+    pub worker: cognate_worker::config::Arguments,
+    /// A file with the token that the coordinator asks for (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub token_file: Option<PathBuf>,
+    /// A file with the authority that the coordinator's certificate is checked by (not in this version)
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub tls_ca: Option<PathBuf>,
+}
+
+/// `cognate submit`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate submit system.bertini
+  job=$(cognate submit system.bertini) && cognate watch $job && cognate results $job")]
+pub struct Submit {
+    /// What is solved.
+    #[command(flatten)]
+    pub problem: ProblemArguments,
+    /// Which coordinator.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// Chosen by the caller: the same id sent twice is one job
+    #[arg(long, value_name = "ID", help_heading = "Service")]
+    pub request_id: Option<String>,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}
+
+/// `cognate watch`, `explain`, `cancel`.
+#[derive(Clone, Debug, Args)]
+pub struct OneJob {
+    /// The job's id, as `submit` printed it
+    pub job: String,
+    /// Which coordinator.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}
+
+/// `cognate results`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate results JOB
+  cognate results JOB --format json | jq .paths
+  cognate results JOB --output here && jq -c .variables here/solutions.jsonl")]
+pub struct Results {
+    /// The job's id, as `submit` printed it
+    pub job: String,
+    /// Which coordinator.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// Where the answer goes.
+    #[command(flatten)]
+    pub output: OutputArguments,
+}
+
+/// `cognate jobs`, `cognate workers`.
+#[derive(Clone, Debug, Args)]
+pub struct Listing {
+    /// Which coordinator.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}

@@ -1,0 +1,145 @@
+//! `cognate info`: what a file holds and what each start would cost.
+
+use crate::client::arguments::{Format, Info};
+use crate::client::error::{ClientError, Exit};
+use crate::client::output;
+use crate::client::output::text::{Look, count, counted, wrapped};
+use crate::client::problem;
+use cognate_algorithms::start_costs::StartCosts;
+use cognate_systems::formats::Problem;
+use std::fmt::Write as _;
+
+/// Reads and counts; solves nothing.
+pub fn run(a: &Info) -> Result<Exit, ClientError> {
+    let read = problem::read_system(&a.file, a.groups.as_deref())?;
+    for warning in &read.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let name = problem::short_name(&a.file);
+    let costs = StartCosts::of(&read.system).map_err(|e| ClientError::Input {
+        origin: name.clone(),
+        message: e.to_string(),
+    })?;
+    let text = match a.format {
+        Format::Table => table(&name, &read, &costs, Look::of_standard_output()),
+        Format::Json => {
+            let json = serde_json::to_string_pretty(&costs);
+            format!(
+                "{}\n",
+                json.expect("counts and names can be written as JSON")
+            )
+        }
+    };
+    output::print(&text)?;
+    Ok(Exit::Solved)
+}
+
+/// Width of the column of names.
+const LABEL: usize = 18;
+
+/// What the file holds, for people.
+pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> String {
+    let system = &read.system;
+    let mut text = format!(
+        "{}: {}, {}\n\n",
+        look.bold(name),
+        counted(costs.variables as u64, "variable"),
+        counted(costs.equations as u64, "equation"),
+    );
+    let mut line = |label: &str, content: &str| {
+        let lines = wrapped(content, look.width.saturating_sub(2 + LABEL).max(20));
+        for (i, part) in lines.iter().enumerate() {
+            let label = if i == 0 { label } else { "" };
+            let _ = writeln!(text, "  {label:<LABEL$}{part}");
+        }
+    };
+    line("format", &read.format.to_string());
+    for (g, group) in system.groups.iter().enumerate() {
+        let names: Vec<&str> = group
+            .variables
+            .iter()
+            .map(|&v| system.variables[v].as_str())
+            .collect();
+        let kind = if group.homogeneous {
+            " (homogeneous)"
+        } else {
+            ""
+        };
+        let label = if g == 0 { "variable groups" } else { "" };
+        line(label, &format!("{}{kind}", names.join(", ")));
+    }
+    if !system.parameters.is_empty() {
+        line("parameters", &system.parameters.join(", "));
+    }
+    if let Some(t) = system.path_variable {
+        line("path variable", &system.parameters[t]);
+    }
+    line("degrees", &degrees(&costs.degrees));
+    line(
+        "symmetry",
+        &match system.symmetry.len() {
+            0 => String::new(),
+            n => counted(n as u64, "generator"),
+        },
+    );
+    let _ = writeln!(
+        text,
+        "\n  {}",
+        look.bold(&format!("{:<LABEL$}paths", "start"))
+    );
+    let groups = if system.groups.len() == 1 {
+        "one group".to_string()
+    } else {
+        format!("{} groups", system.groups.len())
+    };
+    let starts = [
+        ("total-degree", costs.total_degree, "total_degree", ""),
+        (
+            "multihomogeneous",
+            costs.multihomogeneous.number,
+            "multihomogeneous",
+            groups.as_str(),
+        ),
+        ("linear-product", costs.linear_product, "linear_product", ""),
+        ("polyhedral", costs.mixed_volume, "mixed_volume", ""),
+    ];
+    let widest = starts
+        .iter()
+        .filter_map(|s| s.1)
+        .map(|n| count(n).len())
+        .max();
+    let width = widest.unwrap_or(1).max("paths".len());
+    for (start, number, field, remark) in starts {
+        let reason = costs.notes.get(field).map_or(remark, String::as_str);
+        let number = number.map_or_else(|| "-".into(), count);
+        let room = look.width.saturating_sub(2 + LABEL + width + 2).max(20);
+        let mut notes = wrapped(reason, room).into_iter();
+        let first = notes.next().unwrap_or_default();
+        let row = format!("  {start:<LABEL$}{number:>width$}  {first}");
+        let _ = writeln!(text, "{}", row.trim_end());
+        for more in notes {
+            let _ = writeln!(text, "{}{more}", " ".repeat(2 + LABEL + width + 2));
+        }
+    }
+    let why = match costs.choice {
+        Some(choice) => format!("auto takes {choice}: {}", costs.why),
+        None => format!("cannot be solved: {}", costs.why),
+    };
+    text.push('\n');
+    for part in wrapped(&why, look.width - 2) {
+        let _ = writeln!(text, "  {part}");
+    }
+    text
+}
+
+/// Degrees in the order of the equations, equal neighbours together: `2 x7, 3`.
+fn degrees(degrees: &[u32]) -> String {
+    let runs: Vec<String> = degrees
+        .chunk_by(|a, b| a == b)
+        .map(|run| match run.len() {
+            1 => run[0].to_string(),
+            n => format!("{} x{n}", run[0]),
+        })
+        .collect();
+    runs.join(", ")
+}

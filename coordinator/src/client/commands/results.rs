@@ -1,0 +1,91 @@
+//! `cognate results`: the answer of a job, as a table, as JSON, as files.
+
+use super::watch::{ended, read_summary, standing};
+use crate::client::arguments::{Format, OutputArguments, Results};
+use crate::client::connection::Connection;
+use crate::client::error::{ClientError, Exit};
+use crate::client::output::files::Folder;
+use crate::client::output::table::SOLUTIONS_SHOWN;
+use crate::client::output::text::{Look, counted};
+use crate::client::output::{self, json, table};
+use cognate_protocol::v1;
+use cognate_solutions::solution::Solution;
+
+/// Shows a job's answer; the exit code is the job's.
+pub async fn run(a: &Results) -> Result<Exit, ClientError> {
+    let mut connection = Connection::open(&a.service.coordinator).await?;
+    let now = connection.progress(&a.job).await?;
+    match now.state() {
+        v1::JobState::Cancelled => return Err(ClientError::Cancelled),
+        v1::JobState::Failed => return Err(ClientError::GaveUp(now.message)),
+        state if !ended(state) => {
+            let at = standing(&now);
+            let paths = counted(at.total, "path");
+            return Err(ClientError::Refused(format!(
+                "job {} has not ended: {}, {} of {paths}; `cognate watch {}` waits for it",
+                a.job, at.phase, at.done, a.job
+            )));
+        }
+        _ => {}
+    }
+    // The name is in the overview only; a job that is too old to be in it goes by its id.
+    let name = match a.output.format {
+        Format::Json => String::new(),
+        Format::Table => {
+            let jobs = connection.jobs().await?;
+            let named = jobs
+                .into_iter()
+                .find(|j| j.job == a.job && !j.name.is_empty());
+            named.map_or_else(|| format!("job {}", a.job), |j| j.name)
+        }
+    };
+    show(&mut connection, &a.job, &name, &a.output).await
+}
+
+/// Prints the answer of a finished job and writes the files that were asked for.
+pub async fn show(
+    connection: &mut Connection,
+    job: &str,
+    name: &str,
+    output: &OutputArguments,
+) -> Result<Exit, ClientError> {
+    let json = connection.summary(job).await?;
+    let summary = read_summary(&json)?;
+    let mut rows: Vec<Solution> = vec![];
+    let wanted = match output.format {
+        Format::Table => SOLUTIONS_SHOWN,
+        Format::Json => 0,
+    };
+    if let Some(path) = &output.output {
+        let mut folder = Folder::create(path)?;
+        connection
+            .solutions(job, |solution| {
+                folder.solution(&solution)?;
+                if rows.len() < wanted {
+                    rows.push(solution);
+                }
+                Ok(true)
+            })
+            .await?;
+        folder.finish(&json)?;
+    } else if wanted > 0 {
+        connection
+            .solutions(job, |solution| {
+                rows.push(solution);
+                Ok(rows.len() < wanted)
+            })
+            .await?;
+    }
+    let text = match output.format {
+        Format::Json => json::summary(&json),
+        Format::Table => {
+            let mut text = table::summary(name, &summary, &rows, Look::of_standard_output());
+            if let Some(path) = &output.output {
+                text.push_str(&format!("\n  written to {}\n", path.display()));
+            }
+            text
+        }
+    };
+    output::print(&text)?;
+    Ok(summary.exit())
+}

@@ -1,0 +1,248 @@
+//! One connection to a coordinator: calls out, answers and errors in the client's own words.
+
+use super::error::ClientError;
+use cognate_protocol::limits::{MESSAGE_BYTES, PIECE_BYTES};
+use cognate_protocol::v1::client_api_client::ClientApiClient;
+use cognate_protocol::{from_proto, v1};
+use cognate_solutions::solution::Solution;
+use cognate_worker::config::Address;
+use std::time::Duration;
+use tonic::transport::{Channel, Endpoint, Uri};
+use tonic::{Code, Status};
+
+/// How long a coordinator may take to accept a connection.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
+
+/// A coordinator that answers no ping for so long is gone.
+const KEEP_ALIVE: Duration = Duration::from_secs(20);
+
+/// A connection to one coordinator.
+#[derive(Clone, Debug)]
+pub struct Connection {
+    client: ClientApiClient<Channel>,
+    address: String,
+}
+
+impl Connection {
+    /// Connects, or says that nobody answers.
+    pub async fn open(address: &str) -> Result<Self, ClientError> {
+        let target: Address = address.parse().map_err(|e| ClientError::Input {
+            origin: "--coordinator".into(),
+            message: format!("{e}"),
+        })?;
+        let unreachable = |e: &dyn std::error::Error| ClientError::Unreachable {
+            address: address.to_string(),
+            reason: innermost(e),
+        };
+        let uri = match &target {
+            Address::Tcp(authority) => format!("http://{authority}"),
+            // The name is not looked up: the connector below knows the path.
+            Address::Unix(_) => "http://localhost".into(),
+        };
+        let endpoint = Endpoint::from_shared(uri)
+            .map_err(|e| unreachable(&e))?
+            .connect_timeout(CONNECT_TIMEOUT)
+            .http2_keep_alive_interval(KEEP_ALIVE)
+            .keep_alive_timeout(KEEP_ALIVE)
+            .keep_alive_while_idle(true);
+        let channel = match target {
+            Address::Tcp(_) => endpoint.connect().await,
+            Address::Unix(path) => {
+                let connector = tower::service_fn(move |_: Uri| {
+                    let path = path.clone();
+                    async move {
+                        let stream = tokio::net::UnixStream::connect(path).await?;
+                        Ok::<_, std::io::Error>(hyper_util::rt::TokioIo::new(stream))
+                    }
+                });
+                endpoint.connect_with_connector(connector).await
+            }
+        }
+        .map_err(|e| unreachable(&e))?;
+        let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
+        Ok(Self {
+            client: ClientApiClient::new(channel)
+                .max_decoding_message_size(limit)
+                .max_encoding_message_size(limit),
+            address: address.to_string(),
+        })
+    }
+
+    /// What an error of the service means for the person who waits.
+    fn explain(&self, status: &Status) -> ClientError {
+        let message = status.message().to_string();
+        match status.code() {
+            Code::InvalidArgument
+            | Code::NotFound
+            | Code::FailedPrecondition
+            | Code::OutOfRange
+            | Code::ResourceExhausted
+            | Code::AlreadyExists
+            | Code::PermissionDenied
+            | Code::Unauthenticated => ClientError::Refused(message),
+            // The service says "not in this version" itself.
+            Code::Unimplemented => ClientError::NotInThisVersion {
+                what: message
+                    .trim_start_matches("not in this version")
+                    .trim_start_matches([':', ' '])
+                    .to_string(),
+            },
+            Code::Unavailable => ClientError::Unreachable {
+                address: self.address.clone(),
+                reason: innermost(status),
+            },
+            code => ClientError::GaveUp(format!("{message} ({})", code.description())),
+        }
+    }
+
+    /// The error of a stream that ended before what it was to say.
+    pub fn stopped_early(&self) -> ClientError {
+        ClientError::Unreachable {
+            address: self.address.clone(),
+            reason: "it stopped in the middle of an answer".into(),
+        }
+    }
+
+    /// Makes a job; the same request id sent twice makes one job.
+    pub async fn submit(
+        &mut self,
+        request_id: &str,
+        problem: v1::Problem,
+    ) -> Result<v1::SubmitResponse, ClientError> {
+        let request = v1::SubmitRequest {
+            request_id: request_id.to_string(),
+            problem: Some(problem),
+            tenant: String::new(),
+        };
+        let answer = self.client.submit(request).await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner())
+    }
+
+    /// Stores an object for a later submission.
+    pub async fn upload(&mut self, bytes: Vec<u8>) -> Result<v1::UploadResponse, ClientError> {
+        let data = bytes::Bytes::from(bytes);
+        let piece = usize::try_from(PIECE_BYTES.value).unwrap_or(usize::MAX);
+        let pieces: Vec<v1::ObjectPiece> = (0..data.len().max(1))
+            .step_by(piece)
+            .map(|at| v1::ObjectPiece {
+                data: data.slice(at..data.len().min(at + piece)),
+            })
+            .collect();
+        let answer = self.client.upload(futures::stream::iter(pieces)).await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner())
+    }
+
+    /// The job's progress, now and after every change.
+    pub async fn watch(&mut self, job: &str) -> Result<Following, ClientError> {
+        let request = v1::WatchRequest { job: job.into() };
+        let answer = self.client.watch(request).await;
+        Ok(Following {
+            stream: answer.map_err(|e| self.explain(&e))?.into_inner(),
+            connection: self.clone(),
+        })
+    }
+
+    /// Where the job stands now.
+    pub async fn progress(&mut self, job: &str) -> Result<v1::JobProgress, ClientError> {
+        let mut following = self.watch(job).await?;
+        match following.next().await? {
+            Some(progress) => Ok(progress),
+            None => Err(self.stopped_early()),
+        }
+    }
+
+    /// The summary of a finished job, as JSON.
+    pub async fn summary(&mut self, job: &str) -> Result<String, ClientError> {
+        let request = v1::GetSummaryRequest { job: job.into() };
+        let answer = self.client.get_summary(request).await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner().json)
+    }
+
+    /// Hands every solution of a finished job to `take`, until it says that it has enough.
+    pub async fn solutions(
+        &mut self,
+        job: &str,
+        mut take: impl FnMut(Solution) -> Result<bool, ClientError>,
+    ) -> Result<(), ClientError> {
+        let request = v1::StreamSolutionsRequest { job: job.into() };
+        let answer = self.client.stream_solutions(request).await;
+        let mut stream = answer.map_err(|e| self.explain(&e))?.into_inner();
+        while let Some(solution) = stream.message().await.map_err(|e| self.explain(&e))? {
+            let solution = from_proto::solution::solution(&solution)
+                .map_err(|e| ClientError::GaveUp(format!("a solution of it is malformed: {e}")))?;
+            if !take(solution)? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Hands every path of a finished job to `take`.
+    pub async fn paths(
+        &mut self,
+        job: &str,
+        mut take: impl FnMut(v1::ClassifiedPath) -> Result<(), ClientError>,
+    ) -> Result<(), ClientError> {
+        let request = v1::StreamPathsRequest { job: job.into() };
+        let answer = self.client.stream_paths(request).await;
+        let mut stream = answer.map_err(|e| self.explain(&e))?.into_inner();
+        while let Some(path) = stream.message().await.map_err(|e| self.explain(&e))? {
+            take(path)?;
+        }
+        Ok(())
+    }
+
+    /// How the job's numbers came about: for people, and as JSON.
+    pub async fn explanation(&mut self, job: &str) -> Result<v1::ExplainResponse, ClientError> {
+        let request = v1::ExplainRequest { job: job.into() };
+        let answer = self.client.explain(request).await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner())
+    }
+
+    /// Stops a job; gives its state afterwards.
+    pub async fn cancel(&mut self, job: &str) -> Result<v1::JobState, ClientError> {
+        let request = v1::CancelRequest { job: job.into() };
+        let answer = self.client.cancel(request).await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner().state())
+    }
+
+    /// The newest jobs.
+    pub async fn jobs(&mut self) -> Result<Vec<v1::JobOverview>, ClientError> {
+        let answer = self
+            .client
+            .list_jobs(v1::ListJobsRequest { limit: 0 })
+            .await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner().jobs)
+    }
+
+    /// The workers that were heard of lately.
+    pub async fn workers(&mut self) -> Result<Vec<v1::WorkerOverview>, ClientError> {
+        let answer = self.client.list_workers(v1::ListWorkersRequest {}).await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner().workers)
+    }
+}
+
+/// A job's progress as it comes.
+pub struct Following {
+    stream: tonic::Streaming<v1::JobProgress>,
+    connection: Connection,
+}
+
+impl Following {
+    /// The next change; nothing when the job has ended.
+    pub async fn next(&mut self) -> Result<Option<v1::JobProgress>, ClientError> {
+        self.stream
+            .message()
+            .await
+            .map_err(|e| self.connection.explain(&e))
+    }
+}
+
+/// The cause at the end of a chain of errors: the part that says what happened.
+fn innermost(error: &dyn std::error::Error) -> String {
+    let mut cause = error;
+    while let Some(deeper) = cause.source() {
+        cause = deeper;
+    }
+    cause.to_string()
+}

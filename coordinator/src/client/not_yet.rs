@@ -1,0 +1,91 @@
+//! What belongs to the command line but not to this version: refused with its name, before anything starts.
+
+use super::arguments::{Command, Coordinator, ProblemArguments, ServiceArguments, Start, Worker};
+use super::error::ClientError;
+
+/// Refuses the first thing asked for that this version does not have.
+pub fn refuse(command: &Command) -> Result<(), ClientError> {
+    let missing = match command {
+        Command::Solve(c) => problem(&c.problem),
+        Command::Path(c) => problem(&c.problem),
+        Command::Submit(c) => problem(&c.problem).or_else(|| service(&c.service)),
+        Command::Watch(c) | Command::Explain(c) | Command::Cancel(c) => service(&c.service),
+        Command::Results(c) => service(&c.service),
+        Command::Jobs(c) | Command::Workers(c) => service(&c.service),
+        Command::Coordinator(c) => coordinator(c),
+        Command::Worker(c) => worker(c),
+        Command::Info(_) => None,
+        Command::Synthesize(_) => Some("synthesize (mechanisms as systems)".into()),
+        Command::Fleet(_) => Some("fleet (workers kept in Slurm)".into()),
+    };
+    match missing {
+        Some(what) => Err(ClientError::NotInThisVersion { what }),
+        None => Ok(()),
+    }
+}
+
+fn problem(a: &ProblemArguments) -> Option<String> {
+    let start = match a.start {
+        Start::LinearProduct => Some("--start linear-product"),
+        Start::Polyhedral => Some("--start polyhedral"),
+        Start::Regeneration => Some("--start regeneration"),
+        Start::Monodromy => Some("--start monodromy"),
+        Start::Auto | Start::TotalDegree | Start::Multihomogeneous | Start::Given => None,
+    };
+    let flags = [
+        (
+            a.symmetry.is_some(),
+            "--symmetry (symmetry groups of the solutions)",
+        ),
+        (a.certify, "--certify (certified solutions)"),
+        (a.deflate, "--deflate (deflation of singular solutions)"),
+        (
+            a.trace_test,
+            "--trace-test (completeness of a solution set)",
+        ),
+    ];
+    start
+        .map(String::from)
+        .or_else(|| {
+            flags
+                .iter()
+                .find(|(asked, _)| *asked)
+                .map(|(_, name)| (*name).into())
+        })
+        .or_else(|| match a.precision.as_deref() {
+            None | Some("double") => None,
+            Some(other) => Some(format!("--precision {other} (only double)")),
+        })
+}
+
+fn service(a: &ServiceArguments) -> Option<String> {
+    if a.token_file.is_some() {
+        Some("--token-file (tokens)".into())
+    } else if a.tls_ca.is_some() || a.coordinator.starts_with("https:") {
+        Some("TLS".into())
+    } else {
+        None
+    }
+}
+
+fn coordinator(a: &Coordinator) -> Option<String> {
+    if a.tls_certificate.is_some() || a.tls_key.is_some() || a.tls_client_ca.is_some() {
+        Some("TLS".into())
+    } else if a.token_file.is_some() {
+        Some("--token-file (tokens)".into())
+    } else if a.ledger.starts_with("postgres") {
+        Some("--ledger postgres://... (only sqlite:PATH)".into())
+    } else if a.results.contains("://") && !a.results.starts_with("file://") {
+        Some(format!("--results {} (only local folders)", a.results))
+    } else {
+        None
+    }
+}
+
+fn worker(a: &Worker) -> Option<String> {
+    if a.token_file.is_some() {
+        Some("--token-file (tokens)".into())
+    } else {
+        a.tls_ca.is_some().then(|| "TLS".into())
+    }
+}

@@ -1,0 +1,190 @@
+//! From arguments to a submission: files read and checked here, so that mistakes are named before anything starts.
+
+use super::arguments::{PresetName, ProblemArguments, Start};
+use super::error::ClientError;
+use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::settings::Preset;
+use cognate_protocol::submission::{
+    Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+};
+use cognate_systems::formats::{self, FormatError, PrecisionHint};
+use cognate_systems::system::System;
+use std::io::Read;
+use std::path::Path;
+
+/// A submission, and what a person should know about it.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// What is sent.
+    pub submission: Submission,
+    /// What is solved, in a word: the file's name.
+    pub name: String,
+    /// What in the files is not followed.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a file, or standard input for `-`; gives a name for messages with it.
+pub fn read_file(path: &Path) -> Result<(String, Vec<u8>), ClientError> {
+    let failed = |source| ClientError::File {
+        action: "cannot read",
+        path: path.to_path_buf(),
+        source,
+    };
+    if path.as_os_str() == "-" {
+        let mut content = vec![];
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut content)
+            .map_err(failed)?;
+        return Ok(("standard input".into(), content));
+    }
+    let content = std::fs::read(path).map_err(failed)?;
+    Ok((path.display().to_string(), content))
+}
+
+/// The name without its folders.
+pub fn short_name(path: &Path) -> String {
+    if path.as_os_str() == "-" {
+        return "standard input".into();
+    }
+    path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+/// Reads a system and puts the groups of the command line in the place of its own.
+pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem, ClientError> {
+    let (name, content) = read_file(path)?;
+    let mut problem = formats::read(&name, &content).map_err(|e| described(&e))?;
+    if let Some(groups) = groups {
+        formats::options::groups(groups, &mut problem.system).map_err(|e| described(&e))?;
+    }
+    Ok(problem)
+}
+
+/// Everything that the arguments say, checked.
+pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
+    let formats::Problem {
+        mut system,
+        settings: file,
+        warnings,
+        ..
+    } = read_system(&a.file, a.groups.as_deref())?;
+    let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    if let Some(pairs) = &a.conjugates {
+        formats::options::conjugates(pairs, &mut system).map_err(|e| described(&e))?;
+    }
+    if let Some(path) = &a.degenerate {
+        let (name, content) = read_file(path)?;
+        formats::degenerate::read(&name, &content, &mut system).map_err(|e| described(&e))?;
+    }
+    if let Some(PrecisionHint::Bits(bits)) = file.precision {
+        warnings.push(format!(
+            "{}: the file asks for {bits} bits; this version computes in double precision",
+            short_name(&a.file)
+        ));
+    }
+    let start_solutions = match &a.start_solutions {
+        None => None,
+        Some(path) => Some(start_points(path, &system)?),
+    };
+    let start = match (a.start, &start_solutions) {
+        (Start::Given, None) => {
+            return Err(wrong("--start given", "needs --start-solutions FILE"));
+        }
+        (Start::TotalDegree | Start::Multihomogeneous, Some(_)) => {
+            return Err(wrong(
+                "--start-solutions",
+                "only go with --start given or auto",
+            ));
+        }
+        (Start::TotalDegree, None) => StartKind::TotalDegree,
+        (Start::Multihomogeneous, None) => StartKind::Multihomogeneous,
+        (_, Some(_)) => StartKind::Given,
+        // What is not in this version was refused before.
+        (_, None) => StartKind::Auto,
+    };
+    let mut start_parameters = parameters(a.start_parameters.as_deref(), &system)?;
+    if start_parameters.len() > 1 {
+        let message = format!(
+            "holds {} sets of parameters; expected one",
+            start_parameters.len()
+        );
+        return Err(wrong("--start-parameters", &message));
+    }
+    let options = Options {
+        start,
+        // The groups are in the system already.
+        groups: None,
+        conjugates: vec![],
+        seed: a.seed.or(file.seed),
+        settings: SettingsChoice {
+            preset: match a.preset {
+                PresetName::Careful => Some(Preset::Careful),
+                PresetName::Default => None,
+                PresetName::Fast => Some(Preset::Fast),
+                PresetName::Reckless => Some(Preset::Reckless),
+            },
+            ..SettingsChoice::default()
+        },
+        precision: match a.precision.as_deref() {
+            Some(_) => PrecisionChoice::Double,
+            None => PrecisionChoice::Adaptive,
+        },
+        start_parameters: start_parameters.pop().unwrap_or_default(),
+        target_parameters: parameters(a.target_parameters.as_deref(), &system)?,
+        start_solutions,
+        name: short_name(&a.file).chars().take(60).collect(),
+    };
+    Ok(Prepared {
+        submission: Submission {
+            source: Source::System(Box::new(system)),
+            options,
+        },
+        name: short_name(&a.file),
+        warnings,
+    })
+}
+
+fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientError> {
+    let (name, content) = read_file(path)?;
+    let points = formats::points::read_solutions(&name, &content, &system.variables)
+        .map_err(|e| described(&e))?;
+    if points.is_empty() {
+        return Err(wrong(&name, "holds no start solution"));
+    }
+    Ok(StartSolutions::Points(StoredPoints {
+        dimension: system.variables.len(),
+        coordinates: points.into_iter().flatten().collect(),
+    }))
+}
+
+fn parameters(
+    path: Option<&Path>,
+    system: &System,
+) -> Result<Vec<Vec<num_complex::Complex64>>, ClientError> {
+    let Some(path) = path else {
+        return Ok(vec![]);
+    };
+    let (name, content) = read_file(path)?;
+    if system.parameters.is_empty() {
+        return Err(wrong(
+            &name,
+            "the system has no parameters to give values to",
+        ));
+    }
+    formats::points::read_parameters(&name, &content, &system.parameters).map_err(|e| described(&e))
+}
+
+fn wrong(origin: &str, message: &str) -> ClientError {
+    ClientError::Input {
+        origin: origin.into(),
+        message: message.into(),
+    }
+}
+
+/// The whole message of a reader: it names file, line and column itself.
+fn described(error: &FormatError) -> ClientError {
+    ClientError::Format(error.to_string())
+}
