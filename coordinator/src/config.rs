@@ -1,6 +1,6 @@
 //! Config: addresses, places, deadlines, limits of a coordinator; each with its default.
 
-use crate::chunks::sizing::Sizing;
+use crate::chunks::leasing::Policy;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -18,8 +18,8 @@ pub struct Config {
     pub insecure: bool,
     /// What remembers.
     pub ledger: LedgerPlace,
-    /// The folder of the results and all other objects.
-    pub results: PathBuf,
+    /// The folder of the results and all other objects; `None`: in memory.
+    pub results: Option<PathBuf>,
     /// Deadlines and limits.
     pub rules: Rules,
 }
@@ -30,7 +30,7 @@ impl Default for Config {
             listen: vec![ListenAddress::Tcp(DEFAULT_ADDRESS.to_owned())],
             insecure: false,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),
-            results: "cognate-data/results".into(),
+            results: Some("cognate-data/results".into()),
             rules: Rules::default(),
         }
     }
@@ -39,19 +39,11 @@ impl Default for Config {
 /// Deadlines and limits of the service.
 #[derive(Clone, Debug)]
 pub struct Rules {
-    /// How long a worker may keep a chunk without renewing it. Default 30 s: three missed
-    /// renewals of 10 s; a dead worker's chunks are late by that much.
-    pub lease_duration: Duration,
+    /// How chunks are leased, renewed and taken back.
+    pub policy: Policy,
     /// How long a worker's call may wait for work. Default 25 s: below the 60 s after which
     /// proxies cut silent calls.
     pub long_poll: Duration,
-    /// How often a waiting call looks for work that nobody announced. Default 1 s: another
-    /// coordinator on the same ledger announces nothing here.
-    pub poll_interval: Duration,
-    /// How often expired leases are returned. Default 1 s.
-    pub expiry_interval: Duration,
-    /// How often a watching client is told, at most. Default 100 ms.
-    pub watch_interval: Duration,
     /// After this time without a call a worker is not listed any more. Default 10 minutes.
     pub worker_memory: Duration,
     /// How long calls may go on after the service was told to stop. Default 5 s.
@@ -59,31 +51,20 @@ pub struct Rules {
     /// Silent connections are asked whether they live so often, and given as long to answer.
     /// Default 20 s.
     pub keep_alive: Duration,
-    /// How large chunks are.
-    pub sizing: Sizing,
-    /// Chunks with this many suspicions are split, not leased. Default 3.
-    pub suspicion_limit: u32,
-    /// Most chunks of one job with workers at a time. Default 100,000.
-    pub in_flight_limit: u32,
-    /// Most chunks that one call gives out. Default 64.
-    pub slots_limit: u32,
 }
 
 impl Default for Rules {
     fn default() -> Self {
         Self {
-            lease_duration: Duration::from_secs(30),
+            // A killed coordinator's jobs go on that much later, in the next one.
+            policy: Policy {
+                steward_ms: 3000,
+                ..Policy::default()
+            },
             long_poll: Duration::from_secs(25),
-            poll_interval: Duration::from_secs(1),
-            expiry_interval: Duration::from_secs(1),
-            watch_interval: Duration::from_millis(100),
             worker_memory: Duration::from_secs(600),
             shutdown_grace: Duration::from_secs(5),
             keep_alive: Duration::from_secs(20),
-            sizing: Sizing::default(),
-            suspicion_limit: 3,
-            in_flight_limit: 100_000,
-            slots_limit: 64,
         }
     }
 }

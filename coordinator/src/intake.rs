@@ -1,39 +1,21 @@
-//! Intake: from what a client sent to the objects that a job is made of.
+//! Intake: from what a client sent to a system and options that can be planned.
 //!
-//! A job's problem is the canonical encoding of its checked system, so that the
-//! object's digest is the problem's digest. Its options are the message of
-//! `problem.proto`, resolved: every setting and the seed are named, start
-//! solutions are an object. `read_problem` and `read_options` are the way back.
+//! The result is resolved: the file's settings are merged, every setting and
+//! the seed are named, start solutions are an object.
 
 use crate::api::error::ApiError;
-use cognate_continuation::start_points::{Digest, StoredPoints};
+use crate::coordinator::NewProblem;
+use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::settings::Settings;
 use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
-use cognate_protocol::{digest, from_proto, to_proto, v1};
+use cognate_protocol::{digest, from_proto, to_proto};
 use cognate_systems::formats::{self, FileSettings, PrecisionHint};
 use cognate_systems::system::System;
-use prost::Message;
-
-/// A submission that can become a job.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Intake {
-    /// The system, with the groups and conjugates of the options.
-    pub system: System,
-    /// Digest of `problem`.
-    pub digest: Digest,
-    /// The system as an object.
-    pub problem: Vec<u8>,
-    /// The options, resolved.
-    pub options: Options,
-    /// Start solutions that were sent along, as an object.
-    pub start_solutions: Option<Vec<u8>>,
-    /// What is not followed.
-    pub warnings: Vec<String>,
-}
 
 /// Checks and resolves a submission.
-pub fn take(submission: Submission) -> Result<Intake, ApiError> {
+pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
     let Submission {
         source,
         mut options,
@@ -64,9 +46,7 @@ pub fn take(submission: Submission) -> Result<Intake, ApiError> {
     // What goes to workers is checked by the rules of messages: here is the place to fail.
     let system = from_proto::problem::system(&to_proto::problem::system(&system))
         .map_err(|e| e.within("system"))?;
-    let problem = digest::encode_system(&system);
-    let digest = digest::of_bytes(&problem);
-    check_options(&options, &system)?;
+    check_options(&options)?;
     if let Some(PrecisionHint::Bits(bits)) = file.precision {
         warnings.push(format!(
             "the file asks for {bits} bits; this version computes in double precision"
@@ -79,25 +59,23 @@ pub fn take(submission: Submission) -> Result<Intake, ApiError> {
             .over(of_file(&file, &base).over(base.clone())),
     );
     options.seed = options.seed.or(file.seed).or_else(|| {
-        let head = digest.0.first_chunk::<8>();
-        head.copied().map(u64::from_le_bytes)
+        let digest = digest::of_system(&system);
+        digest.0.first_chunk::<8>().copied().map(u64::from_le_bytes)
     });
     let start_solutions = match options.start_solutions.take() {
         Some(StartSolutions::Points(points)) => {
             check_points(&points, &system)?;
             let bytes = points.to_bytes();
             options.start_solutions = Some(StartSolutions::Object(digest::of_bytes(&bytes)));
-            Some(bytes)
+            Some(bytes.into())
         }
         other => {
             options.start_solutions = other;
             None
         }
     };
-    Ok(Intake {
+    Ok(NewProblem {
         system,
-        digest,
-        problem,
         options,
         start_solutions,
         warnings,
@@ -106,10 +84,7 @@ pub fn take(submission: Submission) -> Result<Intake, ApiError> {
 
 /// What a file's settings mean here. Ours are tighter than what most files say, and looser ones
 /// would only lose paths: tolerances are taken where they are smaller.
-fn of_file(
-    file: &FileSettings,
-    base: &cognate_continuation::tracker::settings::Settings,
-) -> SettingsChoice {
+fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
     let smaller = |asked: Option<f64>, ours: f64| asked.filter(|&a| (1e-300..ours).contains(&a));
     SettingsChoice {
         tolerance: smaller(file.tracking_tolerance, base.tolerance),
@@ -125,29 +100,14 @@ fn of_file(
     }
 }
 
-/// What fits together.
-fn check_options(options: &Options, system: &System) -> Result<(), ApiError> {
+/// What fits together; the rest is the planner's business.
+fn check_options(options: &Options) -> Result<(), ApiError> {
     if let PrecisionChoice::Bits(bits) = options.precision
         && bits > 53
     {
         return Err(ApiError::NotInThisVersion(format!(
             "precision of {bits} bits; this version computes in double precision"
         )));
-    }
-    let parameters = system.parameters.len();
-    let values = |field: &str, found: usize| {
-        if found == parameters {
-            return Ok(());
-        }
-        Err(ApiError::Problem(format!(
-            "{field}: {found} values for the {parameters} parameters of the system"
-        )))
-    };
-    if !options.start_parameters.is_empty() {
-        values("options.start_parameters", options.start_parameters.len())?;
-    }
-    for target in options.target_parameters.iter().take(1) {
-        values("options.target_parameters[0]", target.len())?;
     }
     match (options.start, &options.start_solutions) {
         (StartKind::Given, None) => Err(ApiError::Problem(
@@ -178,50 +138,12 @@ pub fn check_points(points: &StoredPoints, system: &System) -> Result<(), ApiErr
     Ok(())
 }
 
-/// The system of a job, from its object.
-pub fn read_problem(object: Digest, bytes: &[u8]) -> Result<System, ApiError> {
-    digest::decode_system(bytes).map_err(|e| ApiError::Damaged {
-        object,
-        what: e.to_string(),
-    })
-}
-
-/// Options as the ledger keeps them.
-pub fn write_options(options: &Options) -> Vec<u8> {
-    to_proto::problem::options(options).encode_to_vec()
-}
-
-/// Options as the ledger kept them.
-pub fn read_options(bytes: &[u8]) -> Result<Options, ApiError> {
-    let damaged = |what: String| ApiError::Damaged {
-        object: digest::of_bytes(bytes),
-        what,
-    };
-    let message = v1::Options::decode(bytes).map_err(|e| damaged(e.to_string()))?;
-    from_proto::problem::options(message).map_err(|e| damaged(e.to_string()))
-}
-
-/// A stage as an object: the message of `path.proto`.
-pub fn write_stage(stage: &cognate_continuation::work::Stage) -> Vec<u8> {
-    to_proto::path::stage(stage).encode_to_vec()
-}
-
-/// A stage from its object.
-pub fn read_stage(
-    object: Digest,
-    bytes: &[u8],
-) -> Result<cognate_continuation::work::Stage, ApiError> {
-    let damaged = |what: String| ApiError::Damaged { object, what };
-    let message = v1::Stage::decode(bytes).map_err(|e| damaged(e.to_string()))?;
-    from_proto::path::stage(&message).map_err(|e| damaged(e.to_string()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate_continuation::tracker::settings::{Preset, Settings};
+    use cognate_continuation::tracker::settings::Preset;
 
-    fn text(content: &str, options: Options) -> Result<Intake, ApiError> {
+    fn text(content: &str, options: Options) -> Result<NewProblem, ApiError> {
         take(Submission {
             source: Source::Text {
                 name: "a.txt".to_owned(),
@@ -246,10 +168,6 @@ mod tests {
         assert_eq!(settings, expected);
         assert_eq!(intake.options.name, "a.txt");
         assert_eq!(text(CIRCLES, Options::default()).unwrap(), intake);
-        let bytes = write_options(&intake.options);
-        assert_eq!(read_options(&bytes).unwrap(), intake.options);
-        let system = read_problem(intake.digest, &intake.problem).unwrap();
-        assert_eq!(system, intake.system);
     }
 
     #[test]
@@ -276,7 +194,7 @@ mod tests {
         assert_eq!(intake.system.groups.len(), 2);
         assert_eq!(intake.system.conjugates, [(0, 1)]);
         let plain = text(CIRCLES, Options::default()).unwrap();
-        assert_ne!(intake.digest, plain.digest);
+        assert_ne!(intake.options.seed, plain.options.seed);
     }
 
     #[test]

@@ -34,6 +34,6 @@ pub mod transport;
 
 pub mod config;
 
-pub mod signals;
+pub mod server;
 
 pub mod client;

@@ -109,7 +109,7 @@ fn solutions_come_back() {
         paths: vec![3, 4, 17],
         certificate: None,
     };
-    let message: v1::Solution = sent(&to_proto::solution::solution(&solution));
+    let message: v1::Solution = sent(&to_proto::solution::solution(&solution, 0));
     assert_eq!(from_proto::solution::solution(&message).unwrap(), solution);
     let nameless = v1::Solution {
         multiplicity: 0,

@@ -3,9 +3,12 @@
 //! What is wrong with a request is said with its field; what is wrong with us
 //! is logged, and the caller hears that it is not his fault.
 
+use crate::coordinator::CoordinatorError;
+use crate::jobs::planning::PlanningError;
 use crate::ledger::LedgerError;
 use crate::ledger::identity::IdentityError;
-use cognate_continuation::start_points::Digest;
+use crate::results::store::StoreError;
+use cognate_algorithms::plan_error::PlanError;
 use cognate_protocol::error::ProtocolError;
 use cognate_systems::formats::FormatError;
 use tonic::{Code, Status};
@@ -28,41 +31,15 @@ pub enum ApiError {
     /// A later version will.
     #[error("not in this version: {0}")]
     NotInThisVersion(String),
-    /// Something named in the request is not here.
-    #[error("there is no {what} {name}")]
-    NotFound {
-        /// What kind of thing.
-        what: &'static str,
-        /// Which.
-        name: String,
-    },
-    /// The job has not ended, or not with a result.
-    #[error("job {job} is {state}{reason}: it has no result")]
-    NoResult {
-        /// Which.
-        job: String,
-        /// Its state.
-        state: &'static str,
-        /// Why, with a colon before it, or empty.
-        reason: String,
-    },
-    /// The ledger refused or failed.
+    /// The coordinator did not do it.
     #[error(transparent)]
-    Ledger(#[from] LedgerError),
-    /// The result store failed.
-    #[error("the store of results failed: {0}")]
-    Store(String),
-    /// An object is not what it should be.
-    #[error("object {object} is damaged: {what}")]
-    Damaged {
-        /// Which.
-        object: Digest,
-        /// What is wrong with it.
-        what: String,
-    },
+    Coordinator(#[from] CoordinatorError),
     /// The service is stopping.
     #[error("this coordinator is stopping")]
     Stopping,
+    /// A bug of ours.
+    #[error("the coordinator failed at this request; the request is at fault or we are: {0}")]
+    Panic(String),
 }
 
 impl ApiError {
@@ -74,16 +51,41 @@ impl ApiError {
                 Code::InvalidArgument
             }
             Self::NotInThisVersion(_) => Code::Unimplemented,
-            Self::NotFound { .. } | Self::Ledger(LedgerError::UnknownJob(_)) => Code::NotFound,
-            Self::NoResult { .. } => Code::FailedPrecondition,
-            Self::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
-            Self::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
-            Self::Ledger(LedgerError::Storage(_) | LedgerError::Closed)
-            | Self::Store(_)
-            | Self::Stopping => Code::Unavailable,
-            Self::Damaged { .. } => Code::DataLoss,
-            Self::Ledger(_) => Code::Internal,
+            Self::Coordinator(error) => code(error),
+            Self::Stopping => Code::Unavailable,
+            Self::Panic(_) => Code::Internal,
         }
+    }
+}
+
+fn code(error: &CoordinatorError) -> Code {
+    match error {
+        CoordinatorError::Planning(PlanningError::Plan(
+            PlanError::MoreEquations { .. }
+            | PlanError::FewerEquations { .. }
+            | PlanError::ConstrainedParameters(_)
+            | PlanError::TooManyPaths { .. }
+            | PlanError::TooManyGroups { .. },
+        )) => Code::Unimplemented,
+        CoordinatorError::Planning(_)
+        | CoordinatorError::Problem(_)
+        | CoordinatorError::Report { .. } => Code::InvalidArgument,
+        CoordinatorError::UnknownStage { .. }
+        | CoordinatorError::Ledger(LedgerError::UnknownJob(_))
+        | CoordinatorError::Store(StoreError::Missing(_)) => Code::NotFound,
+        CoordinatorError::NoResult { .. } => Code::FailedPrecondition,
+        CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
+        CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
+        CoordinatorError::Ledger(LedgerError::Storage(_) | LedgerError::Closed)
+        | CoordinatorError::Store(StoreError::Storage(_) | StoreError::Folder { .. }) => {
+            Code::Unavailable
+        }
+        CoordinatorError::Plan(_)
+        | CoordinatorError::Ledger(LedgerError::Damaged(_))
+        | CoordinatorError::Store(StoreError::Damaged { .. } | StoreError::Differs(_)) => {
+            Code::DataLoss
+        }
+        CoordinatorError::Ledger(_) => Code::Internal,
     }
 }
 

@@ -1,3 +1,133 @@
 //! The services: decode, one call inwards, encode.
 
+pub mod client_service;
 pub mod error;
+pub mod worker_service;
+
+use crate::config::Rules;
+use crate::coordinator::{Coordinator, CoordinatorError};
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::identity::{ChunkId, Epoch, LeaseId, WorkerId};
+use bytes::Bytes;
+use cognate_continuation::work::StageId;
+use cognate_protocol::error::ProtocolError;
+use cognate_protocol::limits::PIECE_BYTES;
+use cognate_protocol::v1;
+use error::ApiError;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio_util::sync::CancellationToken;
+use tokio_util::task::AbortOnDropHandle;
+use tonic::Status;
+
+/// Workers whose refusal is remembered.
+const REFUSALS: usize = 1000;
+
+/// What both services stand on.
+pub struct Context {
+    /// The coordinator.
+    pub coordinator: Arc<Coordinator>,
+    /// Deadlines and limits.
+    pub rules: Rules,
+    /// Cancelled when the service is to stop: waiting calls return at once.
+    pub stopping: CancellationToken,
+    /// Workers that get no work, and why.
+    refused: Mutex<HashMap<WorkerId, String>>,
+}
+
+impl Context {
+    /// In front of this coordinator.
+    pub fn new(coordinator: Arc<Coordinator>, rules: Rules, stopping: CancellationToken) -> Self {
+        Self {
+            coordinator,
+            rules,
+            stopping,
+            refused: Mutex::default(),
+        }
+    }
+
+    fn refuse(&self, worker: WorkerId, why: &str) {
+        let mut refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        if refused.len() >= REFUSALS {
+            refused.clear();
+        }
+        refused.insert(worker, why.to_owned());
+    }
+
+    fn refusal(&self, worker: &WorkerId) -> Option<String> {
+        let refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        refused.get(worker).cloned()
+    }
+
+    /// The ledger's clock.
+    async fn now(&self) -> Result<LedgerTime, ApiError> {
+        let now = self.coordinator.ledger().now().await;
+        Ok(now.map_err(CoordinatorError::from)?)
+    }
+}
+
+/// A task of its own, so that a panic at one request ends neither the connection nor the service.
+/// It ends when nobody waits for it any more: a caller that is gone leases nothing.
+async fn guarded<T: Send + 'static>(
+    work: impl Future<Output = Result<T, ApiError>> + Send + 'static,
+) -> Result<T, ApiError> {
+    match AbortOnDropHandle::new(tokio::spawn(work)).await {
+        Ok(done) => done,
+        Err(error) => Err(ApiError::Panic(error.to_string())),
+    }
+}
+
+/// A stream of answers.
+pub type Answers<T> = futures::stream::BoxStream<'static, Result<T, Status>>;
+
+/// A lease's name.
+fn lease_id(field: &str, m: Option<&v1::LeaseId>) -> Result<LeaseId, ApiError> {
+    let m = m.ok_or_else(|| ProtocolError::missing(field))?;
+    Ok(LeaseId {
+        chunk: ChunkId {
+            job: m.job.parse()?,
+            stage: StageId(m.stage),
+            first: m.chunk,
+        },
+        epoch: Epoch(m.epoch),
+    })
+}
+
+/// Milliseconds from one moment to a later one.
+fn duration_ms(from: LedgerTime, until: LedgerTime) -> u32 {
+    u32::try_from(until.since_ms(from)).unwrap_or(u32::MAX)
+}
+
+/// An object in pieces.
+fn pieces(bytes: Bytes) -> Answers<v1::ObjectPiece> {
+    let size = usize::try_from(PIECE_BYTES.value).unwrap_or(usize::MAX);
+    let starts = (0..bytes.len().max(1)).step_by(size);
+    let pieces = starts.map(move |at| {
+        Ok(v1::ObjectPiece {
+            data: bytes.slice(at..bytes.len().min(at + size)),
+        })
+    });
+    Box::pin(futures::stream::iter(pieces))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use futures::StreamExt;
+
+    #[tokio::test]
+    async fn pieces_make_up_the_object() {
+        let size = usize::try_from(PIECE_BYTES.value).unwrap();
+        for length in [0, 1, size, size + 1, 2 * size + 7] {
+            let object: Vec<u8> = (0..length).map(|i| (i % 251) as u8).collect();
+            let pieces: Vec<_> = pieces(object.clone().into()).collect().await;
+            assert!(
+                pieces
+                    .iter()
+                    .all(|p| p.as_ref().unwrap().data.len() <= size)
+            );
+            let whole: Vec<u8> = pieces.into_iter().flat_map(|p| p.unwrap().data).collect();
+            assert_eq!(whole, object);
+        }
+    }
+}

@@ -181,12 +181,12 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
     let outcome = outcome(m.outcome)?;
     within_limit("endpoint", m.endpoint.len() / 2, limits::COORDINATES)?;
     let endpoint = pairs("endpoint", &m.endpoint)?;
-    if endpoint.is_empty() {
-        return Err(ProtocolError::missing("endpoint"));
-    }
     let t = required("t", m.t.as_ref())?;
     let t = num_complex::Complex64::new(t.re, t.im);
     if !matches!(outcome, PathOutcome::Failed(_)) {
+        if endpoint.is_empty() {
+            return Err(ProtocolError::missing("endpoint"));
+        }
         finite("endpoint", &endpoint)?;
         finite("t", &[t])?;
         for (field, value) in [

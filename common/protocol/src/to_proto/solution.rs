@@ -5,8 +5,8 @@ use cognate_solutions::classification::Verdict;
 use cognate_solutions::solution::Solution;
 use cognate_solutions::summary::{PathCounts, SolutionCounts};
 
-/// One solution.
-pub fn solution(s: &Solution) -> v1::Solution {
+/// One solution, at this target.
+pub fn solution(s: &Solution, target: u32) -> v1::Solution {
     v1::Solution {
         variables: s
             .variables
@@ -32,6 +32,7 @@ pub fn solution(s: &Solution) -> v1::Solution {
         paths: s.paths.clone(),
         degenerate: Vec::new(),
         certificate: s.certificate.clone(),
+        target,
     }
 }
 

@@ -1,0 +1,350 @@
+//! gRPC for clients: decode, one call inwards, encode.
+
+use super::error::ApiError;
+use super::{Answers, Context, guarded};
+use crate::coordinator::{ClassifiedPath, CoordinatorError};
+use crate::intake;
+use crate::jobs::planning::Planned;
+use crate::jobs::progress::JobProgress;
+use crate::ledger::LedgerError;
+use crate::ledger::identity::{JobId, RequestId, Tenant};
+use crate::ledger::rows::{JobRow, JobState, StageRow, WorkerRow};
+use bytes::{Bytes, BytesMut};
+use cognate_numeric::NUMERICS_REVISION;
+use cognate_protocol::error::{ProtocolError, within_limit};
+use cognate_protocol::limits::{self, OBJECT_BYTES};
+use cognate_protocol::v1::client_api_server::ClientApi;
+use cognate_protocol::{PROTOCOL_VERSION, from_proto, to_proto, v1};
+use futures::{StreamExt, stream};
+use std::sync::Arc;
+use tokio_stream::wrappers::ReceiverStream;
+use tonic::{Request, Response, Status, Streaming};
+
+/// Whose jobs are nobody's in particular.
+const DEFAULT_TENANT: &str = "default";
+/// Jobs in a list where no limit is given.
+const JOBS_LISTED: u32 = 100;
+/// Most jobs in a list.
+const JOBS_LIMIT: u32 = 10_000;
+/// Most workers in a list.
+const WORKERS_LIMIT: u32 = 10_000;
+
+/// The service for clients.
+pub struct ClientService {
+    context: Arc<Context>,
+}
+
+impl ClientService {
+    /// In front of this coordinator.
+    pub fn new(context: Arc<Context>) -> Self {
+        Self { context }
+    }
+}
+
+impl ClientService {
+    /// What the planner noticed about a job, which must be there.
+    async fn warnings(&self, job: JobId) -> Result<Vec<String>, ApiError> {
+        let row = self.context.coordinator.ledger().job(job).await;
+        let row = row.map_err(CoordinatorError::from)?;
+        let row = row.ok_or(CoordinatorError::Ledger(LedgerError::UnknownJob(job)))?;
+        let planned = Planned::from_bytes(&row.asked.options).map_err(CoordinatorError::from)?;
+        Ok(planned.warnings)
+    }
+}
+
+fn job(text: &str) -> Result<JobId, ApiError> {
+    Ok(text.parse()?)
+}
+
+fn state(state: JobState) -> v1::JobState {
+    match state {
+        JobState::Queued => v1::JobState::Queued,
+        JobState::Running => v1::JobState::Running,
+        JobState::Solved => v1::JobState::Solved,
+        JobState::Failed => v1::JobState::Failed,
+        JobState::Cancelled => v1::JobState::Cancelled,
+    }
+}
+
+fn progress(progress: JobProgress, warnings: Vec<String>) -> v1::JobProgress {
+    let count = |name: &str, count| v1::NamedCount {
+        name: name.to_owned(),
+        count,
+    };
+    let outcomes = progress.outcomes;
+    v1::JobProgress {
+        job: progress.job.to_string(),
+        state: state(progress.state).into(),
+        stages: progress
+            .stages
+            .into_iter()
+            .map(|stage| v1::StageProgress {
+                stage: stage.stage.0,
+                total: stage.total,
+                ready: stage.ready,
+                leased: stage.leased,
+                accepted: stage.accepted,
+                failed: stage.failed,
+                purpose: stage.purpose,
+            })
+            .collect(),
+        outcomes: vec![
+            count("regular", outcomes.regular),
+            count("singular", outcomes.singular),
+            count("failed", outcomes.failed),
+        ],
+        warnings,
+        message: progress.message,
+        elapsed_seconds: progress.elapsed_ms as f64 / 1000.0,
+    }
+}
+
+fn overview((row, stages): (JobRow, Vec<StageRow>)) -> v1::JobOverview {
+    v1::JobOverview {
+        job: row.job.to_string(),
+        name: row.asked.label,
+        tenant: row.asked.tenant.to_string(),
+        state: state(row.state).into(),
+        submitted_unix_ms: row.submitted.0,
+        items_total: stages.iter().map(|stage| stage.items).sum(),
+        items_accepted: stages
+            .iter()
+            .map(|stage| stage.accepted.items + stage.failed.items)
+            .sum(),
+    }
+}
+
+fn classified(path: &ClassifiedPath) -> v1::ClassifiedPath {
+    v1::ClassifiedPath {
+        result: Some(to_proto::path::path_result(&path.result)),
+        class: to_proto::solution::class(path.verdict).into(),
+        solution: path.solution,
+    }
+}
+
+fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::WorkerOverview {
+    v1::WorkerOverview {
+        worker: row.says.worker.to_string(),
+        host: row.says.host,
+        version: row.says.version,
+        numerics_revision: row.says.numerics_revision,
+        instruction_set: row.says.instruction_set,
+        lane_width: row.says.lane_width,
+        threads: row.says.threads,
+        transport: row.says.transport,
+        idle_seconds,
+        leased_chunks: u32::try_from(row.leased_chunks).unwrap_or(u32::MAX),
+        accepted_chunks: row.chunks_done,
+        accepted_paths: row.items_done,
+        refused: refused.unwrap_or_default(),
+    }
+}
+
+/// Puts an object's pieces together, up to the limit.
+async fn gather(mut pieces: Streaming<v1::ObjectPiece>) -> Result<Bytes, Status> {
+    let mut bytes = BytesMut::new();
+    while let Some(piece) = pieces.message().await? {
+        within_limit("data", bytes.len() + piece.data.len(), OBJECT_BYTES)
+            .map_err(ApiError::from)?;
+        bytes.extend_from_slice(&piece.data);
+    }
+    Ok(bytes.freeze())
+}
+
+#[tonic::async_trait]
+impl ClientApi for ClientService {
+    async fn submit(
+        &self,
+        request: Request<v1::SubmitRequest>,
+    ) -> Result<Response<v1::SubmitResponse>, Status> {
+        let m = request.into_inner();
+        let id = RequestId::new(m.request_id).map_err(ApiError::from)?;
+        let tenant = if m.tenant.is_empty() {
+            DEFAULT_TENANT.to_owned()
+        } else {
+            m.tenant
+        };
+        let tenant = Tenant::new(tenant).map_err(ApiError::from)?;
+        let problem = m
+            .problem
+            .ok_or_else(|| ApiError::from(ProtocolError::missing("problem")))?;
+        let submission = from_proto::problem::submission(problem)
+            .map_err(|e| ApiError::from(e.within("problem")))?;
+        let coordinator = self.context.coordinator.clone();
+        let accepted = guarded(async move {
+            // Reading a large file takes long; it must not hold up the runtime.
+            let problem = tokio::task::spawn_blocking(|| intake::take(submission)).await;
+            let problem = problem.map_err(|e| ApiError::Panic(e.to_string()))??;
+            Ok(coordinator.submit(id, tenant, problem).await?)
+        });
+        let accepted = accepted.await?;
+        Ok(Response::new(v1::SubmitResponse {
+            job: accepted.job.to_string(),
+            warnings: accepted.warnings,
+        }))
+    }
+
+    type WatchStream = Answers<v1::JobProgress>;
+
+    async fn watch(
+        &self,
+        request: Request<v1::WatchRequest>,
+    ) -> Result<Response<Self::WatchStream>, Status> {
+        let job = job(&request.into_inner().job)?;
+        // A job that is not there is an error of the call, not of the stream.
+        let warnings = self.warnings(job).await?;
+        let changes = self.context.coordinator.watch(job);
+        let answers = ReceiverStream::new(changes).map(move |change| {
+            let change = change.map_err(ApiError::from)?;
+            Ok(progress(change, warnings.clone()))
+        });
+        let stopping = self.context.stopping.clone();
+        Ok(Response::new(Box::pin(StreamExt::take_until(
+            answers,
+            stopping.cancelled_owned(),
+        ))))
+    }
+
+    async fn get_summary(
+        &self,
+        request: Request<v1::GetSummaryRequest>,
+    ) -> Result<Response<v1::Summary>, Status> {
+        let job = job(&request.into_inner().job)?;
+        let summary = self.context.coordinator.summary(job).await;
+        let (summary, json) = summary.map_err(ApiError::from)?;
+        let counts = to_proto::solution::counts(&summary.paths, &summary.solutions);
+        Ok(Response::new(v1::Summary {
+            json,
+            counts: Some(counts),
+        }))
+    }
+
+    type StreamSolutionsStream = Answers<v1::Solution>;
+
+    async fn stream_solutions(
+        &self,
+        request: Request<v1::StreamSolutionsRequest>,
+    ) -> Result<Response<Self::StreamSolutionsStream>, Status> {
+        let job = job(&request.into_inner().job)?;
+        let sets = self.context.coordinator.solutions(job).await;
+        let sets = sets.map_err(ApiError::from)?;
+        // One at a time: a message takes more memory than what it is made of.
+        let solutions = stream::unfold((sets, 0, 0), |(sets, mut target, mut index)| async move {
+            while index >= sets.get(target)?.solutions.len() {
+                (target, index) = (target + 1, 0);
+            }
+            let number = u32::try_from(target).unwrap_or(u32::MAX);
+            let message = to_proto::solution::solution(&sets[target].solutions[index], number);
+            Some((Ok(message), (sets, target, index + 1)))
+        });
+        Ok(Response::new(Box::pin(solutions)))
+    }
+
+    type StreamPathsStream = Answers<v1::ClassifiedPath>;
+
+    async fn stream_paths(
+        &self,
+        request: Request<v1::StreamPathsRequest>,
+    ) -> Result<Response<Self::StreamPathsStream>, Status> {
+        let job = job(&request.into_inner().job)?;
+        let coordinator = self.context.coordinator.clone();
+        let paths = guarded(async move { Ok(coordinator.paths(job).await?) }).await?;
+        let paths = paths.into_iter().map(|path| Ok(classified(&path)));
+        Ok(Response::new(Box::pin(stream::iter(paths))))
+    }
+
+    async fn explain(
+        &self,
+        request: Request<v1::ExplainRequest>,
+    ) -> Result<Response<v1::ExplainResponse>, Status> {
+        let job = job(&request.into_inner().job)?;
+        let explanation = self.context.coordinator.explain(job).await;
+        let explanation = explanation.map_err(ApiError::from)?;
+        Ok(Response::new(v1::ExplainResponse {
+            text: explanation.text,
+            json: explanation.json,
+        }))
+    }
+
+    async fn cancel(
+        &self,
+        request: Request<v1::CancelRequest>,
+    ) -> Result<Response<v1::CancelResponse>, Status> {
+        let job = job(&request.into_inner().job)?;
+        let now = self
+            .context
+            .coordinator
+            .cancel(job, "cancelled by a client")
+            .await;
+        let now = now.map_err(ApiError::from)?;
+        Ok(Response::new(v1::CancelResponse {
+            state: state(now).into(),
+        }))
+    }
+
+    async fn list_jobs(
+        &self,
+        request: Request<v1::ListJobsRequest>,
+    ) -> Result<Response<v1::ListJobsResponse>, Status> {
+        let limit = match request.into_inner().limit {
+            0 => JOBS_LISTED,
+            limit => limit.min(JOBS_LIMIT),
+        };
+        let jobs = self.context.coordinator.jobs(limit).await;
+        let jobs = jobs.map_err(ApiError::from)?;
+        Ok(Response::new(v1::ListJobsResponse {
+            jobs: jobs.into_iter().map(overview).collect(),
+        }))
+    }
+
+    async fn list_workers(
+        &self,
+        _: Request<v1::ListWorkersRequest>,
+    ) -> Result<Response<v1::ListWorkersResponse>, Status> {
+        let rows = self.context.coordinator.workers(WORKERS_LIMIT).await;
+        let rows = rows.map_err(ApiError::from)?;
+        let now = self.context.now().await?;
+        let memory = self.context.rules.worker_memory.as_secs_f64();
+        let workers = rows.into_iter().filter_map(|row| {
+            let idle = now.since_ms(row.last_seen) as f64 / 1000.0;
+            let here = idle < memory && (!row.says.draining || row.leased_chunks > 0);
+            here.then(|| {
+                let refused = self.context.refusal(&row.says.worker);
+                worker(row, refused, idle)
+            })
+        });
+        Ok(Response::new(v1::ListWorkersResponse {
+            workers: workers.collect(),
+        }))
+    }
+
+    async fn upload(
+        &self,
+        request: Request<Streaming<v1::ObjectPiece>>,
+    ) -> Result<Response<v1::UploadResponse>, Status> {
+        let bytes = gather(request.into_inner()).await?;
+        let size = bytes.len() as u64;
+        let digest = self.context.coordinator.put_object(bytes).await;
+        let digest = digest.map_err(ApiError::from)?;
+        Ok(Response::new(v1::UploadResponse {
+            digest: to_proto::digest(digest),
+            size,
+        }))
+    }
+
+    async fn get_server_info(
+        &self,
+        _: Request<v1::GetServerInfoRequest>,
+    ) -> Result<Response<v1::ServerInfo>, Status> {
+        let limits = limits::ALL.iter().map(|limit| v1::NamedCount {
+            name: limit.name.to_owned(),
+            count: limit.value,
+        });
+        Ok(Response::new(v1::ServerInfo {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            protocol_version: PROTOCOL_VERSION,
+            numerics_revision: NUMERICS_REVISION,
+            limits: limits.collect(),
+        }))
+    }
+}

@@ -1,0 +1,245 @@
+//! Server: the shell of a coordinator. Clock, sockets, tasks, signals.
+//!
+//! Everything that decides stands in `coordinator`; here it is given a ledger, a
+//! store and a clock, and doors by which calls come in.
+
+use crate::api::Context;
+use crate::api::client_service::ClientService;
+use crate::api::worker_service::WorkerService;
+use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
+use crate::coordinator::Coordinator;
+use crate::ledger::clock::SystemClock;
+use crate::ledger::identity::CoordinatorId;
+use crate::ledger::memory::MemoryLedger;
+use crate::ledger::sqlite::SqliteLedger;
+use crate::ledger::{Ledger, LedgerError};
+use crate::results::store::{Store, StoreError};
+use crate::transport::{Door, DoorError};
+use cognate_protocol::DESCRIPTORS;
+use cognate_protocol::limits::MESSAGE_BYTES;
+use cognate_protocol::v1::client_api_server::ClientApiServer;
+use cognate_protocol::v1::worker_api_server::WorkerApiServer;
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+use tokio::task::JoinSet;
+use tokio_util::sync::CancellationToken;
+use tonic::service::Routes;
+use tonic::transport::server::TcpIncoming;
+
+/// Why a coordinator does not start.
+#[derive(Debug, thiserror::Error)]
+pub enum ServerError {
+    /// A door does not open.
+    #[error(transparent)]
+    Door(#[from] DoorError),
+    /// The ledger does not open.
+    #[error("cannot open the ledger: {0}")]
+    Ledger(#[from] LedgerError),
+    /// The result store does not open.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The folder of the ledger cannot be made.
+    #[error("cannot make the folder {folder}: {source}")]
+    Folder {
+        /// Which.
+        folder: String,
+        /// Why not.
+        source: io::Error,
+    },
+    /// Signals cannot be listened to.
+    #[error("cannot listen to signals: {0}")]
+    Signals(io::Error),
+}
+
+/// A coordinator that runs.
+pub struct RunningServer {
+    /// Where it listens, with the ports that were free where port 0 was asked for.
+    pub addresses: Vec<ListenAddress>,
+    context: Arc<Context>,
+    tasks: JoinSet<()>,
+    sqlite: Option<Arc<SqliteLedger>>,
+}
+
+/// Starts coordinators.
+pub struct Server;
+
+impl Server {
+    /// Starts one as configured: opens the ledger and the store, binds all doors.
+    pub async fn start(config: Config) -> Result<RunningServer, ServerError> {
+        if config.listen.is_empty() {
+            return Err(DoorError::NoAddress.into());
+        }
+        // Doors first: whoever is refused here has touched nothing.
+        let mut doors = Vec::new();
+        for address in &config.listen {
+            doors.push(Door::open(address, config.insecure).await?);
+        }
+        let store = match &config.results {
+            Some(folder) => Store::folder(folder)?,
+            None => Store::in_memory(),
+        };
+        let clock = Arc::new(SystemClock::default());
+        let mut sqlite = None;
+        let ledger: Arc<dyn Ledger> = match &config.ledger {
+            LedgerPlace::Memory => Arc::new(MemoryLedger::new(clock)),
+            LedgerPlace::Sqlite(path) => {
+                make_folder(path)?;
+                let ledger = Arc::new(SqliteLedger::open(path, clock).await?);
+                sqlite = Some(ledger.clone());
+                ledger
+            }
+        };
+        let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
+            .expect("a UUID is a name");
+        let mut running = Self::serve(doors, ledger, store, who, config.rules).await;
+        running.sqlite = sqlite;
+        Ok(running)
+    }
+
+    /// Starts one on parts that are there already, behind these doors.
+    pub async fn serve(
+        doors: Vec<Door>,
+        ledger: Arc<dyn Ledger>,
+        store: Store,
+        who: CoordinatorId,
+        rules: Rules,
+    ) -> RunningServer {
+        let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
+        let stopping = CancellationToken::new();
+        let context = Arc::new(Context::new(coordinator.clone(), rules, stopping.clone()));
+        let routes = routes(&context).await;
+        let mut tasks = JoinSet::new();
+        let addresses: Vec<_> = doors.iter().map(Door::address).collect();
+        for door in doors {
+            tasks.spawn(listen(door, routes.clone(), context.clone()));
+        }
+        tasks.spawn(coordinator.run(stopping));
+        for address in &addresses {
+            tracing::info!(%address, "listening");
+        }
+        RunningServer {
+            addresses,
+            context,
+            tasks,
+            sqlite: None,
+        }
+    }
+}
+
+impl RunningServer {
+    /// The coordinator behind the doors.
+    pub fn coordinator(&self) -> &Arc<Coordinator> {
+        &self.context.coordinator
+    }
+
+    /// Cancelled when the server begins to stop.
+    pub fn stopping(&self) -> CancellationToken {
+        self.context.stopping.clone()
+    }
+
+    /// Stops: waiting calls return at once, others have the grace period; then the ledger closes.
+    pub async fn shutdown(mut self) {
+        tracing::info!("stopping");
+        self.context.stopping.cancel();
+        let grace = self.context.rules.shutdown_grace;
+        let all = async { while self.tasks.join_next().await.is_some() {} };
+        if tokio::time::timeout(grace, all).await.is_err() {
+            tracing::warn!("some calls were cut off");
+            self.tasks.shutdown().await;
+        }
+        if let Some(ledger) = self.sqlite.take() {
+            ledger.close().await;
+        }
+        tracing::info!("stopped");
+    }
+}
+
+/// Runs a coordinator until SIGTERM or SIGINT. `started` hears where it listens.
+pub async fn run(
+    config: Config,
+    started: impl FnOnce(&[ListenAddress]),
+) -> Result<(), ServerError> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut terminate = signal(SignalKind::terminate()).map_err(ServerError::Signals)?;
+    let mut interrupt = signal(SignalKind::interrupt()).map_err(ServerError::Signals)?;
+    let server = Server::start(config).await?;
+    started(&server.addresses);
+    tokio::select! {
+        _ = terminate.recv() => {}
+        _ = interrupt.recv() => {}
+    }
+    server.shutdown().await;
+    Ok(())
+}
+
+fn make_folder(path: &Path) -> Result<(), ServerError> {
+    match path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
+        None => Ok(()),
+        Some(folder) => std::fs::create_dir_all(folder).map_err(|source| ServerError::Folder {
+            folder: folder.display().to_string(),
+            source,
+        }),
+    }
+}
+
+/// All services: ours, health and reflection.
+async fn routes(context: &Arc<Context>) -> Routes {
+    let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
+    let clients = ClientApiServer::new(ClientService::new(context.clone()))
+        .max_decoding_message_size(limit)
+        .max_encoding_message_size(limit);
+    let workers = WorkerApiServer::new(WorkerService::new(context.clone()))
+        .max_decoding_message_size(limit)
+        .max_encoding_message_size(limit);
+    let (health, health_service) = tonic_health::server::health_reporter();
+    health.set_serving::<ClientApiServer<ClientService>>().await;
+    health.set_serving::<WorkerApiServer<WorkerService>>().await;
+    let reflection = || {
+        tonic_reflection::server::Builder::configure()
+            .register_encoded_file_descriptor_set(DESCRIPTORS)
+            .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
+    };
+    // Clients of other languages ask by the older name of the service or by the newer.
+    let (newer, older) = (reflection().build_v1(), reflection().build_v1alpha());
+    let sound = "the descriptors were made by the compiler of the messages";
+    Routes::new(clients)
+        .add_service(workers)
+        .add_service(health_service)
+        .add_service(newer.expect(sound))
+        .add_service(older.expect(sound))
+}
+
+/// Takes calls at one door until the service stops.
+async fn listen(door: Door, routes: Routes, context: Arc<Context>) {
+    let address = door.address();
+    let stopping = context.stopping.clone();
+    let keep_alive = context.rules.keep_alive;
+    let mut server = tonic::transport::Server::builder()
+        .http2_keepalive_interval(Some(keep_alive))
+        .http2_keepalive_timeout(Some(keep_alive))
+        .tcp_keepalive(Some(keep_alive));
+    let router = server.add_routes(routes);
+    let served = match door {
+        Door::Tcp(listener) => {
+            let incoming = TcpIncoming::from(listener).with_nodelay(Some(true));
+            router
+                .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
+                .await
+        }
+        Door::Unix(socket) => {
+            let incoming = futures::stream::unfold(socket, |socket| async move {
+                Some((socket.accept().await, socket))
+            });
+            router
+                .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
+                .await
+        }
+    };
+    if let Err(error) = served {
+        tracing::error!(%address, %error, "a door has closed");
+    }
+}
