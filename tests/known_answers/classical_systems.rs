@@ -1,0 +1,51 @@
+//! Classical systems by name; each count has its source in `systems/named`.
+
+use crate::check::{Answer, check};
+use cognate_algorithms::PlanOptions;
+use cognate_systems::named::{Named, cyclic, eco, katsura, noon, reimer};
+
+/// Regular finite solutions, and all other paths at infinity.
+fn check_named(name: &str, named: &Named, paths: u64, finite: u64) {
+    assert_eq!(named.finite_solutions, Some(finite));
+    check(
+        name,
+        &named.system,
+        &PlanOptions::default(),
+        Answer {
+            paths,
+            nonsingular: finite,
+            at_infinity: paths - finite,
+            ..Answer::default()
+        },
+    );
+}
+
+#[test]
+fn katsura_8_has_256_solutions() {
+    check_named("katsura-8", &katsura(8), 256, 256);
+}
+
+#[test]
+fn katsura_10_has_1024_solutions() {
+    check_named("katsura-10", &katsura(10), 1024, 1024);
+}
+
+#[test]
+fn cyclic_5_has_70_solutions() {
+    check_named("cyclic-5", &cyclic(5), 120, 70);
+}
+
+#[test]
+fn noon_5_has_233_solutions() {
+    check_named("noon-5", &noon(5), 243, 233);
+}
+
+#[test]
+fn eco_6_has_16_solutions() {
+    check_named("eco-6", &eco(6), 162, 16);
+}
+
+#[test]
+fn reimer_4_has_36_solutions() {
+    check_named("reimer-4", &reimer(4), 120, 36);
+}

@@ -1,0 +1,10 @@
+//! Whole solves against published answers, ten seeds each, in one thread.
+//!
+//! Every case goes through `check`: the counts of paths add up, nothing
+//! failed, every crossing came apart, and the numbers are the published ones.
+
+mod check;
+mod classical_systems;
+mod mechanisms;
+mod parameter_homotopies;
+mod singular_endpoints;

@@ -1,0 +1,104 @@
+//! Multiple roots: multiplicities, cycles, and nothing lost.
+
+use crate::check::{Answer, SEEDS, check, complaints, solve};
+use cognate_algorithms::PlanOptions;
+use cognate_systems::named::{caprasse, griewank_osborne};
+use cognate_tests::systems::written;
+
+/// Multiplicity of each solution, ascending.
+fn multiplicities(set: &cognate_solutions::solution_set::SolutionSet) -> Vec<u64> {
+    let mut all: Vec<u64> = set.solutions.iter().map(|s| s.multiplicity).collect();
+    all.sort_unstable();
+    all
+}
+
+/// (x - 1)^3 (x + 2): a triple root and a simple one.
+#[test]
+fn a_triple_root_takes_three_paths() {
+    let system = written("variable_group x; function f; f = (x - 1)^3*(x + 2);");
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let answer = Answer {
+            paths: 4,
+            nonsingular: 1,
+            singular_paths: 3,
+            singular: Some(1),
+            real: Some(Some(2)),
+            ..Answer::default()
+        };
+        let wrong = complaints(&sets[0], &answer);
+        assert!(wrong.is_empty(), "seed {seed}:{wrong}");
+        assert_eq!(multiplicities(&sets[0]), [1, 3]);
+        let triple = sets[0].solutions.iter().find(|s| s.singular);
+        assert_eq!(
+            triple.map(|s| s.cycles.as_slice()),
+            Some(&[3][..]),
+            "seed {seed}"
+        );
+    }
+}
+
+/// Griewank and Osborne: three of the six paths end at the origin.
+#[test]
+fn griewank_and_osbornes_root_is_triple() {
+    check(
+        "griewank_osborne",
+        &griewank_osborne().system,
+        &PlanOptions::default(),
+        Answer {
+            paths: 6,
+            singular_paths: 3,
+            singular: Some(1),
+            at_infinity: 3,
+            real: Some(Some(1)),
+            ..Answer::default()
+        },
+    );
+}
+
+/// 24 simple and 8 fourfold solutions.
+#[test]
+fn caprasse_has_8_fourfold_solutions() {
+    check(
+        "caprasse",
+        &caprasse().system,
+        &PlanOptions::default(),
+        Answer {
+            paths: 144,
+            nonsingular: 24,
+            singular_paths: 32,
+            singular: Some(8),
+            at_infinity: 88,
+            ..Answer::default()
+        },
+    );
+}
+
+/// Solutions of norm 10^4, 10^6 and 10^8 are solutions, beside a path to infinity.
+#[test]
+fn far_solutions_are_finite() {
+    let system = written(
+        "variable_group x, y; function f, g; \
+         f = (x - 10^4)*(x - 10^6)*(x - 10^8)*10^-18; g = x*y - 1 + x - 10^4*x;",
+    );
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let answer = Answer {
+            paths: 6,
+            nonsingular: 3,
+            at_infinity: 3,
+            real: Some(Some(3)),
+            ..Answer::default()
+        };
+        let wrong = complaints(&sets[0], &answer);
+        assert!(wrong.is_empty(), "seed {seed}:{wrong}");
+    }
+}
