@@ -5,6 +5,7 @@
 
 mod check;
 mod classical_systems;
+mod hard_paths;
 mod mechanisms;
 mod parameter_homotopies;
 mod singular_endpoints;

@@ -5,7 +5,7 @@ use cognate_algorithms::PlanOptions;
 use cognate_algorithms::plan::GivenStart;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_systems::system::System;
-use cognate_tests::systems::{with_conjugates, written};
+use cognate_tests::systems::written;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -131,10 +131,7 @@ fn a_homotopy_of_the_users_own_is_followed() {
 /// A point that solves nothing at the start is named, not tracked.
 #[test]
 fn a_wrong_start_solution_is_a_failed_path() {
-    let system = with_conjugates(
-        written("variable_group x; parameter p; function f; f = x^2 - p;"),
-        "",
-    );
+    let system = written("variable_group x; parameter p; function f; f = x^2 - p;");
     let options = PlanOptions {
         start_parameters: Some(vec![number(1.0, 0.0)]),
         target_parameters: vec![vec![number(2.0, 0.0)]],

@@ -30,7 +30,7 @@ pub fn run_locally(
     objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     width: usize,
 ) -> Result<Vec<SolutionSet>, PrepareError> {
-    drive(algorithm, &mut |stage| {
+    drive::<PrepareError>(algorithm, &mut |stage| {
         let prepared = PreparedStage::new(system, stage, objects)?;
         Ok(prepared.track(0..prepared.items(), width))
     })?;

@@ -2,9 +2,9 @@
 //!
 //! Only then does "real" mean something: the involution maps solutions to
 //! solutions, and a real one is a fixed point. Decided on the exact system: the
-//! image of each equation must be a linear combination of the equations, which
-//! values at random points show (by Schwartz and Zippel, wrongly with a chance
-//! of about degree / 2^61 for each of two primes).
+//! image of each equation must be a combination of the equations, with
+//! constant or (in small systems) linear coefficients, which values at random
+//! points show (wrongly with a chance of about degree / 2^61, for each of two primes).
 
 use crate::field::{Field, ManyBits, PRIMES, PrimeField, evaluate};
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -134,14 +134,24 @@ impl Involution {
             .collect::<Option<_>>()
             .ok_or(NotInvariant::NoValues)?;
         let mut random = RandomStream::new(0, Purpose::Probe, 1);
-        let torn = PRIMES
-            .iter()
-            .map(|&prime| self.torn_equation_exactly(system, &exact, prime, &mut random))
-            .collect::<Option<Vec<_>>>()
-            .map(|torn| torn.into_iter().flatten().next())
-            .or_else(|| self.torn_equation_with_many_bits(system, &exact, &mut random))
-            .ok_or(NotInvariant::NoValues)?;
-        match torn {
+        let mut torn = |multipliers| {
+            PRIMES
+                .iter()
+                .map(|&prime| {
+                    self.torn_equation_exactly(system, &exact, prime, multipliers, &mut random)
+                })
+                .collect::<Option<Vec<_>>>()
+                .map(|torn| torn.into_iter().flatten().next())
+                .or_else(|| {
+                    self.torn_equation_with_many_bits(system, &exact, multipliers, &mut random)
+                })
+                .ok_or(NotInvariant::NoValues)
+        };
+        let mut first = torn(Multipliers::Constants)?;
+        if first.is_some() && Multipliers::Linear.rows(system) <= MOST_ROWS {
+            first = torn(Multipliers::Linear)?;
+        }
+        match first {
             None => Ok(()),
             Some(index) => Err(NotInvariant::Equation {
                 equation: system
@@ -161,6 +171,7 @@ impl Involution {
         system: &System,
         parameters: &[ComplexRational],
         prime: u64,
+        multipliers: Multipliers,
         random: &mut RandomStream,
     ) -> Option<Option<usize>> {
         // Conjugating the coefficients is taking the other root of -1 for i. The
@@ -175,21 +186,22 @@ impl Involution {
         };
         let (given, mirrored) = (lift(&field)?, lift(&conjugate)?);
         let mut rows = Rows::default();
-        for _ in 0..samples(system) {
+        for _ in 0..multipliers.samples(system) {
             let point: Vec<u64> = system
                 .variables
                 .iter()
                 .map(|_| random.below(prime))
                 .collect();
             let exchanged: Vec<u64> = self.partner.iter().map(|&p| point[p]).collect();
+            let values = evaluate(
+                &field,
+                &system.expressions,
+                &system.equations,
+                &point,
+                &given,
+            )?;
             rows.add_point(
-                evaluate(
-                    &field,
-                    &system.expressions,
-                    &system.equations,
-                    &point,
-                    &given,
-                )?,
+                multipliers.apply(&field, values, &point),
                 evaluate(
                     &conjugate,
                     &system.expressions,
@@ -207,6 +219,7 @@ impl Involution {
         &self,
         system: &System,
         parameters: &[ComplexRational],
+        multipliers: Multipliers,
         random: &mut RandomStream,
     ) -> Option<Option<usize>> {
         let field = ManyBits(BITS);
@@ -215,7 +228,7 @@ impl Involution {
             .map(|p| field.constant(p))
             .collect::<Option<_>>()?;
         let mut rows = Rows::default();
-        for _ in 0..samples(system) {
+        for _ in 0..multipliers.samples(system) {
             let point: Vec<Complex> = system
                 .variables
                 .iter()
@@ -239,7 +252,7 @@ impl Involution {
                 )
             };
             rows.add_point(
-                at(&point)?,
+                multipliers.apply(&field, at(&point)?, &point),
                 at(&image)?.into_iter().map(Complex::conj).collect(),
             );
         }
@@ -255,10 +268,51 @@ impl Involution {
     }
 }
 
-/// More points than there are equations: then a row of values that is a
-/// combination of others comes from a polynomial that is.
-fn samples(system: &System) -> usize {
-    system.equations.len() + 4
+/// Past this many rows linear coefficients are not tried: elimination takes their cube.
+const MOST_ROWS: usize = 100;
+
+/// What the equations may be multiplied by before they are combined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Multipliers {
+    /// The images are in the span of the equations.
+    Constants,
+    /// The images are in their ideal, by coefficients of degree 1: enough where
+    /// one equation gives a variable its value, and its conjugate follows from another.
+    Linear,
+}
+
+impl Multipliers {
+    fn rows(self, system: &System) -> usize {
+        match self {
+            Self::Constants => system.equations.len(),
+            Self::Linear => system.equations.len() * (system.variables.len() + 1),
+        }
+    }
+
+    /// More points than there are rows: then a row of values that is a
+    /// combination of others comes from a polynomial that is.
+    fn samples(self, system: &System) -> usize {
+        self.rows(system) + 4
+    }
+
+    /// The values at a point of all that may be combined.
+    fn apply<F: Field>(
+        self,
+        field: &F,
+        values: Vec<F::Value>,
+        point: &[F::Value],
+    ) -> Vec<F::Value> {
+        match self {
+            Self::Constants => values,
+            Self::Linear => {
+                let multiples: Vec<F::Value> = point
+                    .iter()
+                    .flat_map(|x| values.iter().map(|v| field.multiply(x, v)))
+                    .collect();
+                values.into_iter().chain(multiples).collect()
+            }
+        }
+    }
 }
 
 fn partners(system: &System) -> Result<Vec<usize>, NotInvariant> {
@@ -433,6 +487,25 @@ mod tests {
             Involution::of(&s, &zero),
             Err(NotInvariant::Pairs { .. })
         ));
+    }
+
+    #[test]
+    fn a_value_whose_conjugate_follows_is_enough() {
+        // x = c with |c| = 1 and x y = 1: then y is the conjugate of c, so the pair is invariant.
+        let build = |re, im| {
+            let mut s = system(move |s| {
+                let e = &mut s.expressions;
+                let (x, y, one) = (e.variable(0), e.variable(1), e.integer(1));
+                let c = e.constant(ComplexRational::new(re, im));
+                let product = e.multiply(x, y);
+                vec![e.subtract(x, c), e.subtract(product, one)]
+            });
+            s.conjugates = vec![(0, 1)];
+            s
+        };
+        let zero = [Complex64::new(0.0, 0.0)];
+        assert!(Involution::of(&build((3, 5), (4, 5)), &zero).is_ok());
+        assert!(Involution::of(&build((3, 5), (3, 5)), &zero).is_err());
     }
 
     #[test]
