@@ -47,7 +47,8 @@ pub const NUMBER_DIGITS: Limit = limit("NUMBER_DIGITS", "digits of a number", 10
 pub const NUMBER_EXPONENT: Limit = limit("NUMBER_EXPONENT", "as power of ten of a number", 10_000);
 /// Bits of an exact constant, numerators and denominators together.
 pub const CONSTANT_BITS: Limit = limit("CONSTANT_BITS", "bits of an exact constant", 1 << 17);
-/// Bits of all exact constants that are computed while reading.
+/// Bits of all exact constants that are used or computed while reading: bounds
+/// the time of hostile files too, to about a second.
 pub const TOTAL_CONSTANT_BITS: Limit = limit(
     "TOTAL_CONSTANT_BITS",
     "bits of all exact constants",

@@ -482,6 +482,20 @@ fn limits_are_named() {
 }
 
 #[test]
+fn exact_arithmetic_that_cancels_is_limited_too() {
+    // Each product is 1 and costs the division of two numbers of 30000 digits.
+    let big = "1".repeat(9_000);
+    let odd = "7".repeat(9_001);
+    let sum = "c*d + ".repeat(500_000);
+    let text = format!("c = {big}/{odd}; d = {odd}/{big}; f = {sum}x;");
+    let start = std::time::Instant::now();
+    let message = message(&bertini(&text));
+    assert!(message.ends_with("limit TOTAL_CONSTANT_BITS)"), "{message}");
+    let seconds = start.elapsed().as_secs();
+    assert!(seconds < 20, "{seconds} s");
+}
+
+#[test]
 fn many_warnings_are_not_slow() {
     let text = format!(
         "CONFIG\n{}END;\n{}",
