@@ -6,6 +6,10 @@
 mod answers;
 mod error;
 mod run;
+#[cfg(test)]
+mod simulation;
+#[cfg(test)]
+mod tests;
 mod work;
 
 pub use answers::{ClassifiedPath, Explanation};

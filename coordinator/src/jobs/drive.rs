@@ -183,6 +183,11 @@ impl Drive {
             return went;
         }
         let stages = tools.ledger.stages(self.job).await?;
+        // Asked after the stages were read: if the job is still ours, nobody else moved them.
+        let row = tools.ledger.job(self.job).await?;
+        if row.is_none_or(|row| row.steward_epoch != self.epoch || row.state.has_ended()) {
+            return Err(LedgerError::Fenced(self.job).into());
+        }
         let Some(stage) = next_to_absorb(&stages) else {
             return self.judge_suspects(tools).await;
         };

@@ -5,12 +5,14 @@
 
 use crate::ledger::identity::ItemRange;
 use crate::results::store::RecordKind;
-use cognate_algorithms::PlanError;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
+use cognate_algorithms::{Next, PathAlgorithm, PlanError};
+use cognate_continuation::stage::{PrepareError, PreparedStage};
 use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
 use cognate_protocol::submission::{Options, StartKind, StartSolutions};
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// How a job was planned: the job's record, which the ledger keeps beside its row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,6 +73,9 @@ pub enum PlanningError {
     /// The algorithms refuse it.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// No worker could track its paths.
+    #[error("its paths cannot be tracked: {0}")]
+    Untrackable(#[from] PrepareError),
     /// The object of start solutions is none.
     #[error("the start solutions cannot be used: {0}")]
     StartSolutions(#[from] DamagedPoints),
@@ -110,13 +115,25 @@ pub fn plan_options(
     })
 }
 
-/// The plan of a system.
+/// The plan of a system, whose first stage a worker can prepare.
 pub fn plan_job(
     system: &System,
     options: &Options,
     start_solutions: Option<&[u8]>,
 ) -> Result<Plan, PlanningError> {
-    Ok(plan(system, &plan_options(options, start_solutions)?)?)
+    let options = plan_options(options, start_solutions)?;
+    let plan = plan(system, &options)?;
+    let points = start_solutions.map(StoredPoints::from_bytes).transpose()?;
+    let given = options.start_points.map(|start| start.object).zip(points);
+    let given = given.map(|(object, points)| (object, Arc::new(points)));
+    let find = |wanted: Digest| {
+        let found = given.as_ref().filter(|(object, _)| *object == wanted);
+        found.map(|(_, points)| Arc::clone(points))
+    };
+    if let Next::Open(stage) = plan.algorithm.clone().next() {
+        PreparedStage::new(&plan.system, &stage, &find)?;
+    }
+    Ok(plan)
 }
 
 /// The first chunks of a stage: one, from which every lease cuts its size.

@@ -7,7 +7,9 @@
 
 pub mod clock;
 #[cfg(test)]
-mod conformance;
+pub(crate) mod conformance;
+#[cfg(test)]
+pub(crate) mod faulty;
 pub mod identity;
 pub mod memory;
 pub mod rows;

@@ -1,0 +1,400 @@
+//! A cluster in one process under a seed: coordinators that are killed, workers that die, fall
+//! silent and report twice, on one ledger and one store. Real paths, a clock set by hand.
+
+use super::{Coordinator, NewProblem, Pull, Report};
+use crate::chunks::leasing::Policy;
+use crate::jobs::drive::{Drive, Driven, Tools};
+use crate::ledger::Ledger;
+use crate::ledger::clock::ManualClock;
+use crate::ledger::identity::*;
+use crate::ledger::rows::*;
+use crate::results::store::Store;
+use cognate_continuation::stage::PreparedStage;
+use cognate_continuation::start_points::Digest;
+use cognate_protocol::submission::{Options, SettingsChoice};
+use cognate_systems::system::System;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// Small numbers by a seed (SplitMix64).
+pub struct Dice(pub u64);
+
+impl Dice {
+    /// One of 0, 1, ..., sides - 1.
+    pub fn roll(&mut self, sides: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % sides
+    }
+}
+
+/// Every path fails at first and is tracked again: at least three stages.
+pub fn problem() -> NewProblem {
+    let text = "variable_group x, y; function f, g;
+        f = x^4 + 2*x*y^2 - 3*y + 1; g = y^4 - x^3*y + 2*x - 5;";
+    problem_of(text, Some(25))
+}
+
+/// A problem in Bertini's notation; paths may take so many steps at first.
+pub fn problem_of(text: &str, max_steps: Option<u32>) -> NewProblem {
+    let read = cognate_systems::formats::read("test", text.as_bytes());
+    NewProblem {
+        system: read.expect("the tests' systems can be read").system,
+        options: Options {
+            seed: Some(7),
+            name: "test".into(),
+            settings: SettingsChoice {
+                max_steps,
+                ..SettingsChoice::default()
+            },
+            ..Options::default()
+        },
+        start_solutions: None,
+        warnings: Vec::new(),
+    }
+}
+
+/// A worker process.
+struct Worker {
+    name: String,
+    pulls: u64,
+    width: usize,
+    leases: Vec<Lease>,
+    said: Option<Report>,
+}
+
+/// A coordinator process with the job that it drives.
+struct Process {
+    coordinator: Arc<Coordinator>,
+    who: CoordinatorId,
+    drive: Option<Drive>,
+}
+
+/// Everything that is alive, and what survives it.
+pub struct Cluster {
+    pub clock: Arc<ManualClock>,
+    pub ledger: Arc<dyn Ledger>,
+    pub store: Store,
+    pub policy: Policy,
+    pub dice: Dice,
+    pub job: JobId,
+    /// A path that no worker survives.
+    pub deadly: Option<u64>,
+    /// How often items were tracked.
+    pub tracked: u64,
+    processes: Vec<Process>,
+    workers: Vec<Worker>,
+    born: u64,
+    prepared: Mutex<HashMap<Digest, Arc<PreparedStage>>>,
+}
+
+impl Cluster {
+    /// A cluster with nobody in it.
+    pub fn new(
+        ledger: Arc<dyn Ledger>,
+        store: Store,
+        clock: Arc<ManualClock>,
+        policy: Policy,
+        seed: u64,
+    ) -> Self {
+        Self {
+            clock,
+            ledger,
+            store,
+            policy,
+            dice: Dice(seed),
+            job: JobId(0),
+            deadly: None,
+            tracked: 0,
+            processes: Vec::new(),
+            workers: Vec::new(),
+            born: 0,
+            prepared: Mutex::default(),
+        }
+    }
+
+    /// Starts a coordinator; every one has a name of its own.
+    pub fn start_coordinator(&mut self) {
+        self.born += 1;
+        let who = CoordinatorId::new(format!("c{}", self.born)).expect("a good name");
+        let coordinator = Coordinator::new(
+            Arc::clone(&self.ledger),
+            self.store.clone(),
+            who.clone(),
+            self.policy.clone(),
+        );
+        self.processes.push(Process {
+            coordinator,
+            who,
+            drive: None,
+        });
+    }
+
+    /// Kills all coordinators and starts one.
+    pub fn restart(&mut self) {
+        self.processes.clear();
+        self.start_coordinator();
+    }
+
+    /// Starts a worker.
+    pub fn start_worker(&mut self) {
+        self.born += 1;
+        let width = [1, 8, 16][self.dice.roll(3) as usize];
+        self.workers.push(Worker {
+            name: format!("w{}", self.born),
+            pulls: 0,
+            width,
+            leases: Vec::new(),
+            said: None,
+        });
+    }
+
+    /// Submits the problem until it is accepted.
+    pub async fn submit(&mut self, problem: &NewProblem) {
+        for _ in 0..3 {
+            let request = RequestId::new("request").expect("a good name");
+            let tenant = Tenant::new("tenant").expect("a good name");
+            let submitted = self.processes[0]
+                .coordinator
+                .submit(request, tenant, problem.clone())
+                .await;
+            if let Ok(accepted) = submitted {
+                self.job = accepted.job;
+                return;
+            }
+            self.restart();
+        }
+        panic!("a submission is accepted in the end");
+    }
+
+    /// The job's row.
+    pub async fn row(&self) -> JobRow {
+        let row = self.ledger.job(self.job).await.expect("the ledger is read");
+        row.expect("the job is there")
+    }
+
+    /// Lets chance decide who does what until the job ends.
+    pub async fn run(&mut self) -> JobRow {
+        for _ in 0..20_000 {
+            let row = self.row().await;
+            if row.state.has_ended() {
+                return row;
+            }
+            self.act().await;
+            for stage in self.ledger.stages(self.job).await.expect("stages are read") {
+                assert_eq!(stage.accounted(), stage.items, "{stage:?}");
+            }
+        }
+        panic!(
+            "the job does not end: {:?}",
+            self.ledger.stages(self.job).await
+        );
+    }
+
+    async fn act(&mut self) {
+        let process = self.dice.roll(self.processes.len() as u64) as usize;
+        let worker = self.dice.roll(self.workers.len() as u64) as usize;
+        match self.dice.roll(100) {
+            0..30 => self.drive(process).await,
+            30..50 => self.pull(process, worker).await,
+            50..85 => self.report(process, worker).await,
+            85..88 => self.report_again(process, worker).await,
+            88..90 => self.give_back(process, worker).await,
+            90..93 => {
+                // Killed: what it had is known to nobody.
+                self.workers.remove(worker);
+                self.start_worker();
+            }
+            93..95 => {
+                self.processes.remove(process);
+                self.start_coordinator();
+            }
+            _ => {
+                self.clock.advance_ms(self.dice.roll(4000));
+                self.expire(process).await;
+            }
+        }
+    }
+
+    /// One step of a coordinator's steward. A failure kills the coordinator.
+    pub async fn drive(&mut self, process: usize) {
+        let Process { who, drive, .. } = &mut self.processes[process];
+        let tools = Tools {
+            ledger: &*self.ledger,
+            store: &self.store,
+            who,
+            policy: &self.policy,
+        };
+        let step = async {
+            if drive.is_none() {
+                *drive = Drive::take(&tools, self.job).await?;
+            }
+            match drive {
+                Some(steward) => steward.step(&tools).await,
+                None => Ok(Driven::Waits),
+            }
+        };
+        match step.await {
+            Ok(Driven::Ended) => *drive = None,
+            Ok(_) => {}
+            Err(error) if error.is_fenced() => *drive = None,
+            Err(_) => {
+                self.processes.remove(process);
+                self.start_coordinator();
+            }
+        }
+    }
+
+    /// A worker asks for chunks.
+    pub async fn pull(&mut self, process: usize, worker: usize) {
+        let asking = &mut self.workers[worker];
+        asking.pulls += 1;
+        let says = WorkerSeen {
+            worker: WorkerId::new(asking.name.clone()).expect("a good name"),
+            version: "0".into(),
+            numerics_revision: cognate_numeric::NUMERICS_REVISION,
+            instruction_set: "any".into(),
+            threads: 1,
+            lane_width: asking.width as u32,
+            host: "here".into(),
+            transport: "none".into(),
+            draining: false,
+        };
+        let pull = Pull {
+            worker: says,
+            request: RequestId::new(format!("{}-{}", asking.name, asking.pulls))
+                .expect("a good name"),
+            slots: 2,
+            wait: Duration::ZERO,
+        };
+        match self.processes[process].coordinator.pull(pull).await {
+            Ok(leases) => asking.leases.extend(leases),
+            Err(_) => self.restart(),
+        }
+    }
+
+    async fn prepare(&self, lease: &Lease) -> Arc<PreparedStage> {
+        let known = self.prepared.lock().expect("nobody panics here");
+        if let Some(stage) = known.get(&lease.definition) {
+            return Arc::clone(stage);
+        }
+        drop(known);
+        let system: System = self
+            .store
+            .problem(lease.problem)
+            .await
+            .expect("it is there");
+        let stage = self
+            .store
+            .stage(lease.definition)
+            .await
+            .expect("it is there");
+        let prepared = PreparedStage::new(&system, &stage, &|_| None).expect("it can be prepared");
+        let prepared = Arc::new(prepared);
+        let mut known = self.prepared.lock().expect("nobody panics here");
+        known.insert(lease.definition, Arc::clone(&prepared));
+        prepared
+    }
+
+    /// A worker tracks its oldest chunk and reports it.
+    pub async fn report(&mut self, process: usize, worker: usize) {
+        if self.workers[worker].leases.is_empty() {
+            return;
+        }
+        let lease = self.workers[worker].leases.remove(0);
+        let prepared = self.prepare(&lease).await;
+        let stage = self
+            .store
+            .stage(lease.definition)
+            .await
+            .expect("it is there");
+        let items = lease.items.first..lease.items.last;
+        if items
+            .clone()
+            .any(|item| self.deadly == Some(stage.origin(item)))
+        {
+            self.workers.remove(worker);
+            self.start_worker();
+            return;
+        }
+        self.tracked += lease.items.len();
+        let report = Report {
+            lease: lease.lease,
+            results: prepared.track(items, self.workers[worker].width),
+            cpu_micros: 1000 * lease.items.len(),
+        };
+        self.workers[worker].said = Some(report);
+        self.report_again(process, worker).await;
+    }
+
+    /// A worker sends its last report, until it is answered.
+    async fn report_again(&mut self, process: usize, worker: usize) {
+        let Some(report) = self.workers[worker].said.clone() else {
+            return;
+        };
+        let mut process = process;
+        for _ in 0..3 {
+            let sent = self.processes[process].coordinator.complete(report.clone());
+            match sent.await {
+                Ok(completion) => {
+                    assert_ne!(completion, Completion::HashDiffers, "paths are pure");
+                    return;
+                }
+                Err(_) => {
+                    self.restart();
+                    process = 0;
+                }
+            }
+        }
+        panic!("a report is answered in the end");
+    }
+
+    async fn give_back(&mut self, process: usize, worker: usize) {
+        let leases: Vec<LeaseId> = self.workers[worker]
+            .leases
+            .drain(..)
+            .map(|l| l.lease)
+            .collect();
+        let coordinator = &self.processes[process].coordinator;
+        if coordinator
+            .give_back(&leases, GiveBack::Drained)
+            .await
+            .is_err()
+        {
+            self.restart();
+        }
+    }
+
+    /// A coordinator takes back what has expired.
+    pub async fn expire(&mut self, process: usize) {
+        if self.processes[process].coordinator.expire().await.is_err() {
+            self.restart();
+        }
+    }
+
+    /// The state of the job in a process' hands.
+    pub fn live_state(&self, process: usize) -> Option<Vec<u8>> {
+        let drive = self.processes[process].drive.as_ref();
+        drive.map(|drive| drive.steward().snapshot())
+    }
+
+    /// A coordinator of this cluster.
+    pub fn coordinator(&self, process: usize) -> &Arc<Coordinator> {
+        &self.processes[process].coordinator
+    }
+
+    /// The chunks of the job that have a result, with how each stage was cut.
+    pub async fn finished(&self) -> BTreeMap<u32, Vec<ChunkRow>> {
+        let mut finished = BTreeMap::new();
+        for stage in self.ledger.stages(self.job).await.expect("stages are read") {
+            let chunks = self
+                .ledger
+                .finished_chunks(self.job, stage.stage, 0, 10_000);
+            finished.insert(stage.stage.0, chunks.await.expect("chunks are read"));
+        }
+        finished
+    }
+}

@@ -1,0 +1,406 @@
+//! Whole clusters: whoever dies wherever, the job ends with the same solutions, bit for bit.
+
+use super::simulation::*;
+use super::*;
+use crate::chunks::sizing::Sizing;
+use crate::ledger::clock::ManualClock;
+use crate::ledger::faulty::{FaultyLedger, Side};
+use crate::ledger::memory::MemoryLedger;
+use crate::ledger::rows::{ChunkState, JobRow};
+use crate::ledger::sqlite::SqliteLedger;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_solutions::solution_set::FailureReason;
+use std::time::Duration;
+use tokio_util::sync::CancellationToken;
+
+fn policy(most_items: u64) -> Policy {
+    Policy {
+        lease_ms: 3000,
+        steward_ms: 2000,
+        sizing: Sizing {
+            first_items: most_items,
+            most_items,
+            ..Sizing::default()
+        },
+        ..Policy::default()
+    }
+}
+
+fn cluster(most_items: u64, seed: u64) -> Cluster {
+    let clock = Arc::new(ManualClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    Cluster::new(ledger, Store::in_memory(), clock, policy(most_items), seed)
+}
+
+/// The reference: one coordinator, one worker, nothing happens.
+async fn quiet() -> (JobRow, Vec<SolutionSet>) {
+    let mut cluster = cluster(1000, 1);
+    cluster.start_coordinator();
+    cluster.start_worker();
+    cluster.submit(&problem()).await;
+    for _ in 0..50 {
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        cluster.report(0, 0).await;
+    }
+    let row = cluster.row().await;
+    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    let sets = cluster.coordinator(0).solutions(cluster.job).await.unwrap();
+    (row, sets.to_vec())
+}
+
+#[tokio::test]
+async fn the_reference_is_right() {
+    let (_, sets) = quiet().await;
+    assert_eq!(sets.len(), 1);
+    assert_eq!((sets[0].paths.total, sets[0].paths.finite), (16, 16));
+    assert_eq!(sets[0].counts.distinct, 16);
+    assert!(sets[0].paths.retracked > 0, "the test needs several stages");
+}
+
+#[tokio::test]
+async fn any_cluster_finds_the_same() {
+    let (reference, _) = quiet().await;
+    for seed in 0..40 {
+        let mut cluster = cluster([1, 3, 5, 16][seed as usize % 4], seed);
+        // Here workers die by chance, and no path is at fault.
+        cluster.policy.suspicion_limit = 1000;
+        for _ in 0..=seed % 2 {
+            cluster.start_coordinator();
+        }
+        for _ in 0..=seed % 3 {
+            cluster.start_worker();
+        }
+        cluster.submit(&problem()).await;
+        let row = cluster.run().await;
+        assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+    }
+}
+
+#[tokio::test]
+async fn a_coordinator_killed_at_any_write_loses_nothing() {
+    let (reference, _) = quiet().await;
+    for side in [Side::Before, Side::After] {
+        for fail_at in 0.. {
+            let clock = Arc::new(ManualClock::default());
+            let memory = Arc::new(MemoryLedger::new(clock.clone()));
+            let faulty = Arc::new(FaultyLedger::new(memory, fail_at, side));
+            let store = Store::in_memory();
+            let mut cluster =
+                Cluster::new(faulty.clone(), store, clock.clone(), policy(6), fail_at);
+            cluster.start_coordinator();
+            cluster.start_worker();
+            cluster.submit(&problem()).await;
+            for _ in 0..200 {
+                cluster.drive(0).await;
+                cluster.pull(0, 0).await;
+                cluster.report(0, 0).await;
+                // A new steward waits for the old one's right to end; a lost lease to expire.
+                clock.advance_ms(700);
+                cluster.expire(0).await;
+                if cluster.row().await.state.has_ended() {
+                    break;
+                }
+            }
+            let row = cluster.row().await;
+            let place = format!("killed {side:?} write {fail_at}");
+            assert_eq!(row.state, JobState::Solved, "{place}: {:?}", row.reason);
+            assert_eq!(row.solutions, reference.solutions, "{place}");
+            let items: u64 = cluster
+                .ledger
+                .stages(cluster.job)
+                .await
+                .unwrap()
+                .iter()
+                .map(|s| s.items)
+                .sum();
+            assert!(
+                cluster.tracked <= items + 12,
+                "{place}: a lost lease at most"
+            );
+            if !faulty.has_failed() {
+                assert!(fail_at > 20, "there are many writes to fail at");
+                break;
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_ledger_and_store_on_disk_are_all_that_a_restart_needs() {
+    let (reference, _) = quiet().await;
+    let folder = tempfile::tempdir().unwrap();
+    let clock = Arc::new(ManualClock::default());
+    let mut tracked = 0;
+    let mut replayed: Option<Vec<u8>> = None;
+    let mut accepted_before = None;
+    for round in 0..100 {
+        let path = folder.path().join("ledger");
+        let ledger = Arc::new(SqliteLedger::open(&path, clock.clone()).await.unwrap());
+        let store = Store::folder(&folder.path().join("results")).unwrap();
+        let mut cluster = Cluster::new(ledger.clone(), store, clock.clone(), policy(3), round);
+        cluster.start_coordinator();
+        cluster.start_worker();
+        cluster.submit(&problem()).await;
+        let finished = cluster.finished().await;
+        if let Some(before) = accepted_before.take() {
+            assert_eq!(finished, before, "what was accepted is as it was");
+        }
+        // A new steward may drive once the old one's right has ended.
+        clock.advance_ms(2000);
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        cluster.report(0, 0).await;
+        cluster.drive(0).await;
+        let row = cluster.row().await;
+        if let (Some(state), Some(live)) = (row.snapshot, cluster.live_state(0)) {
+            let kept: Vec<u8> = cluster
+                .store
+                .record(&crate::jobs::planning::STATE, state)
+                .await
+                .unwrap();
+            assert_eq!(kept, live, "replayed state is live state");
+            replayed = Some(kept);
+        }
+        tracked += cluster.tracked;
+        accepted_before = Some(cluster.finished().await);
+        clock.advance_ms(5000);
+        cluster.expire(0).await;
+        drop(cluster);
+        ledger.close().await;
+        if row.state.has_ended() {
+            assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+            assert_eq!(row.solutions, reference.solutions);
+            let items: u64 = accepted_before
+                .unwrap()
+                .values()
+                .flatten()
+                .map(|chunk| chunk.items.len())
+                .sum();
+            assert_eq!(tracked, items, "what was accepted is not tracked again");
+            assert!(round > 5, "the job was interrupted often");
+            assert!(replayed.is_some());
+            return;
+        }
+    }
+    panic!("the job does not end");
+}
+
+#[tokio::test]
+async fn a_path_that_kills_workers_is_named_and_the_rest_is_solved() {
+    let mut cluster = cluster(16, 5);
+    cluster.deadly = Some(11);
+    cluster.start_coordinator();
+    cluster.start_worker();
+    cluster.submit(&problem()).await;
+    for _ in 0..400 {
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        cluster.report(0, 0).await;
+        cluster.clock.advance_ms(500);
+        cluster.expire(0).await;
+    }
+    let row = cluster.row().await;
+    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    let coordinator = cluster.coordinator(0);
+    let sets = coordinator.solutions(cluster.job).await.unwrap();
+    assert_eq!((sets[0].paths.finite, sets[0].paths.failed), (15, 1));
+    let failed = &sets[0].failed[0];
+    let killed = FailureReason::Tracking(Failure::KilledItsWorker);
+    assert_eq!((failed.path, failed.reason), (11, killed));
+    let (summary, _) = coordinator.summary(cluster.job).await.unwrap();
+    assert_eq!(summary.failures[Failure::KilledItsWorker.describe()], 1);
+    assert!(!summary.settled);
+    let stages = cluster.ledger.stages(cluster.job).await.unwrap();
+    assert_eq!(stages[0].failed.items, 1);
+    let paths = coordinator.paths(cluster.job).await.unwrap();
+    assert_eq!(paths.len(), 16);
+    assert_eq!(
+        paths[11].result.outcome,
+        PathOutcome::Failed(Failure::KilledItsWorker)
+    );
+    assert_eq!(paths[11].solution, None);
+    assert!(paths.iter().filter(|p| p.solution.is_some()).count() == 15);
+}
+
+#[tokio::test]
+async fn a_damaged_object_ends_the_job_with_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let clock = Arc::new(ManualClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    let store = Store::folder(folder.path()).unwrap();
+    let mut cluster = Cluster::new(ledger, store, clock, policy(16), 3);
+    cluster.start_coordinator();
+    cluster.start_worker();
+    cluster.submit(&problem()).await;
+    cluster.drive(0).await;
+    for _ in 0..8 {
+        cluster.pull(0, 0).await;
+        cluster.report(0, 0).await;
+    }
+    let finished = cluster.finished().await;
+    let ChunkState::Accepted { result, .. } = &finished[&0][0].state else {
+        panic!("the chunk is accepted");
+    };
+    std::fs::write(folder.path().join(&result.address), b"nonsense").unwrap();
+    cluster.drive(0).await;
+    let row = cluster.row().await;
+    assert_eq!(row.state, JobState::Failed);
+    assert!(row.reason.unwrap().contains(&result.address));
+}
+
+#[tokio::test]
+async fn a_report_of_other_paths_is_refused() {
+    let mut cluster = cluster(4, 3);
+    cluster.start_coordinator();
+    cluster.submit(&problem()).await;
+    cluster.drive(0).await;
+    let coordinator = Arc::clone(cluster.coordinator(0));
+    let pull = Pull {
+        worker: crate::ledger::conformance::seen("w", 1),
+        request: RequestId::new("1").unwrap(),
+        slots: 1,
+        wait: Duration::ZERO,
+    };
+    let lease = coordinator.pull(pull).await.unwrap()[0].clone();
+    let stage = coordinator
+        .stage(cluster.job, lease.lease.chunk.stage)
+        .await
+        .unwrap();
+    let result = |item| crate::chunks::expiry::killed_its_worker(&stage, item);
+    for results in [
+        vec![],
+        vec![result(0), result(2), result(1), result(3)],
+        (0..17).map(result).collect(),
+    ] {
+        let report = Report {
+            lease: lease.lease,
+            results,
+            cpu_micros: 1,
+        };
+        let refused = coordinator.complete(report).await;
+        assert!(matches!(refused, Err(CoordinatorError::Report { .. })));
+    }
+    // Fewer items than leased are not the chunk.
+    let report = Report {
+        lease: lease.lease,
+        results: vec![result(0)],
+        cpu_micros: 1,
+    };
+    let stale = coordinator.complete(report).await.unwrap();
+    assert_eq!(stale, crate::ledger::rows::Completion::Stale);
+}
+
+/// The shell: real clock, its own tasks, two workers that poll.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_running_coordinator_needs_nobody_to_drive_it() {
+    let (reference, _) = quiet().await;
+    let clock = Arc::new(crate::ledger::clock::SystemClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock));
+    let who = CoordinatorId::new("c").unwrap();
+    let coordinator = Coordinator::new(ledger, Store::in_memory(), who, policy(4));
+    let stop = CancellationToken::new();
+    let running = tokio::spawn(Arc::clone(&coordinator).run(stop.clone()));
+    for name in ["v", "w"] {
+        let (coordinator, stop) = (Arc::clone(&coordinator), stop.clone());
+        tokio::spawn(async move {
+            let mut pulls = 0;
+            while !stop.is_cancelled() {
+                pulls += 1;
+                let pull = Pull {
+                    worker: crate::ledger::conformance::seen(name, 1),
+                    request: RequestId::new(format!("{name}-{pulls}")).unwrap(),
+                    slots: 1,
+                    wait: Duration::from_secs(5),
+                };
+                for lease in coordinator.pull(pull).await.unwrap() {
+                    let id = lease.lease;
+                    let system = coordinator.problem(lease.problem).await.unwrap();
+                    let stage = coordinator
+                        .stage(id.chunk.job, id.chunk.stage)
+                        .await
+                        .unwrap();
+                    let prepared =
+                        cognate_continuation::stage::PreparedStage::new(&system, &stage, &|_| None)
+                            .unwrap();
+                    let report = Report {
+                        lease: id,
+                        results: prepared.track(lease.items.first..lease.items.last, 8),
+                        cpu_micros: 1000,
+                    };
+                    coordinator.complete(report).await.unwrap();
+                }
+            }
+        });
+    }
+    let begin = std::time::Instant::now();
+    let accepted = coordinator
+        .submit(
+            RequestId::new("r").unwrap(),
+            Tenant::new("t").unwrap(),
+            problem(),
+        )
+        .await
+        .unwrap();
+    let mut watched = coordinator.watch(accepted.job);
+    let mut last = None;
+    while let Some(progress) = watched.recv().await {
+        last = Some(progress.unwrap());
+    }
+    let last = last.expect("progress is said at least once");
+    assert_eq!(last.state, JobState::Solved, "{}", last.message);
+    assert!(begin.elapsed() < Duration::from_secs(20));
+    let row = coordinator
+        .ledger()
+        .job(accepted.job)
+        .await
+        .unwrap()
+        .unwrap();
+    assert_eq!(row.solutions, reference.solutions);
+    let explained = coordinator.explain(accepted.job).await.unwrap();
+    assert!(explained.text.contains("16 paths"), "{}", explained.text);
+    let (summary, text) = coordinator.summary(accepted.job).await.unwrap();
+    assert_eq!(
+        summary.workers.iter().map(|w| w.paths).sum::<u64>(),
+        last.stages.iter().map(|s| s.accepted).sum::<u64>()
+    );
+    assert!(text.contains("\"highest_precision_bits\": 53"));
+    stop.cancel();
+    running.await.unwrap();
+}
+
+#[tokio::test]
+async fn what_cannot_be_solved_is_refused_at_the_door() {
+    let mut cluster = cluster(4, 3);
+    cluster.start_coordinator();
+    let submit = |text: &str| {
+        let coordinator = Arc::clone(cluster.coordinator(0));
+        let problem = problem_of(text, None);
+        async move {
+            let request = RequestId::new("r").unwrap();
+            let tenant = Tenant::new("t").unwrap();
+            coordinator.submit(request, tenant, problem).await
+        }
+    };
+    let more = "variable_group x; function f, g; f = x^2 - 1; g = x - 1;";
+    let refused = submit(more).await.expect_err("too many equations");
+    assert!(
+        refused.to_string().contains("not in this version"),
+        "{refused}"
+    );
+    assert!(coordinator_is_empty(cluster.coordinator(0)).await);
+    let accepted = submit("variable_group x; function f; f = x^2 - 2;").await;
+    assert!(accepted.unwrap().is_new);
+    let other = submit("variable_group x; function f; f = x^2 - 3;").await;
+    let reused = other.expect_err("one request, two problems");
+    assert!(matches!(
+        reused,
+        CoordinatorError::Ledger(LedgerError::RequestReused(_))
+    ));
+    assert_eq!(cluster.coordinator(0).jobs(10).await.unwrap().len(), 1);
+}
+
+async fn coordinator_is_empty(coordinator: &Coordinator) -> bool {
+    coordinator.jobs(10).await.unwrap().is_empty()
+}

@@ -1,0 +1,160 @@
+//! A ledger that fails at one chosen write: before it is done, or after it, so that the answer is
+//! lost. What a coordinator that is killed there leaves behind.
+
+use super::clock::LedgerTime;
+use super::identity::*;
+use super::rows::*;
+use super::{Ledger, LedgerError};
+use async_trait::async_trait;
+use cognate_continuation::work::StageId;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// On which side of the write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The write is not done.
+    Before,
+    /// The write is done, and nobody hears of it.
+    After,
+}
+
+/// Fails at the write of this number, and once only.
+pub struct FaultyLedger {
+    inner: Arc<dyn Ledger>,
+    writes: AtomicU64,
+    fail_at: u64,
+    side: Side,
+}
+
+impl FaultyLedger {
+    /// Counts from 0.
+    pub fn new(inner: Arc<dyn Ledger>, fail_at: u64, side: Side) -> Self {
+        Self {
+            inner,
+            writes: AtomicU64::new(0),
+            fail_at,
+            side,
+        }
+    }
+
+    /// True once it has failed.
+    pub fn has_failed(&self) -> bool {
+        self.writes.load(Ordering::Relaxed) > self.fail_at
+    }
+
+    async fn write<T>(
+        &self,
+        operation: impl Future<Output = Result<T, LedgerError>> + Send,
+    ) -> Result<T, LedgerError> {
+        let killed = || Err(LedgerError::Storage("killed here".into()));
+        let now = self.writes.fetch_add(1, Ordering::Relaxed);
+        if now == self.fail_at && self.side == Side::Before {
+            return killed();
+        }
+        let done = operation.await;
+        if now == self.fail_at {
+            return killed();
+        }
+        done
+    }
+}
+
+#[async_trait]
+impl Ledger for FaultyLedger {
+    async fn now(&self) -> Result<LedgerTime, LedgerError> {
+        self.inner.now().await
+    }
+    async fn submit(&self, id: RequestId, job: NewJob) -> Result<Submitted, LedgerError> {
+        self.write(self.inner.submit(id, job)).await
+    }
+    async fn cancel(&self, job: JobId, reason: &str) -> Result<Cancelled, LedgerError> {
+        self.write(self.inner.cancel(job, reason)).await
+    }
+    async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
+        self.inner.job(job).await
+    }
+    async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError> {
+        self.inner.jobs(limit).await
+    }
+    async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
+        self.inner.stages(job).await
+    }
+    async fn steward(
+        &self,
+        job: JobId,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<Option<Epoch>, LedgerError> {
+        self.write(self.inner.steward(job, who, duration_ms)).await
+    }
+    async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
+        self.inner.unfinished_jobs().await
+    }
+    async fn advance(&self, job: JobId, epoch: Epoch, step: Advance) -> Result<(), LedgerError> {
+        self.write(self.inner.advance(job, epoch, step)).await
+    }
+    async fn split(
+        &self,
+        chunk: ChunkId,
+        epoch: Epoch,
+        pieces: &[Piece],
+    ) -> Result<(), LedgerError> {
+        self.write(self.inner.split(chunk, epoch, pieces)).await
+    }
+    async fn condemn(
+        &self,
+        chunk: ChunkId,
+        epoch: Epoch,
+        result: ResultObject,
+    ) -> Result<(), LedgerError> {
+        self.write(self.inner.condemn(chunk, epoch, result)).await
+    }
+    async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
+        self.write(self.inner.finish(job, epoch, end)).await
+    }
+    async fn finished_chunks(
+        &self,
+        job: JobId,
+        stage: StageId,
+        from: u64,
+        limit: u32,
+    ) -> Result<Vec<ChunkRow>, LedgerError> {
+        self.inner.finished_chunks(job, stage, from, limit).await
+    }
+    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
+        self.inner.suspects(job, suspicions).await
+    }
+    async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError> {
+        self.inner.contributions(job).await
+    }
+    async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError> {
+        self.write(self.inner.lease(request)).await
+    }
+    async fn renew(
+        &self,
+        leases: &[LeaseId],
+        duration_ms: u64,
+    ) -> Result<Vec<Renewal>, LedgerError> {
+        self.write(self.inner.renew(leases, duration_ms)).await
+    }
+    async fn complete(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError> {
+        self.write(self.inner.complete(lease, result)).await
+    }
+    async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
+        self.write(self.inner.give_back(lease, why)).await
+    }
+    async fn expire(&self) -> Result<Vec<Expired>, LedgerError> {
+        self.write(self.inner.expire()).await
+    }
+    async fn seen(&self, worker: WorkerSeen) -> Result<(), LedgerError> {
+        self.write(self.inner.seen(worker)).await
+    }
+    async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, LedgerError> {
+        self.inner.workers(limit).await
+    }
+}
