@@ -1,4 +1,8 @@
 //! What the tests share.
 #![forbid(unsafe_code)]
 
+pub mod builders;
+pub mod client;
+pub mod cluster;
+pub mod processes;
 pub mod systems;

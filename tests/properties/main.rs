@@ -1,0 +1,3 @@
+//! Properties that hold for whole crates together.
+
+mod tracking;

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# Fresh machine to green: installs what the tests need and runs them all.
+#   tests/run.sh         everything: format, lints, mathematics, service, processes, a stranger's client
+#   tests/run.sh fast    the mathematics only, under a minute once built
+# On Debian and Ubuntu missing packages are installed; elsewhere they are named. Rust must be there.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+mode=${1:-all}
+case $mode in
+  all | fast) ;;
+  *)
+    echo "usage: tests/run.sh [fast]" >&2
+    exit 2
+    ;;
+esac
+
+step() { printf '\n== %s\n' "$*"; }
+
+# install PACKAGE...: by the system's package manager, if it is one that we know.
+install() {
+  if ! command -v apt-get >/dev/null; then
+    echo "missing: $*. Install them with this system's package manager." >&2
+    exit 2
+  fi
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then as_root=(sudo); fi
+  "${as_root[@]}" apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "$@"
+}
+
+if ! command -v cargo >/dev/null && [ -x "$HOME/.cargo/bin/cargo" ]; then
+  PATH=$HOME/.cargo/bin:$PATH
+fi
+if ! command -v cargo >/dev/null; then
+  echo "missing: Rust 1.94 or newer with cargo (https://rustup.rs)" >&2
+  exit 2
+fi
+
+# GMP, MPFR and MPC are built from source: a C compiler, make and m4.
+missing=()
+command -v cc >/dev/null || missing+=(gcc libc6-dev)
+command -v make >/dev/null || missing+=(make)
+command -v m4 >/dev/null || missing+=(m4)
+if [ ${#missing[@]} -gt 0 ]; then
+  step "installing ${missing[*]}"
+  install "${missing[@]}"
+fi
+
+mathematics=(-p cognate-numeric -p cognate-systems -p cognate-continuation -p cognate-solutions
+  -p cognate-algorithms)
+
+if [ "$mode" = fast ]; then
+  step "the mathematics"
+  cargo test --release "${mathematics[@]}"
+  exit
+fi
+
+step "format and lints"
+cargo fmt --all --check
+cargo clippy --release --workspace --all-targets -- -D warnings
+
+step "a stranger's client: Python packages into target/stranger"
+if ! python3 -c 'import ensurepip, venv' 2>/dev/null; then
+  install python3 python3-venv
+fi
+stranger=target/stranger
+if ! cmp -s tests/stranger/requirements.txt "$stranger/requirements.txt"; then
+  rm -rf "$stranger"
+  python3 -m venv "$stranger"
+  "$stranger/bin/python" -m pip install --quiet --disable-pip-version-check \
+    --requirement tests/stranger/requirements.txt
+  cp tests/stranger/requirements.txt "$stranger/"
+fi
+export COGNATE_STRANGER_PYTHON=$PWD/$stranger/bin/python
+
+step "building"
+cargo test --release --workspace --no-run
+# The build above has made it; the tests need not ask cargo again.
+export COGNATE_PROGRAM=$PWD/target/release/cognate
+[ -x "$COGNATE_PROGRAM" ]
+
+step "everything"
+cargo test --release --workspace
+printf '\nall tests passed\n'

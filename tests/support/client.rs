@@ -1,0 +1,269 @@
+//! Client: the service's calls as a test makes them, one after the other.
+
+use cognate_protocol::v1;
+use cognate_protocol::v1::client_api_client::ClientApiClient;
+use cognate_protocol::v1::worker_api_client::WorkerApiClient;
+use std::future::Future;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use tokio::runtime::Runtime;
+use tonic::Status;
+use tonic::transport::{Channel, Endpoint, Uri};
+
+/// A system to submit.
+#[derive(Clone, Debug)]
+pub struct Submission {
+    /// The text of an input file.
+    pub text: String,
+    /// How it is to be solved.
+    pub options: v1::Options,
+    /// Chosen by the client.
+    pub request_id: String,
+}
+
+impl Submission {
+    /// A text with default options and seed 1.
+    pub fn of(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            options: v1::Options {
+                seed: Some(1),
+                ..v1::Options::default()
+            },
+            request_id: format!("test-{}", uuid::Uuid::new_v4()),
+        }
+    }
+}
+
+/// All that a solved job says, in the bits that it says it in; times and workers left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// The solutions, in order.
+    pub solutions: Vec<v1::Solution>,
+    /// Every path, by index.
+    pub paths: Vec<v1::ClassifiedPath>,
+    /// The counts.
+    pub counts: v1::SummaryCounts,
+}
+
+/// A connection to one coordinator.
+pub struct Client {
+    runtime: Runtime,
+    channel: Channel,
+}
+
+/// How long a job of a test may take.
+const JOB_PATIENCE: Duration = Duration::from_secs(300);
+
+/// Messages may be as large as the service lets them be.
+const MESSAGE_BYTES: usize = 64 << 20;
+
+impl Client {
+    /// Connects to `unix:PATH` or `http://HOST:PORT`; `None` when nobody answers.
+    ///
+    /// # Panics
+    /// When the address is none.
+    pub fn connect(address: &str) -> Option<Self> {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .expect("a runtime");
+        let channel = runtime.block_on(async {
+            let channel = match address.strip_prefix("unix:") {
+                Some(path) => {
+                    let path = PathBuf::from(path);
+                    let connector = tower::service_fn(move |_: Uri| {
+                        let path = path.clone();
+                        async move {
+                            let stream = tokio::net::UnixStream::connect(path).await?;
+                            Ok::<_, std::io::Error>(hyper_util::rt::TokioIo::new(stream))
+                        }
+                    });
+                    let endpoint = Endpoint::from_static("http://localhost");
+                    endpoint.connect_with_connector(connector).await
+                }
+                None => {
+                    let endpoint = Endpoint::from_shared(address.to_owned());
+                    endpoint.expect("an address").connect().await
+                }
+            };
+            let channel = channel.ok()?;
+            let mut client = ClientApiClient::new(channel.clone());
+            let info = client.get_server_info(v1::GetServerInfoRequest {}).await;
+            info.is_ok().then_some(channel)
+        })?;
+        Some(Self { runtime, channel })
+    }
+
+    /// Makes one call as a client.
+    pub fn call<T, F>(&self, call: impl FnOnce(ClientApiClient<Channel>) -> F) -> Result<T, Status>
+    where
+        F: Future<Output = Result<T, Status>>,
+    {
+        let client = ClientApiClient::new(self.channel.clone());
+        let client = client.max_decoding_message_size(MESSAGE_BYTES);
+        self.runtime.block_on(call(client))
+    }
+
+    /// Makes one call as a worker.
+    pub fn call_as_worker<T, F>(
+        &self,
+        call: impl FnOnce(WorkerApiClient<Channel>) -> F,
+    ) -> Result<T, Status>
+    where
+        F: Future<Output = Result<T, Status>>,
+    {
+        let client = WorkerApiClient::new(self.channel.clone());
+        let client = client.max_decoding_message_size(MESSAGE_BYTES);
+        self.runtime.block_on(call(client))
+    }
+
+    /// Submits; the job's id.
+    pub fn try_submit(&self, submission: &Submission) -> Result<String, Status> {
+        let text = v1::Text {
+            name: "test".to_owned(),
+            content: submission.text.clone().into_bytes().into(),
+        };
+        let request = v1::SubmitRequest {
+            request_id: submission.request_id.clone(),
+            problem: Some(v1::Problem {
+                source: Some(v1::problem::Source::Text(text)),
+                options: Some(submission.options.clone()),
+            }),
+            tenant: String::new(),
+        };
+        let call =
+            |mut client: ClientApiClient<Channel>| async move { client.submit(request).await };
+        self.call(call).map(|response| response.into_inner().job)
+    }
+
+    /// Submits; the job's id.
+    ///
+    /// # Panics
+    /// When the coordinator does not take it.
+    pub fn submit(&self, submission: &Submission) -> String {
+        match self.try_submit(submission) {
+            Ok(job) => job,
+            Err(status) => panic!("not submitted: {status}"),
+        }
+    }
+
+    /// How far a job is.
+    pub fn progress(&self, job: &str) -> Result<v1::JobProgress, Status> {
+        let request = v1::WatchRequest {
+            job: job.to_owned(),
+        };
+        let call = |mut client: ClientApiClient<Channel>| async move {
+            let mut stream = client.watch(request).await?.into_inner();
+            let first = stream.message().await?;
+            first.ok_or_else(|| Status::internal("a watch without progress"))
+        };
+        self.call(call)
+    }
+
+    /// How far a job is once this holds.
+    ///
+    /// # Panics
+    /// When it does not hold in time.
+    pub fn progress_once(
+        &self,
+        job: &str,
+        what: &str,
+        holds: impl Fn(&v1::JobProgress) -> bool,
+    ) -> v1::JobProgress {
+        let begin = Instant::now();
+        let mut last = None;
+        while begin.elapsed() < JOB_PATIENCE {
+            match self.progress(job) {
+                Ok(progress) if holds(&progress) => return progress,
+                Ok(progress) => last = Some(Ok(progress)),
+                Err(status) => last = Some(Err(status)),
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        panic!("{what}: not within {JOB_PATIENCE:?}; last heard: {last:?}");
+    }
+
+    /// Waits until a job is solved.
+    ///
+    /// # Panics
+    /// When it ends otherwise, or does not end.
+    pub fn wait_until_solved(&self, job: &str) {
+        let ended = self.progress_once(job, "the job ends", has_ended);
+        assert_eq!(ended.state(), v1::JobState::Solved, "{ended:?}");
+    }
+
+    /// What a solved job says.
+    ///
+    /// # Panics
+    /// When it does not say it.
+    pub fn answer(&self, job: &str) -> Answer {
+        let job = job.to_owned();
+        let call = |mut client: ClientApiClient<Channel>| async move {
+            let request = v1::StreamSolutionsRequest { job: job.clone() };
+            let mut stream = client.stream_solutions(request).await?.into_inner();
+            let mut solutions = Vec::new();
+            while let Some(solution) = stream.message().await? {
+                solutions.push(solution);
+            }
+            let request = v1::StreamPathsRequest { job: job.clone() };
+            let mut stream = client.stream_paths(request).await?.into_inner();
+            let mut paths = Vec::new();
+            while let Some(path) = stream.message().await? {
+                paths.push(path);
+            }
+            let request = v1::GetSummaryRequest { job };
+            let summary = client.get_summary(request).await?.into_inner();
+            let counts = summary.counts.unwrap_or_default();
+            Ok(Answer {
+                solutions,
+                paths,
+                counts,
+            })
+        };
+        match self.call(call) {
+            Ok(answer) => answer,
+            Err(status) => panic!("no answer: {status}"),
+        }
+    }
+
+    /// Submits, waits, and asks for the answer.
+    ///
+    /// # Panics
+    /// When the job is not solved.
+    pub fn solve(&self, submission: &Submission) -> Answer {
+        let job = self.submit(submission);
+        self.wait_until_solved(&job);
+        self.answer(&job)
+    }
+
+    /// The workers that the coordinator has heard of.
+    ///
+    /// # Panics
+    /// When it does not say.
+    pub fn workers(&self) -> Vec<v1::WorkerOverview> {
+        let call = |mut client: ClientApiClient<Channel>| async move {
+            client.list_workers(v1::ListWorkersRequest {}).await
+        };
+        match self.call(call) {
+            Ok(response) => response.into_inner().workers,
+            Err(status) => panic!("no list of workers: {status}"),
+        }
+    }
+}
+
+/// Whether a job goes on no further.
+pub fn has_ended(progress: &v1::JobProgress) -> bool {
+    use v1::JobState::{Cancelled, Failed, Solved};
+    matches!(progress.state(), Solved | Failed | Cancelled)
+}
+
+/// Items of all stages that are done.
+pub fn accepted(progress: &v1::JobProgress) -> u64 {
+    progress.stages.iter().map(|stage| stage.accepted).sum()
+}
+
+/// Items of all stages.
+pub fn total(progress: &v1::JobProgress) -> u64 {
+    progress.stages.iter().map(|stage| stage.total).sum()
+}

@@ -1,0 +1,198 @@
+//! Cluster: a coordinator, its ledger on disk and some workers, as processes of one test.
+
+use crate::client::Client;
+use crate::processes::{PATIENCE, Process, until};
+use std::path::Path;
+use std::process::{Command, Output};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// How the coordinator of a test differs from the default.
+#[derive(Clone, Debug, Default)]
+pub struct CoordinatorOptions {
+    /// How long a lease lasts.
+    pub lease: Option<Duration>,
+    /// Every chunk has this many paths.
+    pub chunk_paths: Option<u64>,
+}
+
+impl CoordinatorOptions {
+    /// The coordinator's configuration file.
+    fn config(&self) -> String {
+        let mut text = String::new();
+        if let Some(lease) = self.lease {
+            let seconds = lease.as_secs_f64();
+            text +=
+                &format!("[rules]\nlease_seconds = {seconds:?}\nexpiry_interval_seconds = 0.1\n");
+        }
+        if let Some(paths) = self.chunk_paths {
+            // As much work as nobody has, but no more paths than these.
+            text += &format!("[chunks]\nfirst_items = {paths}\nmost_items = {paths}\n");
+            text += "shortest_ms = 1000000\nlongest_ms = 1000000\n";
+        }
+        text
+    }
+}
+
+/// How a worker of a test differs from the default.
+#[derive(Clone, Debug)]
+pub struct WorkerOptions {
+    /// Threads that track.
+    pub threads: usize,
+    /// Lanes of each.
+    pub lane_width: Option<u32>,
+}
+
+impl Default for WorkerOptions {
+    /// One thread: tests run beside one another.
+    fn default() -> Self {
+        Self {
+            threads: 1,
+            lane_width: None,
+        }
+    }
+}
+
+/// A coordinator with its ledger, and workers.
+pub struct Cluster {
+    /// The coordinator's process.
+    pub coordinator: Process,
+    /// The workers' processes.
+    pub workers: Vec<Process>,
+    options: CoordinatorOptions,
+    workers_started: usize,
+    // The folder goes last: the processes use it until they end.
+    folder: TempDir,
+}
+
+impl Cluster {
+    /// Starts a coordinator on an empty ledger; it answers when this returns.
+    ///
+    /// # Panics
+    /// When it does not answer.
+    pub fn start(options: CoordinatorOptions) -> Self {
+        let folder = TempDir::new().expect("a temporary folder");
+        let coordinator = start_coordinator(folder.path(), &options);
+        let cluster = Self {
+            coordinator,
+            workers: Vec::new(),
+            options,
+            workers_started: 0,
+            folder,
+        };
+        cluster.client();
+        cluster
+    }
+
+    /// A coordinator and some workers with default options.
+    pub fn with_workers(workers: usize) -> Self {
+        let mut cluster = Self::start(CoordinatorOptions::default());
+        for _ in 0..workers {
+            cluster.add_worker(&WorkerOptions::default());
+        }
+        cluster
+    }
+
+    /// Where the coordinator listens: a socket in the test's folder, the same after a restart.
+    pub fn address(&self) -> String {
+        address(self.folder.path())
+    }
+
+    /// The test's folder.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Starts one more worker.
+    pub fn add_worker(&mut self, options: &WorkerOptions) {
+        self.workers_started += 1;
+        let mut arguments = vec![
+            "worker".to_owned(),
+            "--coordinator".to_owned(),
+            self.address(),
+            "--threads".to_owned(),
+            options.threads.to_string(),
+        ];
+        if let Some(width) = options.lane_width {
+            arguments.extend(["--lane-width".to_owned(), width.to_string()]);
+        }
+        let name = format!("worker-{}", self.workers_started);
+        self.workers
+            .push(Process::start(self.folder.path(), &name, &arguments));
+    }
+
+    /// `kill -9` for the coordinator.
+    pub fn kill_coordinator(&mut self) {
+        self.coordinator.kill();
+    }
+
+    /// A new coordinator on the same ledger; it answers when this returns.
+    ///
+    /// # Panics
+    /// When the old one still runs, or the new one does not answer.
+    pub fn restart_coordinator(&mut self) {
+        assert!(
+            !self.coordinator.is_alive(),
+            "the old one must be gone first"
+        );
+        self.coordinator = start_coordinator(self.folder.path(), &self.options);
+        self.client();
+    }
+
+    /// A client of the coordinator.
+    ///
+    /// # Panics
+    /// When the coordinator does not answer.
+    pub fn client(&self) -> Client {
+        let address = self.address();
+        until("the coordinator answers", || Client::connect(&address))
+    }
+
+    /// Runs `cognate` with these arguments and this coordinator, to its end.
+    ///
+    /// # Panics
+    /// When it cannot be started.
+    pub fn command(&self, arguments: &[&str]) -> Output {
+        Command::new(crate::processes::cognate())
+            .args(arguments)
+            .env("COGNATE_COORDINATOR", self.address())
+            .current_dir(self.folder.path())
+            .output()
+            .expect("cognate can be started")
+    }
+
+    /// Tells every process to stop and checks that each does so, with exit code 0.
+    ///
+    /// # Panics
+    /// When one of them does not.
+    pub fn stop(mut self) {
+        for process in &mut self.workers {
+            process.terminate();
+            let status = process.wait(PATIENCE);
+            assert_eq!(status.code(), Some(0), "a drained worker ends well");
+        }
+        self.coordinator.terminate();
+        let status = self.coordinator.wait(PATIENCE);
+        assert_eq!(status.code(), Some(0), "a stopped coordinator ends well");
+    }
+}
+
+fn address(folder: &Path) -> String {
+    format!("unix:{}", folder.join("coordinator.sock").display())
+}
+
+fn start_coordinator(folder: &Path, options: &CoordinatorOptions) -> Process {
+    let mut arguments = vec![
+        "coordinator".to_owned(),
+        "--listen".to_owned(),
+        address(folder),
+        "--ledger".to_owned(),
+        format!("sqlite:{}", folder.join("ledger.db").display()),
+        "--results".to_owned(),
+        folder.join("results").display().to_string(),
+    ];
+    let config = folder.join("coordinator.toml");
+    std::fs::write(&config, options.config()).expect("the test's folder is writable");
+    arguments.extend(["--config".to_owned(), config.display().to_string()]);
+    Process::start(folder, "coordinator", &arguments)
+}

@@ -1,0 +1,179 @@
+//! Real processes: start, kill -9, freeze, thaw, tell to stop; their logs where a test fails.
+//!
+//! The program is the `cognate` that cargo builds beside the test; nothing
+//! outlives the test that started it.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+/// Where the built programs are: beside the folder of the running test.
+fn built() -> PathBuf {
+    let test = std::env::current_exe().expect("a test knows its own program");
+    let deps = test.parent().expect("a program is in a folder");
+    deps.parent().expect("cargo's layout").to_owned()
+}
+
+/// The `cognate` program, built now if it is not up to date.
+///
+/// `COGNATE_PROGRAM` names another one, for instance to test a package.
+///
+/// # Panics
+/// When it cannot be built.
+pub fn cognate() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        if let Some(path) = std::env::var_os("COGNATE_PROGRAM") {
+            return path.into();
+        }
+        let folder = built();
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let mut build = Command::new(cargo);
+        build.args(["build", "-p", "cognate-coordinator", "--bin", "cognate"]);
+        if folder.ends_with("release") {
+            build.arg("--release");
+        }
+        let target = folder.parent().expect("cargo's layout");
+        let built = build
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .env("CARGO_TARGET_DIR", target)
+            .output()
+            .expect("cargo can be started");
+        let text = String::from_utf8_lossy(&built.stderr);
+        assert!(built.status.success(), "cognate cannot be built:\n{text}");
+        folder.join("cognate")
+    })
+}
+
+/// A process of the service. It is killed when it goes out of scope.
+pub struct Process {
+    name: String,
+    child: Child,
+    log: PathBuf,
+    ended: Option<ExitStatus>,
+}
+
+/// How long a process may take to do what it was told.
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
+impl Process {
+    /// Starts `cognate` with these arguments; what it says goes to `folder/name.log`.
+    ///
+    /// # Panics
+    /// When it cannot be started.
+    pub fn start(folder: &Path, name: &str, arguments: &[String]) -> Self {
+        let log = folder.join(format!("{name}.log"));
+        let append = || {
+            let file = File::options().create(true).append(true).open(&log);
+            Stdio::from(file.expect("the test's folder is writable"))
+        };
+        let child = Command::new(cognate())
+            .args(arguments)
+            .env("RUST_LOG", "info,cognate_worker=debug")
+            .env_remove("COGNATE_COORDINATOR")
+            .current_dir(folder)
+            .stdin(Stdio::null())
+            .stdout(append())
+            .stderr(append())
+            .spawn()
+            .expect("cognate can be started");
+        Self {
+            name: name.to_owned(),
+            child,
+            log,
+            ended: None,
+        }
+    }
+
+    /// What it has said so far.
+    pub fn log(&self) -> String {
+        let bytes = std::fs::read(&self.log).unwrap_or_default();
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+
+    fn signal(&mut self, signal: &str) {
+        assert!(self.is_alive(), "{} has ended already", self.name);
+        // The shell's own `kill`: a program of that name is not on every machine.
+        let command = format!("kill -{signal} {}", self.child.id());
+        let status = Command::new("sh").args(["-c", &command]).status();
+        assert!(status.is_ok_and(|status| status.success()), "{command}");
+    }
+
+    /// `kill -9`: it can do nothing about it.
+    pub fn kill(&mut self) {
+        self.signal("KILL");
+        self.wait(PATIENCE);
+    }
+
+    /// SIGSTOP: it stands still, and its clock goes on.
+    pub fn freeze(&mut self) {
+        self.signal("STOP");
+    }
+
+    /// SIGCONT: it goes on where it was.
+    pub fn thaw(&mut self) {
+        self.signal("CONT");
+    }
+
+    /// SIGTERM: it is asked to stop.
+    pub fn terminate(&mut self) {
+        self.signal("TERM");
+    }
+
+    /// Whether it still runs.
+    pub fn is_alive(&mut self) -> bool {
+        if self.ended.is_none() {
+            self.ended = self.child.try_wait().expect("a child can be waited for");
+        }
+        self.ended.is_none()
+    }
+
+    /// Waits for its end.
+    ///
+    /// # Panics
+    /// When it goes on for longer.
+    pub fn wait(&mut self, patience: Duration) -> ExitStatus {
+        let begin = Instant::now();
+        while self.is_alive() {
+            assert!(begin.elapsed() < patience, "{} does not end", self.name);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        self.ended.expect("it has ended")
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            let log = self.log();
+            let lines: Vec<&str> = log.lines().collect();
+            let last = lines[lines.len().saturating_sub(60)..].join("\n");
+            eprintln!("---- {} ----\n{last}", self.name);
+        }
+        if self.is_alive() {
+            // A frozen process dies of it, too.
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
+
+/// Asks again and again until there is an answer.
+///
+/// # Panics
+/// When there is none in time.
+pub fn until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
+    let begin = Instant::now();
+    loop {
+        if let Some(answer) = ask() {
+            return answer;
+        }
+        assert!(
+            begin.elapsed() < PATIENCE,
+            "{what}: not within {PATIENCE:?}"
+        );
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
