@@ -22,6 +22,12 @@ pub struct Tolerances {
     /// Within this factor of the border on either side, the verdict rests on the
     /// precision alone and is counted as such.
     pub infinity_band: f64,
+    /// An endpoint solves the system when its residual is within this many times its
+    /// estimated error. Endpoints of the shared mechanisms have at most 3 times; those
+    /// that an endgame took from a circle around something else have 1000 times and more.
+    pub residual_factor: f64,
+    /// ... or within this, all equations scaled to 1.
+    pub residual_floor: f64,
     /// Two endpoints coincide within this many times the sum of their estimated errors.
     pub coincidence_factor: f64,
     /// ... or within this. Two regular solutions this near have condition numbers
@@ -45,6 +51,8 @@ impl Default for Tolerances {
             infinity_floor: 1e-13,
             singular_infinity_floor: 1e-10,
             infinity_band: 10.0,
+            residual_factor: 100.0,
+            residual_floor: 1e-11,
             coincidence_factor: 10.0,
             coincidence_floor: 1e-10,
             singular_coincidence_factor: 50.0,
@@ -90,6 +98,7 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
         PathOutcome::Failed(_) => return Decision::clear(Verdict::Failed),
         // A result that holds no point is as good as none.
         _ if !shape.holds(point) => return Decision::clear(Verdict::Failed),
+        _ if !solves(result, tolerances) => return Decision::clear(Verdict::Failed),
         PathOutcome::Singular => true,
         PathOutcome::Regular => false,
     };
@@ -130,6 +139,16 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
         verdict,
         by_precision_limit,
     }
+}
+
+/// Whether the endpoint solves the system as well as its estimated error says.
+pub fn solves(result: &PathResult, tolerances: &Tolerances) -> bool {
+    result.residual
+        <= error_bound(
+            result.accuracy,
+            tolerances.residual_factor,
+            tolerances.residual_floor,
+        )
 }
 
 /// How far a coordinate of size 1 may be off, from an estimated error.
@@ -200,6 +219,23 @@ mod tests {
             verdict(&singular(0, &point(0.5), 2, &[0])),
             (Verdict::Singular, false)
         );
+    }
+
+    #[test]
+    fn an_endpoint_that_solves_nothing_fails() {
+        let point = [(1.0, 0.0), (0.5, 0.0)];
+        let claimed = singular(0, &point, 1, &[0]);
+        for (residual, expected) in [
+            (1e-12, Verdict::Singular),
+            (1e-6, Verdict::Failed),
+            (f64::NAN, Verdict::Failed),
+        ] {
+            let result = PathResult {
+                residual,
+                ..claimed.clone()
+            };
+            assert_eq!(verdict(&result), (expected, false), "{residual}");
+        }
     }
 
     #[test]

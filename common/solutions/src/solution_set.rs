@@ -3,7 +3,7 @@
 //! Made from the last results of all paths of one target. The same results
 //! give the same set, whoever tracked them in whatever chunks.
 
-use crate::classification::{Decision, Tolerances, Verdict, classify};
+use crate::classification::{Decision, Tolerances, Verdict, classify, solves};
 use crate::degenerate;
 use crate::involution::Involution;
 use crate::path_crossing::{coincidences, crossings, radius};
@@ -38,6 +38,8 @@ pub enum FailureReason {
     Tracking(Failure),
     /// Its result held no point.
     DamagedResult,
+    /// What was taken for its endpoint does not solve the system.
+    NoSolution,
     /// It ends at the regular endpoint of an earlier path, however tightly both are tracked.
     Crossing,
 }
@@ -48,6 +50,7 @@ impl FailureReason {
         match self {
             Self::Tracking(failure) => failure.describe(),
             Self::DamagedResult => "its result holds no point",
+            Self::NoSolution => "what was taken for its endpoint does not solve the system",
             Self::Crossing => "it ends at the regular endpoint of another path",
         }
     }
@@ -172,6 +175,7 @@ impl<'a> Draft<'a> {
             let reason = match result.outcome {
                 PathOutcome::Failed(failure) => FailureReason::Tracking(failure),
                 _ if !self.shape.holds(result.endpoint.to_double()) => FailureReason::DamagedResult,
+                _ if !solves(result, self.tolerances) => FailureReason::NoSolution,
                 _ => FailureReason::Crossing,
             };
             self.set.failed.push(FailedPath {
