@@ -7,12 +7,12 @@ use crate::ledger::rows::LeaseRequest;
 /// The numbers by which chunks are leased, renewed and taken back.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Policy {
-    /// How long a worker keeps a chunk without renewal, in milliseconds. Default 15,000: a worker
+    /// How long a worker keeps a chunk without renewal, in milliseconds. Default 10,000: a worker
     /// renews every third of it, so that two lost renewals are survived; a killed worker's chunks
     /// wait no longer than this.
     pub lease_ms: u64,
     /// How long a coordinator keeps the right to drive a job without renewal, in milliseconds.
-    /// Default 10,000.
+    /// Default 5000: so long a job waits for another steward when its own is killed.
     pub steward_ms: u64,
     /// How often expired leases are looked for, in milliseconds. Default 1000.
     pub expiry_ms: u64,
@@ -31,8 +31,8 @@ pub struct Policy {
 impl Default for Policy {
     fn default() -> Self {
         Self {
-            lease_ms: 15_000,
-            steward_ms: 10_000,
+            lease_ms: 10_000,
+            steward_ms: 5000,
             expiry_ms: 1000,
             suspicion_limit: 3,
             split_into: 8,

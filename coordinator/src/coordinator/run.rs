@@ -160,7 +160,8 @@ impl Coordinator {
                 }
             }
         }
-        Ok(())
+        // The next coordinator need not wait.
+        drive.give_up(&tools).await
     }
 }
 

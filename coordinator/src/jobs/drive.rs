@@ -160,6 +160,12 @@ impl Drive {
         Ok(epoch == Some(self.epoch))
     }
 
+    /// Ends the right to drive, so that another may begin at once.
+    pub async fn give_up(self, tools: &Tools<'_>) -> Result<(), DriveError> {
+        tools.ledger.steward(self.job, tools.who, 0).await?;
+        Ok(())
+    }
+
     /// Does what can be done now.
     pub async fn step(&mut self, tools: &Tools<'_>) -> Result<Driven, DriveError> {
         match self.try_step(tools).await {

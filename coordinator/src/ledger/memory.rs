@@ -8,7 +8,6 @@ use super::rows::*;
 use super::{Ledger, LedgerError};
 use crate::chunks::sizing::Situation;
 use async_trait::async_trait;
-use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::StageId;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -41,11 +40,11 @@ struct Job {
 }
 
 struct Stage {
-    definition: Digest,
-    items: u64,
-    closed: bool,
-    cpu_micros: u64,
+    /// The row, with the counts of the chunks.
+    row: StageRow,
     chunks: BTreeMap<u64, Chunk>,
+    /// First items of the chunks that are ready.
+    ready: BTreeSet<u64>,
 }
 
 struct Chunk {
@@ -79,47 +78,59 @@ impl MemoryLedger {
 }
 
 impl Stage {
-    fn count(&self, wanted: impl Fn(&ChunkState) -> bool) -> Count {
-        let mut count = Count::default();
-        for chunk in self.chunks.values().filter(|c| wanted(&c.row.state)) {
-            count.items += chunk.row.items.len();
-            count.chunks += 1;
+    /// Takes a chunk into the counts.
+    fn count(&mut self, first: u64) {
+        let Some(chunk) = self.chunks.get(&first).map(|c| &c.row) else {
+            return;
+        };
+        if chunk.state == ChunkState::Ready {
+            self.ready.insert(first);
         }
-        count
+        let (count, result) = of_state(&mut self.row, &chunk.state);
+        count.items += chunk.items.len();
+        count.chunks += 1;
+        if let Some(outcomes) = result {
+            self.row.outcomes.add(outcomes);
+        }
     }
 
-    fn outcomes(&self) -> Outcomes {
-        let mut outcomes = Outcomes::default();
-        for chunk in self.chunks.values() {
-            if let ChunkState::Accepted { result, .. } | ChunkState::Failed { result } =
-                &chunk.row.state
-            {
-                outcomes.add(result.outcomes);
-            }
-        }
-        outcomes
+    /// Takes a chunk that has no result out of the counts, before it changes.
+    fn discount(&mut self, first: u64) {
+        let Some(chunk) = self.chunks.get(&first).map(|c| &c.row) else {
+            return;
+        };
+        self.ready.remove(&first);
+        let (count, _) = of_state(&mut self.row, &chunk.state);
+        count.items -= chunk.items.len();
+        count.chunks -= 1;
     }
 
-    fn row(&self, stage: StageId) -> StageRow {
-        StageRow {
-            stage,
-            definition: self.definition,
-            items: self.items,
-            closed: self.closed,
-            ready: self.count(|s| *s == ChunkState::Ready),
-            leased: self.count(|s| matches!(s, ChunkState::Leased { .. })),
-            accepted: self.count(|s| matches!(s, ChunkState::Accepted { .. })),
-            failed: self.count(|s| matches!(s, ChunkState::Failed { .. })),
-            cpu_micros: self.cpu_micros,
-            outcomes: self.outcomes(),
-        }
+    /// Puts a new chunk in.
+    fn insert(&mut self, row: ChunkRow) {
+        let first = row.items.first;
+        let chunk = Chunk {
+            row,
+            request: None,
+            charged: 0,
+        };
+        self.chunks.insert(first, chunk);
+        self.count(first);
+    }
+}
+
+/// The count that a chunk of this state belongs to, and its outcomes where it has a result.
+fn of_state<'a>(row: &'a mut StageRow, state: &ChunkState) -> (&'a mut Count, Option<Outcomes>) {
+    match state {
+        ChunkState::Ready => (&mut row.ready, None),
+        ChunkState::Leased { .. } => (&mut row.leased, None),
+        ChunkState::Accepted { result, .. } => (&mut row.accepted, Some(result.outcomes)),
+        ChunkState::Failed { result } => (&mut row.failed, Some(result.outcomes)),
     }
 }
 
 impl Job {
     fn leased_chunks(&self) -> u64 {
-        let leased = |s: &Stage| s.count(|s| matches!(s, ChunkState::Leased { .. })).chunks;
-        self.stages.values().map(leased).sum()
+        self.stages.values().map(|s| s.row.leased.chunks).sum()
     }
 }
 
@@ -136,9 +147,23 @@ impl Books {
         Ok(found)
     }
 
+    fn stage(&mut self, id: ChunkId) -> Option<&mut Stage> {
+        self.jobs.get_mut(&id.job)?.stages.get_mut(&id.stage)
+    }
+
+    /// A chunk whose state and items stay as they are.
     fn chunk(&mut self, id: ChunkId) -> Option<&mut Chunk> {
-        let stage = self.jobs.get_mut(&id.job)?.stages.get_mut(&id.stage)?;
-        stage.chunks.get_mut(&id.first)
+        self.stage(id)?.chunks.get_mut(&id.first)
+    }
+
+    /// Puts a chunk into another state; the one that it had.
+    fn change(&mut self, id: ChunkId, state: ChunkState) -> Option<ChunkState> {
+        let stage = self.stage(id)?;
+        stage.discount(id.first);
+        let chunk = stage.chunks.get_mut(&id.first)?;
+        let before = std::mem::replace(&mut chunk.row.state, state);
+        stage.count(id.first);
+        Some(before)
     }
 
     /// Adds to the virtual time of a job and its tenant.
@@ -154,11 +179,10 @@ impl Books {
 
     /// Takes a leased chunk from its worker and puts it into another state.
     fn unlease(&mut self, id: ChunkId, state: ChunkState) -> Option<WorkerId> {
-        let chunk = self.chunk(id)?;
-        let ChunkState::Leased { worker, .. } = std::mem::replace(&mut chunk.row.state, state)
-        else {
+        let ChunkState::Leased { worker, .. } = self.change(id, state)? else {
             return None;
         };
+        let chunk = self.chunk(id)?;
         chunk.request = None;
         let charged = std::mem::take(&mut chunk.charged);
         self.charge(id.job, -charged);
@@ -203,11 +227,13 @@ impl Books {
         candidates
             .iter()
             .flat_map(|job| job.stages.values())
-            .flat_map(|stage| stage.chunks.values())
-            .find(|chunk| {
-                chunk.row.state == ChunkState::Ready
-                    && chunk.row.suspicions < request.suspicion_limit
+            .flat_map(|stage| {
+                stage
+                    .ready
+                    .iter()
+                    .filter_map(|first| stage.chunks.get(first))
             })
+            .find(|chunk| chunk.row.suspicions < request.suspicion_limit)
             .map(|chunk| chunk.row.chunk)
     }
 
@@ -216,7 +242,7 @@ impl Books {
         let all_threads = self.present_threads(now, request);
         let job = self.jobs.get_mut(&id.job)?;
         let stage = job.stages.get_mut(&id.stage)?;
-        let counts = stage.row(id.stage);
+        let counts = stage.row.clone();
         let wanted = request.sizing.items(&Situation {
             ready_items: counts.ready.items,
             done_items: counts.accepted.items,
@@ -224,24 +250,21 @@ impl Books {
             threads: u64::from(request.threads),
             all_threads,
         });
+        stage.discount(id.first);
         let chunk = stage.chunks.get_mut(&id.first)?;
         let rest = ItemRange {
             first: id.first.saturating_add(wanted),
             last: chunk.row.items.last,
         };
-        if !rest.is_empty() {
-            chunk.row.items.last = rest.first;
+        let cut = (!rest.is_empty()).then(|| {
             let mut row = chunk.row.clone();
             row.chunk.first = rest.first;
             row.items = rest;
-            let cut = Chunk {
-                row,
-                request: None,
-                charged: 0,
-            };
-            stage.chunks.insert(rest.first, cut);
+            row
+        });
+        if cut.is_some() {
+            chunk.row.items.last = rest.first;
         }
-        let chunk = stage.chunks.get_mut(&id.first)?;
         let charged = estimate(chunk.row.items.len(), &counts);
         let until = now.after_ms(request.duration_ms);
         chunk.row.epoch.0 += 1;
@@ -251,17 +274,22 @@ impl Books {
         };
         chunk.request = Some(request.request.clone());
         chunk.charged = charged;
+        let chunk = chunk.row.clone();
+        stage.count(id.first);
+        if let Some(row) = cut {
+            stage.insert(row);
+        }
         job.row.started.get_or_insert(now);
         let lease = Lease {
             lease: LeaseId {
                 chunk: id,
-                epoch: chunk.row.epoch,
+                epoch: chunk.epoch,
             },
-            items: chunk.row.items,
+            items: chunk.items,
             until,
             problem: job.row.asked.problem,
-            definition: stage.definition,
-            alone: chunk.row.alone,
+            definition: counts.definition,
+            alone: chunk.alone,
         };
         self.charge(id.job, charged);
         self.leases
@@ -396,7 +424,7 @@ impl Ledger for MemoryLedger {
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
         let mut books = self.books();
         let stages = &books.job(job)?.stages;
-        Ok(stages.iter().map(|(&id, stage)| stage.row(id)).collect())
+        Ok(stages.values().map(|stage| stage.row.clone()).collect())
     }
 
     async fn steward(
@@ -438,7 +466,7 @@ impl Ledger for MemoryLedger {
         let found = books.fenced(job, epoch)?;
         for &id in &step.close {
             let stage = found.stages.get(&id);
-            if !stage.is_some_and(|s| !s.closed && s.row(id).is_complete()) {
+            if !stage.is_some_and(|s| !s.row.closed && s.row.is_complete()) {
                 return Err(LedgerError::StageOrder(job, id));
             }
         }
@@ -456,12 +484,28 @@ impl Ledger for MemoryLedger {
         }
         for id in &step.close {
             if let Some(stage) = found.stages.get_mut(id) {
-                stage.closed = true;
+                stage.row.closed = true;
             }
         }
         for new in step.open {
-            let chunk = |&items: &ItemRange| {
-                let row = ChunkRow {
+            let mut stage = Stage {
+                row: StageRow {
+                    stage: new.stage,
+                    definition: new.definition,
+                    items: new.items,
+                    closed: false,
+                    ready: Count::default(),
+                    leased: Count::default(),
+                    accepted: Count::default(),
+                    failed: Count::default(),
+                    cpu_micros: 0,
+                    outcomes: Outcomes::default(),
+                },
+                chunks: BTreeMap::new(),
+                ready: BTreeSet::new(),
+            };
+            for items in new.chunks {
+                stage.insert(ChunkRow {
                     chunk: ChunkId {
                         job,
                         stage: new.stage,
@@ -472,21 +516,8 @@ impl Ledger for MemoryLedger {
                     epoch: Epoch(0),
                     suspicions: 0,
                     alone: false,
-                };
-                let chunk = Chunk {
-                    row,
-                    request: None,
-                    charged: 0,
-                };
-                (items.first, chunk)
-            };
-            let stage = Stage {
-                definition: new.definition,
-                items: new.items,
-                closed: false,
-                cpu_micros: 0,
-                chunks: new.chunks.iter().map(chunk).collect(),
-            };
+                });
+            }
             found.stages.insert(new.stage, stage);
             found.row.state = JobState::Running;
         }
@@ -504,26 +535,22 @@ impl Ledger for MemoryLedger {
     ) -> Result<(), LedgerError> {
         let mut books = self.books();
         let job = books.fenced(chunk.job, epoch)?;
-        let stage = job.stages.get_mut(&chunk.stage);
-        let (chunks, whole) = stage
-            .and_then(|s| {
-                let whole = s.chunks.get(&chunk.first)?.row.clone();
-                (whole.state == ChunkState::Ready).then_some((&mut s.chunks, whole))
-            })
-            .filter(|(_, whole)| make_up(pieces.iter().map(|p| p.items), whole.items))
-            .ok_or(LedgerError::NotAPartition(chunk.job))?;
+        let refused = || LedgerError::NotAPartition(chunk.job);
+        let stage = job.stages.get_mut(&chunk.stage).ok_or_else(refused)?;
+        let whole = stage.chunks.get(&chunk.first).map(|c| c.row.clone());
+        let whole = whole
+            .filter(|whole| whole.state == ChunkState::Ready)
+            .filter(|whole| make_up(pieces.iter().map(|p| p.items), whole.items))
+            .ok_or_else(refused)?;
+        stage.discount(chunk.first);
+        stage.chunks.remove(&chunk.first);
         for piece in pieces {
             let mut row = whole.clone();
             row.chunk.first = piece.items.first;
             row.items = piece.items;
             row.suspicions = piece.suspicions;
             row.alone = piece.alone;
-            let cut = Chunk {
-                row,
-                request: None,
-                charged: 0,
-            };
-            chunks.insert(piece.items.first, cut);
+            stage.insert(row);
         }
         Ok(())
     }
@@ -536,11 +563,12 @@ impl Ledger for MemoryLedger {
     ) -> Result<(), LedgerError> {
         let mut books = self.books();
         books.fenced(chunk.job, epoch)?;
-        let found = books
+        check_size("the CPU time of a chunk", result.cpu_micros)?;
+        books
             .chunk(chunk)
             .filter(|c| c.row.state == ChunkState::Ready && c.row.items == result.items)
             .ok_or(LedgerError::NotAPartition(chunk.job))?;
-        found.row.state = ChunkState::Failed { result };
+        books.change(chunk, ChunkState::Failed { result });
         Ok(())
     }
 
@@ -590,9 +618,10 @@ impl Ledger for MemoryLedger {
     async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
         let mut books = self.books();
         let stages = books.job(job)?.stages.values();
-        let rows = stages.flat_map(|s| s.chunks.values()).map(|c| &c.row);
-        Ok(rows
-            .filter(|row| row.state == ChunkState::Ready && row.suspicions >= suspicions)
+        let ready = stages.flat_map(|s| s.ready.iter().filter_map(|first| s.chunks.get(first)));
+        Ok(ready
+            .map(|chunk| &chunk.row)
+            .filter(|row| row.suspicions >= suspicions)
             .cloned()
             .collect())
     }
@@ -632,7 +661,8 @@ impl Ledger for MemoryLedger {
         let mut holds_alone = false;
         for id in books.held(&request.worker) {
             let job = &books.jobs[&id.job];
-            let (problem, definition) = (job.row.asked.problem, job.stages[&id.stage].definition);
+            let (problem, definition) =
+                (job.row.asked.problem, job.stages[&id.stage].row.definition);
             let Some(chunk) = books.chunk(id) else {
                 continue;
             };
@@ -718,10 +748,8 @@ impl Ledger for MemoryLedger {
                 };
                 books.unlease(lease.chunk, accepted);
                 books.charge(lease.chunk.job, micros as i64);
-                if let Some(job) = books.jobs.get_mut(&lease.chunk.job)
-                    && let Some(stage) = job.stages.get_mut(&lease.chunk.stage)
-                {
-                    stage.cpu_micros += micros;
+                if let Some(stage) = books.stage(lease.chunk) {
+                    stage.row.cpu_micros += micros;
                 }
                 if let Some(worker) = books.workers.get_mut(&worker) {
                     worker.items_done += items;

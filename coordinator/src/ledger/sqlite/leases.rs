@@ -7,7 +7,6 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::memory::{PRESENT_MS, check_size, estimate};
 use crate::ledger::rows::*;
-use cognate_continuation::start_points::Digest;
 use sqlx::Row;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
@@ -44,31 +43,6 @@ async fn find(c: &mut Connection, chunk: ChunkId) -> Result<Option<Found>, Ledge
         })
     })
     .transpose()
-}
-
-/// Adds to the virtual time of a job and its tenant, and to the job's leased chunks.
-async fn charge(
-    c: &mut Connection,
-    job: JobId,
-    micros: i64,
-    chunks: i64,
-) -> Result<(), LedgerError> {
-    let row = sqlx::query(
-        "UPDATE jobs SET virtual_time = virtual_time + ?, leased_chunks = leased_chunks + ?
-         WHERE job = ? RETURNING tenant",
-    )
-    .bind(micros)
-    .bind(chunks)
-    .bind(job.to_string())
-    .fetch_one(&mut *c)
-    .await?;
-    let tenant: String = row.try_get(0)?;
-    sqlx::query("UPDATE tenants SET virtual_time = virtual_time + ? WHERE tenant = ?")
-        .bind(micros)
-        .bind(tenant)
-        .execute(c)
-        .await?;
-    Ok(())
 }
 
 /// Gives chunks out.
@@ -114,18 +88,9 @@ pub async fn lease(
     if !again.is_empty() || holds_alone || request.slots == 0 {
         return Ok(again);
     }
-    let threads = sqlx::query(
-        "SELECT COALESCE(SUM(threads), 0) AS threads FROM workers
-         WHERE last_seen > ? AND draining = 0 AND worker <> ?",
-    )
-    .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
-    .bind(request.worker.as_str())
-    .fetch_one(&mut *c)
-    .await?;
-    let all_threads = number(&threads, "threads")? + u64::from(request.threads);
     let mut leases: Vec<Lease> = Vec::new();
     while leases.len() < request.slots as usize && !leases.last().is_some_and(|l| l.alone) {
-        match lease_one(c, now, &request, all_threads).await? {
+        match lease_one(c, now, &request).await? {
             Some(lease) => leases.push(lease),
             None => break,
         }
@@ -133,114 +98,125 @@ pub async fn lease(
     Ok(leases)
 }
 
-/// The stage whose turn it is: the tenant's, then the job's least virtual time.
-async fn choose(
-    c: &mut Connection,
-    request: &LeaseRequest,
-) -> Result<Option<(JobId, Digest, StageRow)>, LedgerError> {
-    let row = sqlx::query(
-        "SELECT s.*, j.problem FROM jobs j
-         JOIN tenants t ON t.tenant = j.tenant
-         JOIN stages s ON s.job = j.job
-         WHERE j.ended IS NULL AND j.state = 'running' AND j.numerics_revision = ?
-           AND j.leased_chunks < ? AND s.ready_chunks > 0
-           AND EXISTS (SELECT 1 FROM chunks c WHERE c.job = s.job AND c.stage = s.stage
-                       AND c.state = 'ready' AND c.suspicions < ?)
-         ORDER BY t.virtual_time, j.virtual_time, j.number, s.stage LIMIT 1",
-    )
-    .bind(request.numerics_revision)
-    .bind(request.in_flight_limit)
-    .bind(request.suspicion_limit)
-    .fetch_optional(c)
-    .await?;
-    row.map(|row| Ok((job_id(&row)?, digest(&row, "problem")?, stage_row(&row)?)))
-        .transpose()
+/// Whose turn it is: the tenant's, then the job's least virtual time, then the first chunk; and
+/// how many threads all other workers have.
+const CHOOSE: &str = "
+    SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
+           c.epoch AS chunk_epoch, c.alone AS chunk_alone,
+           (SELECT COALESCE(SUM(threads), 0) FROM workers
+            WHERE last_seen > ? AND draining = 0 AND worker <> ?) AS other_threads
+    FROM jobs j
+    JOIN tenants t ON t.tenant = j.tenant
+    JOIN stages s ON s.job = j.job
+    JOIN chunks c ON c.job = s.job AND c.stage = s.stage
+     AND c.first = (SELECT MIN(r.first) FROM chunks r
+                    WHERE r.job = s.job AND r.stage = s.stage AND r.state = 'ready'
+                      AND r.suspicions < ?)
+    WHERE j.ended IS NULL AND j.state = 'running' AND j.numerics_revision = ?
+      AND j.leased_chunks < ? AND s.ready_chunks > 0
+    ORDER BY t.virtual_time, j.virtual_time, j.number, s.stage LIMIT 1";
+
+/// The writes of one lease; together they are one exchange with the engine's thread, which costs
+/// more than a statement.
+macro_rules! lease_writes {
+    () => {
+        "UPDATE chunks SET last = ?, state = 'leased', epoch = ?, worker = ?, lease_until = ?,
+                request = ?, charged = ?
+         WHERE job = ? AND stage = ? AND first = ?;
+         UPDATE stages SET ready_items = ready_items - ?, ready_chunks = ready_chunks - ?,
+                leased_items = leased_items + ?, leased_chunks = leased_chunks + 1
+         WHERE job = ? AND stage = ?;
+         UPDATE jobs SET started = COALESCE(started, ?), virtual_time = virtual_time + ?,
+                leased_chunks = leased_chunks + 1
+         WHERE job = ?;
+         UPDATE tenants SET virtual_time = virtual_time + ? WHERE tenant = ?"
+    };
 }
+/// ... and before them the rest of the chunk, where it is cut.
+const CUT_AND_LEASE: &str = concat!(
+    "INSERT INTO chunks (job, stage, first, last, state, epoch, suspicions, alone, charged)
+     SELECT job, stage, ?, last, 'ready', epoch, suspicions, alone, 0 FROM chunks
+     WHERE job = ? AND stage = ? AND first = ?;",
+    lease_writes!()
+);
 
 async fn lease_one(
     c: &mut Connection,
     now: LedgerTime,
     request: &LeaseRequest,
-    all_threads: u64,
 ) -> Result<Option<Lease>, LedgerError> {
-    let Some((job, problem, stage)) = choose(c, request).await? else {
+    let row = sqlx::query(CHOOSE)
+        .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
+        .bind(request.worker.as_str())
+        .bind(request.suspicion_limit)
+        .bind(request.numerics_revision)
+        .bind(request.in_flight_limit)
+        .fetch_optional(&mut *c)
+        .await?;
+    let Some(row) = row else {
         return Ok(None);
     };
-    let row = sqlx::query(
-        "SELECT * FROM chunks WHERE job = ? AND stage = ? AND state = 'ready' AND suspicions < ?
-         ORDER BY first LIMIT 1",
-    )
-    .bind(job.to_string())
-    .bind(stage.stage.0)
-    .bind(request.suspicion_limit)
-    .fetch_one(&mut *c)
-    .await?;
-    let mut chunk = chunk_row(&row)?;
+    let stage = stage_row(&row)?;
+    let chunk = ChunkId {
+        job: job_id(&row)?,
+        stage: stage.stage,
+        first: number(&row, "chunk_first")?,
+    };
+    let last = number(&row, "chunk_last")?;
     let wanted = request.sizing.items(&Situation {
         ready_items: stage.ready.items,
         done_items: stage.accepted.items,
         done_micros: stage.cpu_micros,
         threads: u64::from(request.threads),
-        all_threads,
+        all_threads: number(&row, "other_threads")? + u64::from(request.threads),
     });
-    let rest = ItemRange {
-        first: chunk.items.first.saturating_add(wanted),
-        last: chunk.items.last,
+    let items = ItemRange {
+        first: chunk.first,
+        last: chunk.first.saturating_add(wanted).min(last),
     };
-    if !rest.is_empty() {
-        chunk.items.last = rest.first;
-        let mut cut = chunk.clone();
-        cut.chunk.first = rest.first;
-        cut.items = rest;
-        insert_ready(c, &cut).await?;
-    }
-    let charged = estimate(chunk.items.len(), &stage);
+    let is_cut = items.last < last;
+    let charged = estimate(items.len(), &stage);
     let until = now.after_ms(request.duration_ms);
-    chunk.epoch.0 += 1;
-    sqlx::query(
-        "UPDATE chunks SET last = ?, state = 'leased', epoch = ?, worker = ?, lease_until = ?,
-                request = ?, charged = ?
-         WHERE job = ? AND stage = ? AND first = ?",
-    )
-    .bind(signed(chunk.items.last))
-    .bind(signed(chunk.epoch.0))
-    .bind(request.worker.as_str())
-    .bind(until.0)
-    .bind(request.request.as_str())
-    .bind(charged)
-    .bind(job.to_string())
-    .bind(stage.stage.0)
-    .bind(signed(chunk.items.first))
-    .execute(&mut *c)
-    .await?;
-    sqlx::query(
-        "UPDATE stages SET ready_items = ready_items - ?, ready_chunks = ready_chunks - ?,
-                leased_items = leased_items + ?, leased_chunks = leased_chunks + 1
-         WHERE job = ? AND stage = ?",
-    )
-    .bind(signed(chunk.items.len()))
-    .bind(i64::from(rest.is_empty()))
-    .bind(signed(chunk.items.len()))
-    .bind(job.to_string())
-    .bind(stage.stage.0)
-    .execute(&mut *c)
-    .await?;
-    sqlx::query("UPDATE jobs SET started = ? WHERE job = ? AND started IS NULL")
+    let epoch = Epoch(number(&row, "chunk_epoch")? + 1);
+    let (job, tenant) = (chunk.job.to_string(), row.try_get::<String, _>("tenant")?);
+    let writes = if is_cut {
+        sqlx::query(CUT_AND_LEASE)
+            .bind(signed(items.last))
+            .bind(&job)
+            .bind(chunk.stage.0)
+            .bind(signed(items.first))
+    } else {
+        sqlx::query(lease_writes!())
+    };
+    writes
+        .bind(signed(items.last))
+        .bind(signed(epoch.0))
+        .bind(request.worker.as_str())
+        .bind(until.0)
+        .bind(request.request.as_str())
+        .bind(charged)
+        .bind(&job)
+        .bind(chunk.stage.0)
+        .bind(signed(items.first))
+        .bind(signed(items.len()))
+        .bind(i64::from(!is_cut))
+        .bind(signed(items.len()))
+        .bind(&job)
+        .bind(chunk.stage.0)
         .bind(now.0)
-        .bind(job.to_string())
-        .execute(&mut *c)
+        .bind(charged)
+        .bind(&job)
+        .bind(charged)
+        .bind(tenant)
+        .execute(c)
         .await?;
-    charge(c, job, charged, 1).await?;
     Ok(Some(Lease {
-        lease: LeaseId {
-            chunk: chunk.chunk,
-            epoch: chunk.epoch,
-        },
-        items: chunk.items,
+        lease: LeaseId { chunk, epoch },
+        items,
         until,
-        problem,
+        problem: digest(&row, "problem")?,
         definition: stage.definition,
-        alone: chunk.alone,
+        alone: number(&row, "chunk_alone")? != 0,
     }))
 }
 
@@ -306,6 +282,24 @@ pub async fn renew(
     Ok(renewals)
 }
 
+/// The writes of an accepted chunk, as one exchange.
+const ACCEPT: &str = "
+    UPDATE chunks SET state = 'accepted', lease_until = NULL, request = NULL, charged = 0,
+           address = ?, hash = ?, cpu_micros = ?, paths_regular = ?, paths_singular = ?,
+           paths_failed = ?
+    WHERE job = ? AND stage = ? AND first = ?;
+    UPDATE stages SET leased_items = leased_items - ?, leased_chunks = leased_chunks - 1,
+           accepted_items = accepted_items + ?, accepted_chunks = accepted_chunks + 1,
+           cpu_micros = cpu_micros + ?, paths_regular = paths_regular + ?,
+           paths_singular = paths_singular + ?, paths_failed = paths_failed + ?
+    WHERE job = ? AND stage = ?;
+    UPDATE jobs SET virtual_time = virtual_time + ?, leased_chunks = leased_chunks - 1
+    WHERE job = ?;
+    UPDATE tenants SET virtual_time = virtual_time + ?
+    WHERE tenant = (SELECT tenant FROM jobs WHERE job = ?);
+    UPDATE workers SET items_done = items_done + ?, chunks_done = chunks_done + 1
+    WHERE worker = ?";
+
 /// Accepts a result, if the lease still stands.
 pub async fn complete(
     c: &mut Connection,
@@ -322,34 +316,35 @@ pub async fn complete(
     match found.state.as_str() {
         "leased" if found.epoch == lease.epoch => {
             let worker = worker(&found.row)?;
-            settle(c, lease.chunk, "accepted", &result).await?;
-            sqlx::query(
-                "UPDATE stages SET leased_items = leased_items - ?,
-                        leased_chunks = leased_chunks - 1, accepted_items = accepted_items + ?,
-                        accepted_chunks = accepted_chunks + 1, cpu_micros = cpu_micros + ?,
-                        paths_regular = paths_regular + ?, paths_singular = paths_singular + ?,
-                        paths_failed = paths_failed + ?
-                 WHERE job = ? AND stage = ?",
-            )
-            .bind(signed(result.items.len()))
-            .bind(signed(result.items.len()))
-            .bind(cpu_micros)
-            .bind(signed(result.outcomes.regular))
-            .bind(signed(result.outcomes.singular))
-            .bind(signed(result.outcomes.failed))
-            .bind(lease.chunk.job.to_string())
-            .bind(lease.chunk.stage.0)
-            .execute(&mut *c)
-            .await?;
-            charge(c, lease.chunk.job, cpu_micros - found.charged, -1).await?;
-            sqlx::query(
-                "UPDATE workers SET items_done = items_done + ?, chunks_done = chunks_done + 1
-                 WHERE worker = ?",
-            )
-            .bind(signed(result.items.len()))
-            .bind(worker.as_str())
-            .execute(c)
-            .await?;
+            let job = lease.chunk.job.to_string();
+            let items = signed(result.items.len());
+            let charged = cpu_micros - found.charged;
+            sqlx::query(ACCEPT)
+                .bind(result.address.as_str())
+                .bind(result.hash.to_string())
+                .bind(cpu_micros)
+                .bind(signed(result.outcomes.regular))
+                .bind(signed(result.outcomes.singular))
+                .bind(signed(result.outcomes.failed))
+                .bind(&job)
+                .bind(lease.chunk.stage.0)
+                .bind(signed(lease.chunk.first))
+                .bind(items)
+                .bind(items)
+                .bind(cpu_micros)
+                .bind(signed(result.outcomes.regular))
+                .bind(signed(result.outcomes.singular))
+                .bind(signed(result.outcomes.failed))
+                .bind(&job)
+                .bind(lease.chunk.stage.0)
+                .bind(charged)
+                .bind(&job)
+                .bind(charged)
+                .bind(&job)
+                .bind(items)
+                .bind(worker.as_str())
+                .execute(c)
+                .await?;
             Ok(Completion::Accepted)
         }
         "accepted" => {
@@ -366,34 +361,6 @@ pub async fn complete(
     }
 }
 
-/// Writes a chunk's result and its last state.
-pub async fn settle(
-    c: &mut Connection,
-    chunk: ChunkId,
-    state: &'static str,
-    result: &ResultObject,
-) -> Result<(), LedgerError> {
-    sqlx::query(
-        "UPDATE chunks SET state = ?, lease_until = NULL, request = NULL, charged = 0,
-                address = ?, hash = ?, cpu_micros = ?, paths_regular = ?, paths_singular = ?,
-                paths_failed = ?
-         WHERE job = ? AND stage = ? AND first = ?",
-    )
-    .bind(state)
-    .bind(result.address.as_str())
-    .bind(result.hash.to_string())
-    .bind(signed(result.cpu_micros))
-    .bind(signed(result.outcomes.regular))
-    .bind(signed(result.outcomes.singular))
-    .bind(signed(result.outcomes.failed))
-    .bind(chunk.job.to_string())
-    .bind(chunk.stage.0)
-    .bind(signed(chunk.first))
-    .execute(c)
-    .await?;
-    Ok(())
-}
-
 /// Takes a leased chunk from its worker, with so many new suspicions.
 async fn release(
     c: &mut Connection,
@@ -401,29 +368,35 @@ async fn release(
     found: &Found,
     suspicions: u32,
 ) -> Result<(), LedgerError> {
+    let job = chunk.job.to_string();
+    let items = signed(found.items.len());
     sqlx::query(
         "UPDATE chunks SET state = 'ready', worker = NULL, lease_until = NULL, request = NULL,
                 charged = 0, suspicions = suspicions + ?
-         WHERE job = ? AND stage = ? AND first = ?",
+         WHERE job = ? AND stage = ? AND first = ?;
+         UPDATE stages SET leased_items = leased_items - ?, leased_chunks = leased_chunks - 1,
+                ready_items = ready_items + ?, ready_chunks = ready_chunks + 1
+         WHERE job = ? AND stage = ?;
+         UPDATE jobs SET virtual_time = virtual_time - ?, leased_chunks = leased_chunks - 1
+         WHERE job = ?;
+         UPDATE tenants SET virtual_time = virtual_time - ?
+         WHERE tenant = (SELECT tenant FROM jobs WHERE job = ?)",
     )
     .bind(suspicions)
-    .bind(chunk.job.to_string())
+    .bind(&job)
     .bind(chunk.stage.0)
     .bind(signed(chunk.first))
-    .execute(&mut *c)
-    .await?;
-    sqlx::query(
-        "UPDATE stages SET leased_items = leased_items - ?, leased_chunks = leased_chunks - 1,
-                ready_items = ready_items + ?, ready_chunks = ready_chunks + 1
-         WHERE job = ? AND stage = ?",
-    )
-    .bind(signed(found.items.len()))
-    .bind(signed(found.items.len()))
-    .bind(chunk.job.to_string())
+    .bind(items)
+    .bind(items)
+    .bind(&job)
     .bind(chunk.stage.0)
-    .execute(&mut *c)
+    .bind(found.charged)
+    .bind(&job)
+    .bind(found.charged)
+    .bind(&job)
+    .execute(c)
     .await?;
-    charge(c, chunk.job, -found.charged, -1).await
+    Ok(())
 }
 
 /// Returns one chunk.

@@ -1,7 +1,7 @@
 //! What clients and stewards write: jobs and stages. Each function is one operation of a commit.
 
 use super::decode::*;
-use super::leases::{insert_ready, release_all, settle};
+use super::leases::{insert_ready, release_all};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
@@ -293,21 +293,32 @@ pub async fn condemn(
     result: ResultObject,
 ) -> Result<(), LedgerError> {
     fenced(c, chunk.job, epoch).await?;
-    check_size("the CPU time of a chunk", result.cpu_micros)?;
+    let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
     ready_chunk(c, chunk)
         .await?
         .filter(|found| found.items == result.items)
         .ok_or(LedgerError::NotAPartition(chunk.job))?;
-    settle(c, chunk, "failed", &result).await?;
     let items = i64::try_from(result.items.len()).unwrap_or(i64::MAX);
     let count = |value: u64| i64::try_from(value).unwrap_or(i64::MAX);
     sqlx::query(
-        "UPDATE stages SET ready_items = ready_items - ?, ready_chunks = ready_chunks - 1,
+        "UPDATE chunks SET state = 'failed', address = ?, hash = ?, cpu_micros = ?,
+                paths_regular = ?, paths_singular = ?, paths_failed = ?
+         WHERE job = ? AND stage = ? AND first = ?;
+         UPDATE stages SET ready_items = ready_items - ?, ready_chunks = ready_chunks - 1,
                 failed_items = failed_items + ?, failed_chunks = failed_chunks + 1,
                 paths_regular = paths_regular + ?, paths_singular = paths_singular + ?,
                 paths_failed = paths_failed + ?
          WHERE job = ? AND stage = ?",
     )
+    .bind(result.address.as_str())
+    .bind(result.hash.to_string())
+    .bind(cpu_micros)
+    .bind(count(result.outcomes.regular))
+    .bind(count(result.outcomes.singular))
+    .bind(count(result.outcomes.failed))
+    .bind(chunk.job.to_string())
+    .bind(chunk.stage.0)
+    .bind(count(chunk.first))
     .bind(items)
     .bind(items)
     .bind(count(result.outcomes.regular))
