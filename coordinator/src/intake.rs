@@ -84,7 +84,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
 
 /// What a file's settings mean here. Ours are tighter than what most files say, and looser ones
 /// would only lose paths: tolerances are taken where they are smaller.
-fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
+pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
     let smaller = |asked: Option<f64>, ours: f64| asked.filter(|&a| (1e-300..ours).contains(&a));
     SettingsChoice {
         tolerance: smaller(file.tracking_tolerance, base.tolerance),

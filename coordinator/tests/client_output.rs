@@ -3,9 +3,8 @@
 
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_coordinator::client::commands::{info, jobs, workers};
-use cognate_coordinator::client::output::summary::Summary;
-use cognate_coordinator::client::output::table;
 use cognate_coordinator::client::output::text::Look;
+use cognate_coordinator::client::output::{summary, table};
 use cognate_protocol::v1;
 use cognate_solutions::solution::{NamedValues, Solution};
 use num_complex::Complex64;
@@ -42,7 +41,8 @@ fn check_widths(name: &str, render: impl Fn(Look) -> String) {
 }
 
 const PLATFORM: &str = r#"{
-  "problem": {"digest": "5f0c", "variables": 8, "equations": 7, "start": "total-degree", "seed": 42},
+  "job": "01j9", "settled": true, "failures": {},
+  "problem": {"name": "stewart_gough.bertini", "digest": "5f0c", "variables": 8, "equations": 7, "start": "total-degree", "seed": 42},
   "paths": {"total": 128, "finite": 40, "singular": 0, "positive_dimensional": 88, "excess": 0, "at_infinity": 0,
             "failed": 0, "retracked": 3, "crossings_found": 1, "crossings_resolved": 1, "decided_by_precision_limit": 0,
             "by_precision": {"53": 126, "106": 2}, "highest_precision_bits": 106},
@@ -55,7 +55,8 @@ const PLATFORM: &str = r#"{
 }"#;
 
 const UNSETTLED: &str = r#"{
-  "problem": {"digest": "aa", "variables": 10, "equations": 10, "start": "multihomogeneous", "seed": 7},
+  "job": "01j9", "settled": false, "failures": {},
+  "problem": {"name": "nine_point.bertini", "digest": "aa", "variables": 10, "equations": 10, "start": "multihomogeneous", "seed": 7},
   "paths": {"total": 143360, "finite": 8652, "singular": 20, "positive_dimensional": null, "excess": 0,
             "at_infinity": 134685, "failed": 3, "retracked": 1200, "crossings_found": 4, "crossings_resolved": 3,
             "decided_by_precision_limit": 2, "by_precision": {"53": 143360}, "highest_precision_bits": 53},
@@ -95,17 +96,15 @@ fn real_row(seed: u32) -> Solution {
 
 #[test]
 fn a_settled_answer() {
-    let summary = Summary::read(PLATFORM).expect("the contract's example is a summary");
+    let answer = summary::read(PLATFORM).expect("a summary");
     let rows: Vec<Solution> = (0..40).map(real_row).collect();
-    check_widths("settled", |look| {
-        table::summary("stewart_gough.bertini", &summary, &rows, look)
-    });
-    assert!(summary.open_questions().is_empty());
+    check_widths("settled", |look| table::summary(&answer, &rows, look));
+    assert!(summary::open_questions(&answer).is_empty());
 }
 
 #[test]
 fn an_answer_with_open_questions() {
-    let summary = Summary::read(UNSETTLED).expect("a summary with undecided classes is a summary");
+    let answer = summary::read(UNSETTLED).expect("a summary with undecided classes");
     let mut row = real_row(1);
     row.real = None;
     row.singular = true;
@@ -113,15 +112,10 @@ fn an_answer_with_open_questions() {
     row.variables.0[1].1.im = -0.5;
     row.condition = f64::INFINITY;
     check_widths("unsettled", |look| {
-        table::summary(
-            "nine_point.bertini",
-            &summary,
-            std::slice::from_ref(&row),
-            look,
-        )
+        table::summary(&answer, std::slice::from_ref(&row), look)
     });
-    assert_eq!(summary.exit() as u8, 1);
-    assert_eq!(summary.open_questions().len(), 2);
+    assert_eq!(summary::exit(&answer) as u8, 1);
+    assert_eq!(summary::open_questions(&answer).len(), 2);
 }
 
 fn read(file: &str) -> cognate_systems::formats::Problem {

@@ -3,6 +3,7 @@
 //! Options that belong to the command line but not to this version are parsed
 //! here and refused by `not_yet`, so that nothing is half there in silence.
 
+use crate::config::DEFAULT_ADDRESS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -13,9 +14,6 @@ const STYLES: Styles = Styles::styled()
     .usage(AnsiColor::Green.on_default().effects(Effects::BOLD))
     .literal(AnsiColor::Cyan.on_default().effects(Effects::BOLD))
     .placeholder(AnsiColor::Cyan.on_default());
-
-/// The address that a coordinator listens on and its clients look for, unless told otherwise.
-pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7654";
 
 /// Finds all solutions of a system of polynomial equations, on as many machines as there are.
 #[derive(Debug, Parser)]
@@ -293,19 +291,15 @@ Examples:
 
 It can be killed at any moment and started again on the same ledger: jobs go on.")]
 pub struct Coordinator {
-    /// Addresses to listen on: HOST:PORT or unix:PATH; may be given several times
-    #[arg(long, value_name = "ADDR", num_args = 1.., default_value = DEFAULT_ADDRESS)]
+    /// Addresses to listen on: HOST:PORT or unix:PATH, one or several [default: 127.0.0.1:7654]
+    #[arg(long, value_name = "ADDR", num_args = 1..)]
     pub listen: Vec<String>,
-    /// What is remembered: sqlite:PATH
-    #[arg(
-        long,
-        value_name = "URL",
-        default_value = "sqlite:cognate-data/ledger.db"
-    )]
-    pub ledger: String,
-    /// Where results are kept
-    #[arg(long, value_name = "DIR", default_value = "cognate-data/results")]
-    pub results: String,
+    /// What is remembered: sqlite:PATH [default: sqlite:cognate-data/ledger.db]
+    #[arg(long, value_name = "URL")]
+    pub ledger: Option<String>,
+    /// Where results are kept [default: cognate-data/results]
+    #[arg(long, value_name = "DIR")]
+    pub results: Option<String>,
     /// Settings as a file; options on the command line win
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,

@@ -73,12 +73,16 @@ fn coordinator(a: &Coordinator) -> Option<String> {
         Some("TLS".into())
     } else if a.token_file.is_some() {
         Some("--token-file (tokens)".into())
-    } else if a.ledger.starts_with("postgres") {
+    } else if a
+        .ledger
+        .as_deref()
+        .is_some_and(|l| l.starts_with("postgres"))
+    {
         Some("--ledger postgres://... (only sqlite:PATH)".into())
-    } else if a.results.contains("://") && !a.results.starts_with("file://") {
-        Some(format!("--results {} (only local folders)", a.results))
     } else {
-        None
+        let results = a.results.as_deref().unwrap_or_default();
+        let remote = results.contains("://") && !results.starts_with("file://");
+        remote.then(|| format!("--results {results} (only local folders)"))
     }
 }
 

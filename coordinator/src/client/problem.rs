@@ -2,6 +2,7 @@
 
 use super::arguments::{PresetName, ProblemArguments, Start};
 use super::error::ClientError;
+use crate::intake;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{
@@ -113,6 +114,12 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         );
         return Err(wrong("--start-parameters", &message));
     }
+    let preset = match a.preset {
+        PresetName::Careful => Preset::Careful,
+        PresetName::Default => Preset::Default,
+        PresetName::Fast => Preset::Fast,
+        PresetName::Reckless => Preset::Reckless,
+    };
     let options = Options {
         start,
         // The groups are in the system already.
@@ -120,13 +127,8 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         conjugates: vec![],
         seed: a.seed.or(file.seed),
         settings: SettingsChoice {
-            preset: match a.preset {
-                PresetName::Careful => Some(Preset::Careful),
-                PresetName::Default => None,
-                PresetName::Fast => Some(Preset::Fast),
-                PresetName::Reckless => Some(Preset::Reckless),
-            },
-            ..SettingsChoice::default()
+            preset: Some(preset),
+            ..intake::of_file(&file, &preset.settings())
         },
         precision: match a.precision.as_deref() {
             Some(_) => PrecisionChoice::Double,

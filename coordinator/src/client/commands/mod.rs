@@ -1,10 +1,14 @@
 //! The commands, one file each.
 
 pub mod cancel;
+pub mod coordinator;
 pub mod explain;
 pub mod info;
 pub mod jobs;
+pub mod path;
 pub mod results;
+pub mod solve;
 pub mod submit;
 pub mod watch;
+pub mod worker;
 pub mod workers;

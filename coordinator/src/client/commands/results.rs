@@ -1,13 +1,13 @@
 //! `cognate results`: the answer of a job, as a table, as JSON, as files.
 
-use super::watch::{ended, read_summary, standing};
+use super::watch::{ended, standing};
 use crate::client::arguments::{Format, OutputArguments, Results};
 use crate::client::connection::Connection;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::files::Folder;
 use crate::client::output::table::SOLUTIONS_SHOWN;
 use crate::client::output::text::{Look, counted};
-use crate::client::output::{self, json, table};
+use crate::client::output::{self, json, summary, table};
 use cognate_protocol::v1;
 use cognate_solutions::solution::Solution;
 
@@ -28,29 +28,17 @@ pub async fn run(a: &Results) -> Result<Exit, ClientError> {
         }
         _ => {}
     }
-    // The name is in the overview only; a job that is too old to be in it goes by its id.
-    let name = match a.output.format {
-        Format::Json => String::new(),
-        Format::Table => {
-            let jobs = connection.jobs().await?;
-            let named = jobs
-                .into_iter()
-                .find(|j| j.job == a.job && !j.name.is_empty());
-            named.map_or_else(|| format!("job {}", a.job), |j| j.name)
-        }
-    };
-    show(&mut connection, &a.job, &name, &a.output).await
+    show(&mut connection, &a.job, &a.output).await
 }
 
 /// Prints the answer of a finished job and writes the files that were asked for.
 pub async fn show(
     connection: &mut Connection,
     job: &str,
-    name: &str,
     output: &OutputArguments,
 ) -> Result<Exit, ClientError> {
     let json = connection.summary(job).await?;
-    let summary = read_summary(&json)?;
+    let summary = summary::read(&json)?;
     let mut rows: Vec<Solution> = vec![];
     let wanted = match output.format {
         Format::Table => SOLUTIONS_SHOWN,
@@ -79,7 +67,7 @@ pub async fn show(
     let text = match output.format {
         Format::Json => json::summary(&json),
         Format::Table => {
-            let mut text = table::summary(name, &summary, &rows, Look::of_standard_output());
+            let mut text = table::summary(&summary, &rows, Look::of_standard_output());
             if let Some(path) = &output.output {
                 text.push_str(&format!("\n  written to {}\n", path.display()));
             }
@@ -87,5 +75,5 @@ pub async fn show(
         }
     };
     output::print(&text)?;
-    Ok(summary.exit())
+    Ok(summary::exit(&summary))
 }

@@ -5,8 +5,7 @@ use crate::client::connection::Connection;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::json;
 use crate::client::output::progress::{Progress, Standing};
-use crate::client::output::summary::Summary;
-use crate::client::output::{self, table, text};
+use crate::client::output::{self, summary, table, text};
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
 
@@ -120,20 +119,14 @@ pub async fn verdict(
             format!("given up after {time}: {}", last.message),
         )),
         _ => {
-            let summary = read_summary(&connection.summary(&last.job).await?)?;
+            let summary = summary::read(&connection.summary(&last.job).await?)?;
             let paths = text::counted(summary.paths.total, "path");
             let answer = table::answer(&summary);
             let mut line = format!("done in {time}: {paths}, {answer}");
-            for question in summary.open_questions() {
+            for question in summary::open_questions(&summary) {
                 line.push_str(&format!("\nnot settled: {question}"));
             }
-            Ok((summary.exit(), line))
+            Ok((summary::exit(&summary), line))
         }
     }
-}
-
-/// The summary, typed.
-pub fn read_summary(json: &str) -> Result<Summary, ClientError> {
-    Summary::read(json)
-        .map_err(|e| ClientError::GaveUp(format!("its summary is not what was agreed: {e}")))
 }

@@ -1,7 +1,8 @@
 //! The answer for people: paths by verdict that add up, solutions, time, workers, warnings.
 
-use super::summary::Summary;
-use super::text::{Look, complex, count, counted, cut, magnitude, rate, real, seconds, wrapped};
+use super::summary::open_questions;
+use super::text::{Look, complex, count, counted, cut, magnitude, rate, seconds, wrapped};
+use crate::results::summary::Summary;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::fmt::Write as _;
@@ -62,15 +63,15 @@ impl Lines {
     }
 }
 
-/// The whole table; `name` says what was solved, `solutions` are the first of them.
-pub fn summary(name: &str, summary: &Summary, solutions: &[Solution], look: Look) -> String {
+/// The whole table; `solutions` are the first of them.
+pub fn summary(summary: &Summary, solutions: &[Solution], look: Look) -> String {
     let paths = &summary.paths;
     let mut lines = Lines {
         text: String::new(),
         look,
         number: count(paths.total).len().max(6),
     };
-    lines.text.push_str(&headline(name, summary, look));
+    lines.text.push_str(&headline(summary, look));
     lines.blank();
     paths_block(&mut lines, summary);
     lines.blank();
@@ -87,8 +88,12 @@ pub fn summary(name: &str, summary: &Summary, solutions: &[Solution], look: Look
 }
 
 /// One or two lines that answer the question.
-fn headline(name: &str, summary: &Summary, look: Look) -> String {
-    let open = summary.open_questions();
+fn headline(summary: &Summary, look: Look) -> String {
+    let name = match summary.problem.name.as_str() {
+        "" => summary.job.as_str(),
+        name => name,
+    };
+    let open = open_questions(summary);
     let answer = answer(summary);
     let color = |line: &str| match (open.is_empty(), summary.paths.failed > 0) {
         (true, _) => look.good(line),
@@ -262,16 +267,11 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
 
 fn time_block(lines: &mut Lines, summary: &Summary) {
     let t = &summary.time;
-    let mut parts = vec![];
-    if let Some(cpu) = t.cpu_seconds {
-        parts.push(format!("{} of CPU", seconds(cpu)));
-    }
-    if let Some(tracking) = t.tracking_cpu_seconds {
-        parts.push(format!("{} tracking", seconds(tracking)));
-    }
-    if let Some(speed) = t.paths_per_second {
-        parts.push(format!("{} paths/s", rate(speed)));
-    }
+    let parts = [
+        format!("{} of CPU", seconds(t.cpu_seconds)),
+        format!("{} tracking", seconds(t.tracking_cpu_seconds)),
+        format!("{} paths/s", rate(t.paths_per_second)),
+    ];
     // Times are words, not counts: they may be wider than the column of numbers.
     let wall = seconds(t.wall_seconds);
     lines.heading("Time", &wall, &parts.join(", "));
@@ -418,25 +418,14 @@ pub fn solution_list(solutions: &[Solution], total: u64, look: Look) -> String {
 
 /// A coordinate without what is only rounding.
 fn coordinate(solution: &Solution, z: Complex64) -> String {
-    // A part below the solution's own error estimate says nothing.
-    let noise = solution.accuracy.clamp(1e-14, 1e-6);
-    let scale = solution
+    // A part below the solution's own error estimate says nothing; nor does one that is below
+    // the shown figures of the other by a thousand.
+    let values = solution
         .variables
         .0
         .iter()
-        .map(|(_, z)| z.re.abs().max(z.im.abs()))
-        .fold(0.0, f64::max);
-    let keep = |part: f64| {
-        if part.abs() <= noise * scale.max(1.0) {
-            0.0
-        } else {
-            part
-        }
-    };
-    let z = Complex64::new(keep(z.re), keep(z.im));
-    if z.im == 0.0 {
-        real(z.re, FIGURES)
-    } else {
-        complex(z, FIGURES, 0.0)
-    }
+        .map(|(_, z)| z.re.abs().max(z.im.abs()));
+    let noise = solution.accuracy.clamp(1e-14, 1e-6) * values.fold(1.0, f64::max);
+    let keep = |part: f64| if part.abs() <= noise { 0.0 } else { part };
+    complex(Complex64::new(keep(z.re), keep(z.im)), FIGURES, 1e-9)
 }

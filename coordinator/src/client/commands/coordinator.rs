@@ -1,0 +1,77 @@
+//! `cognate coordinator`: the service.
+
+use crate::client::arguments::Coordinator;
+use crate::client::config_file::ConfigFile;
+use crate::client::error::{ClientError, Exit};
+use crate::config::{Config, ListenAddress};
+use crate::server::{self, ServerError};
+use std::io::IsTerminal;
+
+/// Serves until somebody wants it to end; then lets running calls finish.
+pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
+    log_to_standard_error();
+    let config = config(a)?;
+    let started = |addresses: &[ListenAddress]| {
+        for address in addresses {
+            eprintln!("listening on {address}");
+        }
+    };
+    match server::run(config, started).await {
+        Ok(()) => Ok(Exit::Solved),
+        Err(ServerError::Door(e)) => Err(ClientError::Input {
+            origin: "--listen".into(),
+            message: e.to_string(),
+        }),
+        Err(e) => Err(ClientError::Local(format!(
+            "the coordinator could not be started: {e}"
+        ))),
+    }
+}
+
+/// What the arguments and the file say, checked; the arguments win.
+fn config(a: &Coordinator) -> Result<Config, ClientError> {
+    let wrong = |origin: &str, e: &dyn std::fmt::Display| ClientError::Input {
+        origin: origin.into(),
+        message: e.to_string(),
+    };
+    let file = match &a.config {
+        Some(path) => ConfigFile::read(path)?,
+        None => ConfigFile::default(),
+    };
+    let rules = file.rules().map_err(|e| wrong("--config", &e))?;
+    let mut config = Config {
+        rules,
+        ..Config::default()
+    };
+    let listen = if a.listen.is_empty() {
+        file.listen
+    } else {
+        Some(a.listen.clone())
+    };
+    if let Some(listen) = listen {
+        let addresses = listen.iter().map(|address| address.parse());
+        config.listen = addresses
+            .collect::<Result<_, _>>()
+            .map_err(|e| wrong("--listen", &e))?;
+    }
+    if let Some(ledger) = a.ledger.clone().or(file.ledger) {
+        config.ledger = ledger.parse().map_err(|e| wrong("--ledger", &e))?;
+    }
+    if let Some(results) = a.results.clone().or(file.results) {
+        config.results = Some(results.trim_start_matches("file://").into());
+    }
+    config.insecure = a.insecure || file.insecure.unwrap_or(false);
+    Ok(config)
+}
+
+/// Logs of a service: on standard error, `RUST_LOG` says how much.
+pub fn log_to_standard_error() {
+    let filter = tracing_subscriber::EnvFilter::try_from_default_env()
+        .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("info"));
+    let logs = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal());
+    // Somebody who embeds this may have chosen a subscriber already.
+    let _ = logs.try_init();
+}

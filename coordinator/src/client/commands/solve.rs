@@ -1,0 +1,43 @@
+//! `cognate solve`: a coordinator and workers for one problem, here.
+
+use super::{results, submit, watch};
+use crate::client::arguments::{Format, Solve};
+use crate::client::connection::Connection;
+use crate::client::embedded::Embedded;
+use crate::client::error::{ClientError, Exit};
+use crate::client::output::progress::Progress;
+use crate::client::problem::{self, Prepared};
+use cognate_protocol::v1::JobState;
+use std::time::Instant;
+
+/// Solves, prints, stops everything that it started, also when interrupted.
+pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
+    let prepared = problem::prepare(&a.problem)?;
+    let mut service = Embedded::start(a.workers, a.threads).await?;
+    let address = service.address();
+    let ended = tokio::select! {
+        ended = solve(a, prepared, &address) => ended,
+        error = service.abandoned() => Err(error),
+        () = crate::client::interrupted() => Err(ClientError::Interrupted),
+    };
+    service.stop().await;
+    ended
+}
+
+async fn solve(a: &Solve, prepared: Prepared, address: &str) -> Result<Exit, ClientError> {
+    let mut progress = Progress::new(a.output.format == Format::Json, Instant::now());
+    let mut connection = Connection::open(address).await?;
+    let request_id = uuid::Uuid::new_v4().to_string();
+    let (job, warnings) = submit::send(&mut connection, &request_id, prepared).await?;
+    for warning in &warnings {
+        progress.say(&format!("warning: {warning}"));
+    }
+    let followed = watch::follow(address, &job, &mut progress).await;
+    progress.finish();
+    let (mut connection, last) = followed?;
+    match last.state() {
+        JobState::Failed => Err(ClientError::GaveUp(last.message)),
+        JobState::Cancelled => Err(ClientError::Cancelled),
+        _ => results::show(&mut connection, &job, &a.output).await,
+    }
+}

@@ -1,0 +1,208 @@
+//! The coordinator's settings as a file (TOML): every field may be absent, unknown ones are refused.
+
+use super::error::ClientError;
+use super::problem;
+use crate::chunks::leasing::Policy;
+use crate::chunks::sizing::Sizing;
+use crate::config::Rules;
+use serde::Deserialize;
+use std::path::Path;
+use std::time::Duration;
+
+/// What a file says; an absent field keeps its default.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConfigFile {
+    /// Addresses to listen on.
+    pub listen: Option<Vec<String>>,
+    /// What remembers.
+    pub ledger: Option<String>,
+    /// Where results are kept.
+    pub results: Option<String>,
+    /// Serve addresses beyond this machine without asking anybody who they are.
+    pub insecure: Option<bool>,
+    /// Times and limits.
+    rules: RulesTable,
+    /// How large chunks are.
+    chunks: ChunksTable,
+}
+
+macro_rules! tables {
+    ($(#[$meta:meta] $table:ident { $($field:ident: $kind:ty,)* })*) => {
+        $(
+            #[$meta]
+            #[derive(Clone, Copy, Debug, Default, Deserialize)]
+            #[serde(default, deny_unknown_fields)]
+            struct $table {
+                $($field: Option<$kind>,)*
+            }
+        )*
+    };
+}
+
+tables! {
+    /// The fields of `Rules` and `Policy`; times in seconds.
+    RulesTable {
+        lease_seconds: f64,
+        steward_seconds: f64,
+        expiry_interval_seconds: f64,
+        long_poll_seconds: f64,
+        worker_memory_seconds: f64,
+        shutdown_grace_seconds: f64,
+        keep_alive_seconds: f64,
+        suspicion_limit: u32,
+        split_into: u64,
+        in_flight_limit: u32,
+    }
+    /// The fields of `Sizing`.
+    ChunksTable {
+        longest_ms: u64,
+        shortest_ms: u64,
+        first_items: u64,
+        tail: u64,
+        most_items: u64,
+    }
+}
+
+impl ConfigFile {
+    /// Reads a file; messages name the place.
+    pub fn read(path: &Path) -> Result<Self, ClientError> {
+        let (name, content) = problem::read_file(path)?;
+        let wrong = |message: String| ClientError::Input {
+            origin: name.clone(),
+            message,
+        };
+        let text = String::from_utf8(content).map_err(|e| wrong(e.to_string()))?;
+        toml::from_str(&text).map_err(|e| wrong(e.to_string().trim_end().to_string()))
+    }
+
+    /// The deadlines and limits, or which of them makes no sense.
+    pub fn rules(&self) -> Result<Rules, String> {
+        let (r, c) = (&self.rules, &self.chunks);
+        let Rules {
+            policy,
+            long_poll,
+            worker_memory,
+            shutdown_grace,
+            keep_alive,
+        } = Rules::default();
+        let ms = Duration::from_millis;
+        let in_ms = |name, asked, default| -> Result<u64, String> {
+            let milliseconds = time(name, asked, ms(default))?.as_millis();
+            Ok(u64::try_from(milliseconds).unwrap_or(u64::MAX))
+        };
+        let sizing = policy.sizing;
+        Ok(Rules {
+            policy: Policy {
+                lease_ms: in_ms("lease_seconds", r.lease_seconds, policy.lease_ms)?,
+                steward_ms: in_ms("steward_seconds", r.steward_seconds, policy.steward_ms)?,
+                expiry_ms: in_ms(
+                    "expiry_interval_seconds",
+                    r.expiry_interval_seconds,
+                    policy.expiry_ms,
+                )?,
+                suspicion_limit: number(
+                    "suspicion_limit",
+                    r.suspicion_limit,
+                    policy.suspicion_limit,
+                )?,
+                split_into: number("split_into", r.split_into, policy.split_into)?,
+                in_flight_limit: number(
+                    "in_flight_limit",
+                    r.in_flight_limit,
+                    policy.in_flight_limit,
+                )?,
+                sizing: Sizing {
+                    longest_ms: number("longest_ms", c.longest_ms, sizing.longest_ms)?,
+                    shortest_ms: number("shortest_ms", c.shortest_ms, sizing.shortest_ms)?,
+                    first_items: number("first_items", c.first_items, sizing.first_items)?,
+                    tail: number("tail", c.tail, sizing.tail)?,
+                    most_items: number("most_items", c.most_items, sizing.most_items)?,
+                },
+            },
+            long_poll: time("long_poll_seconds", r.long_poll_seconds, long_poll)?,
+            worker_memory: time(
+                "worker_memory_seconds",
+                r.worker_memory_seconds,
+                worker_memory,
+            )?,
+            shutdown_grace: time(
+                "shutdown_grace_seconds",
+                r.shutdown_grace_seconds,
+                shutdown_grace,
+            )?,
+            keep_alive: time("keep_alive_seconds", r.keep_alive_seconds, keep_alive)?,
+        })
+    }
+}
+
+/// A time that is long enough to be one.
+fn time(name: &str, asked: Option<f64>, default: Duration) -> Result<Duration, String> {
+    let Some(seconds) = asked else {
+        return Ok(default);
+    };
+    Duration::try_from_secs_f64(seconds)
+        .ok()
+        .filter(|time| *time >= Duration::from_millis(1))
+        .ok_or_else(|| format!("{name} = {seconds}; expected at least 0.001"))
+}
+
+/// A number of which there must be one.
+fn number<N: Copy + PartialEq + From<u8>>(
+    name: &str,
+    asked: Option<N>,
+    default: N,
+) -> Result<N, String> {
+    match asked {
+        Some(zero) if zero == N::from(0) => Err(format!("{name} = 0; expected at least 1")),
+        Some(number) => Ok(number),
+        None => Ok(default),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+
+    #[test]
+    fn the_file_that_is_shipped_says_the_defaults_and_all_of_them() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy/config/cognate.toml");
+        let file = ConfigFile::read(&path).expect("the shipped file is well formed");
+        // Every field stands there, so none is None.
+        assert!(!format!("{file:?}").contains("None"), "{file:?}");
+        let default = Config::default();
+        let listen: Vec<String> = default
+            .listen
+            .iter()
+            .map(|a| a.to_string().trim_start_matches("http://").to_string())
+            .collect();
+        assert_eq!(file.listen, Some(listen));
+        assert_eq!(file.insecure, Some(default.insecure));
+        assert_eq!(
+            file.ledger.as_deref().map(str::parse),
+            Some(Ok(default.ledger))
+        );
+        assert_eq!(file.results.as_deref().map(Into::into), default.results);
+        let rules = file.rules().expect("the shipped rules make sense");
+        assert_eq!(format!("{rules:?}"), format!("{:?}", Rules::default()));
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_named() {
+        let read = |text: &str| toml::from_str::<ConfigFile>(text).map_err(|e| e.to_string());
+        assert!(
+            read("[rules]\nlaese_seconds = 1")
+                .unwrap_err()
+                .contains("laese_seconds")
+        );
+        let message = |text: &str| read(text).expect("well formed").rules().unwrap_err();
+        assert!(message("[rules]\nlease_seconds = -1.0").contains("lease_seconds"));
+        assert!(message("[rules]\nsplit_into = 0").contains("split_into"));
+        let rules = read("[rules]\nlease_seconds = 5.0")
+            .unwrap()
+            .rules()
+            .unwrap();
+        assert_eq!(rules.policy.lease_ms, 5000);
+    }
+}
