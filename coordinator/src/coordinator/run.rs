@@ -2,7 +2,12 @@
 
 use super::{Coordinator, CoordinatorError};
 use crate::jobs::drive::{Drive, DriveError, Driven, Tools};
+use crate::ledger::LedgerError;
 use crate::ledger::identity::JobId;
+use crate::ledger::rows::JobEnd;
+use futures::FutureExt;
+use std::any::Any;
+use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::Notify;
@@ -110,15 +115,41 @@ impl Coordinator {
                 coordinator: Arc::clone(&coordinator),
                 job,
             };
-            if let Err(error) = coordinator.drive(job, &wake, &stop).await {
-                if error.is_fenced() {
+            let driven = AssertUnwindSafe(coordinator.drive(job, &wake, &stop));
+            match driven.catch_unwind().await {
+                Ok(Ok(())) => {}
+                Ok(Err(error)) if error.is_fenced() => {
                     tracing::info!(%job, "another coordinator drives the job");
-                } else {
+                }
+                Ok(Err(error)) => {
                     tracing::warn!(%job, %error, "the job is tried again");
                     sleep(RETRY).await;
                 }
+                // A broken invariant breaks again on every try: the job ends, the service stays.
+                Err(panic) => {
+                    let reason = format!("internal error: {}", message(&*panic));
+                    tracing::error!(%job, reason, "the job has failed");
+                    if let Err(error) = coordinator.fail(job, reason).await {
+                        tracing::warn!(%job, %error, "the failure could not be written");
+                        sleep(RETRY).await;
+                    }
+                }
             }
         });
+    }
+
+    /// Ends a job without a result, if this coordinator has the right to.
+    async fn fail(&self, job: JobId, reason: String) -> Result<(), LedgerError> {
+        let right = self
+            .ledger
+            .steward(job, &self.who, self.policy.steward_ms)
+            .await?;
+        if let Some(epoch) = right {
+            let end = JobEnd::Failed { reason };
+            self.ledger.finish(job, epoch, end).await?;
+        }
+        self.changed();
+        Ok(())
     }
 
     /// Drives one job until it ends, another coordinator has it, or this one stops.
@@ -163,6 +194,13 @@ impl Coordinator {
         // The next coordinator need not wait.
         drive.give_up(&tools).await
     }
+}
+
+/// What a panic said.
+fn message(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("a panic without a message")
 }
 
 /// While it lives, this coordinator drives the job or waits to try again.

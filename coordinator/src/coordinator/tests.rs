@@ -404,3 +404,53 @@ async fn what_cannot_be_solved_is_refused_at_the_door() {
 async fn coordinator_is_empty(coordinator: &Coordinator) -> bool {
     coordinator.jobs(10).await.unwrap().is_empty()
 }
+
+/// Results that no worker can have reported: a broken invariant, so that the algorithm panics.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_panic_ends_the_job_and_not_the_service() {
+    let clock = Arc::new(crate::ledger::clock::SystemClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock));
+    let who = CoordinatorId::new("c").unwrap();
+    let coordinator = Coordinator::new(ledger, Store::in_memory(), who, policy(1000));
+    let stop = CancellationToken::new();
+    let running = tokio::spawn(Arc::clone(&coordinator).run(stop.clone()));
+    let request = RequestId::new("r").unwrap();
+    let accepted = coordinator
+        .submit(request, Tenant::new("t").unwrap(), problem())
+        .await
+        .unwrap();
+    let mut watched = coordinator.watch(accepted.job);
+    let pull = Pull {
+        worker: crate::ledger::conformance::seen("w", 1),
+        request: RequestId::new("w-1").unwrap(),
+        slots: 1,
+        wait: Duration::from_secs(5),
+    };
+    let lease = coordinator.pull(pull).await.unwrap()[0].clone();
+    let stage = coordinator
+        .stage(accepted.job, lease.lease.chunk.stage)
+        .await
+        .unwrap();
+    let results = (lease.items.first..lease.items.last)
+        .map(|_| crate::chunks::expiry::killed_its_worker(&stage, 3))
+        .collect();
+    let (store, ledger) = (coordinator.store(), coordinator.ledger());
+    let object = store
+        .put_results(lease.lease, lease.items, results, 1)
+        .await
+        .unwrap();
+    ledger.complete(lease.lease, object).await.unwrap();
+    let mut last = None;
+    while let Some(progress) = watched.recv().await {
+        last = Some(progress.unwrap());
+    }
+    let last = last.expect("progress is said at least once");
+    assert_eq!(last.state, JobState::Failed);
+    assert!(
+        last.message.starts_with("internal error: "),
+        "{}",
+        last.message
+    );
+    stop.cancel();
+    running.await.unwrap();
+}

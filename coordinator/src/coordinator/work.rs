@@ -2,6 +2,7 @@
 
 use super::{Coordinator, CoordinatorError};
 use crate::ledger::identity::{ItemRange, LeaseId, RequestId, WorkerId};
+use crate::ledger::memory::MOST_MICROS;
 use crate::ledger::rows::{Completion, GiveBack, Lease, LeaseRequest, Renewal, WorkerSeen};
 use crate::results::store::StoreError;
 use cognate_continuation::path_result::PathResult;
@@ -140,6 +141,7 @@ impl Coordinator {
             lease: lease.to_string(),
             what,
         })?;
+        let cpu_micros = cpu_micros.min(MOST_MICROS);
         let object = match self
             .store
             .put_results(lease, items, results, cpu_micros)

@@ -14,6 +14,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Workers that were heard within this time count for the sizes of chunks.
 pub const PRESENT_MS: u64 = 60_000;
+/// No chunk is charged more, in microseconds of CPU: a hundred days. Sums stay far from overflow.
+pub const MOST_MICROS: u64 = 8_640_000_000_000;
 /// What an item is taken to cost, in microseconds of CPU, while nothing is measured.
 pub const UNMEASURED_MICROS: u64 = 1000;
 
@@ -311,7 +313,7 @@ pub fn estimate(items: u64, counts: &StageRow) -> i64 {
         0 => UNMEASURED_MICROS,
         done => counts.cpu_micros / done,
     };
-    i64::try_from(items.saturating_mul(each)).unwrap_or(i64::MAX / 4)
+    items.saturating_mul(each).min(MOST_MICROS) as i64
 }
 
 /// Refuses numbers that a ledger on a database could not hold.

@@ -21,6 +21,7 @@ use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions};
 use prost::Message;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -198,8 +199,7 @@ impl Store {
             .filter(|&length| length <= LONGEST_RECORDS)
             .and_then(|length| usize::try_from(length).ok())
             .ok_or_else(|| damaged(&address, "it claims to be absurdly long"))?;
-        let plain = zstd::bulk::decompress(compressed, capacity)
-            .map_err(|error| damaged(&address, error))?;
+        let plain = decompress(&address, compressed, capacity)?;
         postcard::from_bytes(&plain).map_err(|error| damaged(&address, error))
     }
 
@@ -296,6 +296,19 @@ fn pack(results: &[PathResult]) -> (Digest, Vec<u8>) {
     bytes.extend_from_slice(&hash.0);
     bytes.extend_from_slice(&compressed);
     (hash, bytes)
+}
+
+/// Exactly `length` bytes; a length that is a lie takes no memory.
+fn decompress(address: &Address, compressed: &[u8], length: usize) -> Result<Vec<u8>, StoreError> {
+    let mut bytes = Vec::with_capacity(length.min(1 << 20));
+    let decoder = zstd::stream::read::Decoder::new(compressed);
+    let read = decoder.and_then(|d| d.take(length as u64 + 1).read_to_end(&mut bytes));
+    read.map_err(|error| damaged(address, error))?;
+    if bytes.len() == length {
+        Ok(bytes)
+    } else {
+        Err(damaged(address, "it has another length than it says"))
+    }
 }
 
 /// The hash of the records and the records, checked against each other.
