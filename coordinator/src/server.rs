@@ -14,7 +14,7 @@ use crate::ledger::memory::MemoryLedger;
 use crate::ledger::sqlite::SqliteLedger;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::{Store, StoreError};
-use crate::transport::{Door, DoorError};
+use crate::transport::{self, Door, DoorError};
 use cognate_protocol::DESCRIPTORS;
 use cognate_protocol::limits::MESSAGE_BYTES;
 use cognate_protocol::v1::client_api_server::ClientApiServer;
@@ -25,7 +25,6 @@ use std::sync::Arc;
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
 use tonic::service::Routes;
-use tonic::transport::server::TcpIncoming;
 
 /// Why a coordinator does not start.
 #[derive(Debug, thiserror::Error)]
@@ -225,15 +224,13 @@ async fn listen(door: Door, routes: Routes, context: Arc<Context>) {
     let router = server.add_routes(routes);
     let served = match door {
         Door::Tcp(listener) => {
-            let incoming = TcpIncoming::from(listener).with_nodelay(Some(true));
+            let incoming = transport::tcp_connections(listener);
             router
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await
         }
         Door::Unix(socket) => {
-            let incoming = futures::stream::unfold(socket, |socket| async move {
-                Some((socket.accept().await, socket))
-            });
+            let incoming = transport::unix_connections(socket);
             router
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await

@@ -173,6 +173,66 @@ async fn bad_input_is_named_and_the_service_stays_up() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn mutated_problems_end_in_a_job_or_a_clear_refusal() {
+    use cognate_numeric::random::{Purpose, RandomStream};
+    use prost::Message;
+    let house = House::new().await;
+    let mut client = house.client().await;
+    let system = cognate_systems::formats::read("a", MANY_PATHS.as_bytes()).unwrap();
+    let system = cognate_protocol::to_proto::problem::system(&system.system);
+    let whole = v1::Problem {
+        source: Some(v1::problem::Source::System(system)),
+        options: Some(v1::Options {
+            settings: Some(v1::Settings {
+                max_steps: Some(500),
+                ..v1::Settings::default()
+            }),
+            groups: vec![v1::NameList {
+                names: vec!["x".to_owned(), "y".to_owned()],
+            }],
+            target_parameters: vec![v1::ParameterValues::default()],
+            ..v1::Options::default()
+        }),
+    }
+    .encode_to_vec();
+    let (mut jobs, mut refusals) = (0, 0);
+    for seed in 0..2000 {
+        let mut draw = RandomStream::new(seed, Purpose::Test, 0);
+        let mut bytes = whole.clone();
+        for _ in 0..1 + draw.below(3) {
+            let at = draw.below(bytes.len() as u64) as usize;
+            // Lengths stay as they are: else most messages would not even decode.
+            bytes[at] = match draw.below(2) {
+                0 => bytes[at] ^ (1 << draw.below(8)),
+                _ => draw.below(256) as u8,
+            };
+        }
+        let Ok(problem) = v1::Problem::decode(bytes.as_slice()) else {
+            continue;
+        };
+        let id = format!("mutated-{seed}");
+        let answer = client.submit(&id, problem);
+        let answer = tokio::time::timeout(Duration::from_secs(30), answer).await;
+        match answer.unwrap_or_else(|_| panic!("problem {seed} takes too long")) {
+            Ok(_) => jobs += 1,
+            Err(status) => {
+                refusals += 1;
+                let clear = matches!(
+                    status.code(),
+                    Code::InvalidArgument | Code::ResourceExhausted | Code::Unimplemented
+                );
+                assert!(clear && !status.message().is_empty(), "{seed}: {status}");
+            }
+        }
+    }
+    assert!(
+        jobs > 10 && refusals > 10,
+        "{jobs} jobs, {refusals} refusals"
+    );
+    house.server.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn a_message_past_the_limit_is_refused_and_the_service_stays_up() {
     let house = House::new().await;
     let mut client = house.client().await;

@@ -32,7 +32,10 @@ class Stranger:
     """Calls any method of a service by its name, with messages made from reflection."""
 
     def __init__(self, address):
-        self.channel = grpc.insecure_channel(address)
+        # Over a Unix socket grpcio names the path as authority, which HTTP/2 servers in Rust refuse.
+        self.channel = grpc.insecure_channel(
+            address, options=[("grpc.default_authority", "localhost")]
+        )
         self.database = ProtoReflectionDescriptorDatabase(self.channel)
         self.pool = DescriptorPool(self.database)
         self.service = self.pool.FindServiceByName(SERVICE)

@@ -6,6 +6,14 @@ pub mod tcp;
 pub mod unix;
 
 use crate::config::ListenAddress;
+use futures::Stream;
+use std::io;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream, UnixStream};
+
+/// Where no connection can be accepted, the next is tried after this time. Default 100 ms: when
+/// descriptors have run out, trying at once would only burn the processor.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Why a door does not open.
 #[derive(Debug, thiserror::Error)]
@@ -42,7 +50,7 @@ pub enum DoorError {
 #[derive(Debug)]
 pub enum Door {
     /// TCP.
-    Tcp(tokio::net::TcpListener),
+    Tcp(TcpListener),
     /// A Unix socket, which is removed when the door closes.
     Unix(unix::Socket),
 }
@@ -67,4 +75,38 @@ impl Door {
             Self::Unix(socket) => ListenAddress::Unix(socket.path().to_owned()),
         }
     }
+}
+
+/// Connections over TCP, without end.
+pub fn tcp_connections(listener: TcpListener) -> impl Stream<Item = io::Result<TcpStream>> {
+    futures::stream::unfold(listener, |listener| async move {
+        loop {
+            let accepted = match listener.accept().await {
+                // Small messages go out at once.
+                Ok((stream, _)) => stream.set_nodelay(true).map(|()| stream),
+                Err(error) => Err(error),
+            };
+            match accepted {
+                Ok(stream) => return Some((Ok(stream), listener)),
+                Err(error) => not_accepted(&error).await,
+            }
+        }
+    })
+}
+
+/// Connections over a Unix socket, without end.
+pub fn unix_connections(socket: unix::Socket) -> impl Stream<Item = io::Result<UnixStream>> {
+    futures::stream::unfold(socket, |socket| async move {
+        loop {
+            match socket.accept().await {
+                Ok(stream) => return Some((Ok(stream), socket)),
+                Err(error) => not_accepted(&error).await,
+            }
+        }
+    })
+}
+
+async fn not_accepted(error: &io::Error) {
+    tracing::warn!(%error, "a connection could not be accepted");
+    tokio::time::sleep(PAUSE).await;
 }
