@@ -56,11 +56,7 @@ pub struct Rules {
 impl Default for Rules {
     fn default() -> Self {
         Self {
-            // A killed coordinator's jobs go on that much later, in the next one.
-            policy: Policy {
-                steward_ms: 3000,
-                ..Policy::default()
-            },
+            policy: Policy::default(),
             long_poll: Duration::from_secs(25),
             worker_memory: Duration::from_secs(600),
             shutdown_grace: Duration::from_secs(5),
