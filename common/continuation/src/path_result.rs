@@ -63,7 +63,8 @@ pub struct PathResult {
     pub t: Complex64,
     /// Largest |F_i| at the endpoint, each equation and each group scaled to 1.
     pub residual: f64,
-    /// Condition number of the Jacobian at the endpoint, rows scaled; infinite where unknown.
+    /// Condition number of the Jacobian at the endpoint, each equation scaled to 1 on the patch;
+    /// infinite where unknown.
     pub condition: f64,
     /// Estimated error of the endpoint, relative to its largest coordinate.
     pub accuracy: f64,

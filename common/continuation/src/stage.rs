@@ -13,7 +13,7 @@ use crate::tracker::settings::Settings;
 use crate::work::Stage;
 use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on};
-use cognate_numeric::scalar::Real;
+use cognate_numeric::scalar::{DoubleDouble, Real};
 use cognate_systems::polynomial::{check_homogeneous, degrees};
 use cognate_systems::system::{System, SystemError};
 use num_complex::Complex64;
@@ -53,6 +53,9 @@ pub enum PrepareError {
         /// How many there should be.
         expected: usize,
     },
+    /// An arithmetic that is not there.
+    #[error("not in this version: arithmetic of {0} bits; there are 53 and 106")]
+    Precision(u32),
     /// The object with the start points is not there.
     #[error("the object {0} with the start points is missing")]
     MissingObject(Digest),
@@ -88,6 +91,9 @@ impl PreparedStage {
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
         system.check()?;
+        if !matches!(stage.settings.precision_bits, 53 | 106) {
+            return Err(PrepareError::Precision(stage.settings.precision_bits));
+        }
         let dimension = system.dimension();
         if system.equation_count() != dimension || dimension == 0 {
             return Err(PrepareError::NotSquare {
@@ -294,10 +300,16 @@ impl PreparedStage {
         width: usize,
     ) -> Vec<PathResult> {
         assert!(items.end <= self.items, "a chunk lies within its stage");
-        match width {
-            1 => dispatch_on(set, Track::<f64>(self, items, None, PhantomData)),
-            8 => dispatch_on(set, Track::<Lanes<8>>(self, items, None, PhantomData)),
-            16 => dispatch_on(set, Track::<Lanes<16>>(self, items, None, PhantomData)),
+        let wide = matches!(self.settings().precision_bits, 106);
+        match (width, wide) {
+            (1, false) => dispatch_on(set, Track::<f64>::new(self, items, None)),
+            (8, false) => dispatch_on(set, Track::<Lanes<8>>::new(self, items, None)),
+            (16, false) => dispatch_on(set, Track::<Lanes<16>>::new(self, items, None)),
+            // Few paths come here, one at a time; lanes of double-doubles multiply the time that
+            // this crate takes to compile by ten.
+            (1 | 8 | 16, true) => {
+                dispatch_on(set, Track::<DoubleDouble<f64>>::new(self, items, None))
+            }
             _ => panic!("there are lanes of width 1, 8 and 16, not {width}"),
         }
     }
@@ -306,8 +318,15 @@ impl PreparedStage {
     pub fn trace(&self, item: u64) -> (PathResult, Vec<StepEvent>) {
         assert!(item < self.items, "the item lies within the stage");
         let mut recorder = Recorder::default();
-        let job = Track::<f64>(self, item..item + 1, Some(&mut recorder), PhantomData);
-        let mut results = dispatch_on(InstructionSet::detect(), job);
+        let (set, items) = (InstructionSet::detect(), item..item + 1);
+        let mut results = if self.settings().precision_bits == 106 {
+            dispatch_on(
+                set,
+                Track::<DoubleDouble<f64>>::new(self, items, Some(&mut recorder)),
+            )
+        } else {
+            dispatch_on(set, Track::<f64>::new(self, items, Some(&mut recorder)))
+        };
         (results.remove(0), recorder.0)
     }
 }
@@ -319,6 +338,16 @@ struct Track<'a, R>(
     Option<&'a mut dyn Observer>,
     PhantomData<R>,
 );
+
+impl<'a, R> Track<'a, R> {
+    fn new(
+        stage: &'a PreparedStage,
+        items: Range<u64>,
+        observer: Option<&'a mut dyn Observer>,
+    ) -> Self {
+        Self(stage, items, observer, PhantomData)
+    }
+}
 
 impl<R: Real<Context = ()>> Job for Track<'_, R> {
     type Output = Vec<PathResult>;

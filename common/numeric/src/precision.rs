@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 pub enum Precision {
     /// Hardware doubles, 53 bits.
     Double,
+    /// Double-doubles, 106 bits.
+    DoubleDouble,
     /// MPFR with this many bits.
     Bits(u32),
 }
@@ -16,6 +18,7 @@ impl Precision {
     pub fn bits(self) -> u32 {
         match self {
             Self::Double => 53,
+            Self::DoubleDouble => 106,
             Self::Bits(bits) => bits,
         }
     }

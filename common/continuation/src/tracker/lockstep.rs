@@ -28,6 +28,8 @@ use std::ops::Range;
 const CONTRACTION: f64 = 0.1;
 /// Largest first correction at which a start point is believed.
 const START_ERROR: f64 = 1e-3;
+/// Farthest that the last Newton steps may move a regular endpoint.
+const ARRIVED: f64 = 1e-7;
 /// A refinement is accepted when its second correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
 
@@ -461,12 +463,16 @@ impl<'a, R: Real> Lockstep<'a, R> {
             }
             Phase::Arriving => {
                 self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                self.tangent.clone_from(&self.point);
                 let report = self
                     .refiner
                     .refine(&mut self.point, self.stage.item(self.lanes[lane].item).1);
+                // From a singular endpoint Newton's method may leave for another solution.
+                let moved = distance(&self.point, &self.tangent) / norm(&self.tangent);
                 if step.accepted
                     && report.condition <= settings.singular_condition
                     && report.converged
+                    && moved <= ARRIVED
                 {
                     return self.finish(lane, PathOutcome::Regular, report, None, Vec::new());
                 }
@@ -659,7 +665,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             accuracy: report.accuracy,
             winding_number,
             infinity_turns,
-            precision_bits: 53,
+            precision_bits: R::bits(self.context),
             counts: Counts {
                 steps: path.steps,
                 rejections: path.rejections,

@@ -29,6 +29,8 @@ pub struct Settings {
     pub singular_condition: f64,
     /// Relative accuracy at which a singular endpoint counts as settled.
     pub endgame_tolerance: f64,
+    /// Bits of the arithmetic: 53 (double) or 106 (double-double).
+    pub precision_bits: u32,
 }
 
 impl Default for Settings {
@@ -45,6 +47,7 @@ impl Default for Settings {
             max_winding_number: 32,
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
+            precision_bits: 53,
         }
     }
 }
@@ -88,7 +91,8 @@ impl Preset {
 }
 
 impl Settings {
-    /// Tighter settings for a path that is tracked again, `attempt` counted from 1.
+    /// Settings for a path that is tracked again, `attempt` counted from 1: first tighter in the
+    /// same arithmetic, from the second time on in double-doubles.
     #[must_use]
     pub fn tightened(&self, attempt: u16) -> Self {
         let mut tighter = self.clone();
@@ -96,6 +100,9 @@ impl Settings {
             tighter.predictor_tolerance *= 0.01;
             tighter.max_step *= 0.5;
             tighter.max_steps = tighter.max_steps.saturating_mul(4);
+        }
+        if attempt >= 2 {
+            tighter.precision_bits = tighter.precision_bits.max(106);
         }
         tighter.predictor_tolerance = tighter.predictor_tolerance.max(1e-9);
         tighter

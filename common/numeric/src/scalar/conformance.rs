@@ -89,11 +89,13 @@ macro_rules! scalar_conformance {
 #[cfg(test)]
 mod tests {
     use crate::lanes::Lanes;
-    use crate::scalar::MultiplePrecision;
+    use crate::scalar::{DoubleDouble, MultiplePrecision};
     crate::scalar_conformance!(double, f64, ());
     crate::scalar_conformance!(one_lane, Lanes<1>, ());
     crate::scalar_conformance!(eight_lanes, Lanes<8>, ());
     crate::scalar_conformance!(sixteen_lanes, Lanes<16>, ());
+    crate::scalar_conformance!(double_double, DoubleDouble<f64>, ());
+    crate::scalar_conformance!(eight_double_doubles, DoubleDouble<Lanes<8>>, ());
     crate::scalar_conformance!(multiple_precision_53, MultiplePrecision, 53);
     crate::scalar_conformance!(multiple_precision_200, MultiplePrecision, 200);
 }

@@ -7,8 +7,10 @@
 
 pub mod conformance;
 mod double;
+mod double_double;
 mod multiple_precision;
 
+pub use double_double::DoubleDouble;
 pub use multiple_precision::MultiplePrecision;
 
 use crate::rational::{ComplexRational, Rational};
