@@ -233,6 +233,24 @@ impl Draw {
         }
     }
 
+    /// Written out, so that a new default is no change of the wire.
+    fn settings(&mut self) -> Settings {
+        let settings = Settings {
+            tolerance: 1e-10,
+            predictor_tolerance: 1e-4,
+            max_step: 0.1,
+            min_step: 1e-13,
+            max_steps: 20_000,
+            endgame_boundary: 0.1,
+            endgame_radius: 1e-3,
+            endgame_min_radius: 1e-9,
+            max_winding_number: 32,
+            singular_condition: 1e8,
+            endgame_tolerance: 1e-8,
+        };
+        settings.tightened(self.below(3) as u16)
+    }
+
     /// A stage that passes the checks.
     pub fn stage(&mut self) -> Stage {
         let base = match self.below(3) {
@@ -274,7 +292,7 @@ impl Draw {
             } else {
                 base
             },
-            settings: Settings::default().tightened(self.below(3) as u16),
+            settings: self.settings(),
             seed: self.0.bits(),
             attempt: self.below(4) as u16,
         }
