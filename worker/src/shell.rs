@@ -374,3 +374,6 @@ fn pulled(answer: Result<crate::transport::Pulled, TransportError>) -> (SessionI
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,11 @@
+//! The service as real processes: a coordinator, workers, clients, and what may happen to each.
+
+mod any_split_same_answer;
+mod bad_input;
+mod coordinator_restarted;
+mod lease_expired;
+mod report_repeated;
+mod stranger;
+mod submit_to_result;
+mod tracking_by_hand;
+mod worker_lost;
