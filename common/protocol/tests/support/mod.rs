@@ -235,7 +235,7 @@ impl Draw {
 
     /// Written out, so that a new default is no change of the wire.
     fn settings(&mut self) -> Settings {
-        let settings = Settings {
+        Settings {
             tolerance: 1e-10,
             predictor_tolerance: 1e-4,
             max_step: 0.1,
@@ -243,12 +243,12 @@ impl Draw {
             max_steps: 20_000,
             endgame_boundary: 0.1,
             endgame_radius: 1e-3,
-            endgame_min_radius: 1e-9,
+            endgame_min_radius: 1e-14,
             max_winding_number: 32,
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
-        };
-        settings.tightened(self.below(3) as u16)
+            precision_bits: [53, 106][self.below(2)],
+        }
     }
 
     /// A stage that passes the checks.
