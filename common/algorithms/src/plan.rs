@@ -358,6 +358,13 @@ mod tests {
         assert_eq!((total.start, total.paths), (StartKind::TotalDegree, 4));
         assert_eq!(total.system.groups.len(), 1, "groups are merged");
         assert_eq!(total.algorithm.progress().stages, []);
+        let tie =
+            bertini("variable_group x; variable_group y; function f, g; f = x - 5*y; g = y^2 - 3;");
+        let chosen = plan(&tie, &PlanOptions::default()).unwrap();
+        assert_eq!(
+            (chosen.start, chosen.paths),
+            (StartKind::Multihomogeneous, 2)
+        );
         let one = bertini("variable_group x, y; function f, g; f = x*y - 1; g = x^3 + y;");
         let chosen = plan(&one, &PlanOptions::default()).unwrap();
         assert_eq!((chosen.start, chosen.paths), (StartKind::TotalDegree, 6));

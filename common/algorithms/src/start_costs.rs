@@ -89,6 +89,10 @@ impl Starts {
         })
     }
 
+    fn groups(&self) -> usize {
+        self.degrees.by_group.first().map_or(0, Vec::len)
+    }
+
     /// The cheaper one, and why, in words.
     pub fn choose(&self) -> Result<(StartKind, String), PlanError> {
         match (&self.total_degree, &self.multihomogeneous) {
@@ -99,6 +103,12 @@ impl Starts {
             (Ok((_, _, total)), Ok((_, multi))) if multi > total => Ok((
                 StartKind::TotalDegree,
                 format!("{total} paths by total degree, {multi} by the variable groups"),
+            )),
+            // Where both cost the same, the groups are the better coordinates: a
+            // solution that is large in one of them is not large in all.
+            (Ok(_), Ok((_, multi))) if self.groups() > 1 => Ok((
+                StartKind::Multihomogeneous,
+                format!("{multi} paths, by the variable groups as by total degree"),
             )),
             (Ok((_, _, total)), Ok(_)) => Ok((
                 StartKind::TotalDegree,

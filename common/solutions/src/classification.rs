@@ -26,7 +26,7 @@ pub struct Tolerances {
     /// estimated error. Endpoints of the shared mechanisms have at most 3 times; those
     /// that an endgame took from a circle around something else have 1000 times and more.
     pub residual_factor: f64,
-    /// ... or within this, all equations scaled to 1.
+    /// ... or within this, all equations scaled to 1: what an endgame may call settled.
     pub residual_floor: f64,
     /// Two endpoints coincide within this many times the sum of their estimated errors.
     pub coincidence_factor: f64,
@@ -52,7 +52,7 @@ impl Default for Tolerances {
             singular_infinity_floor: 1e-10,
             infinity_band: 10.0,
             residual_factor: 100.0,
-            residual_floor: 1e-11,
+            residual_floor: 1e-9,
             coincidence_factor: 10.0,
             coincidence_floor: 1e-10,
             singular_coincidence_factor: 50.0,
