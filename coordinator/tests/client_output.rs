@@ -98,7 +98,7 @@ fn real_row(seed: u32) -> Solution {
 fn a_settled_answer() {
     let answer = summary::read(PLATFORM).expect("a summary");
     let rows: Vec<Solution> = (0..40).map(real_row).collect();
-    check_widths("settled", |look| table::summary(&answer, &rows, look));
+    check_widths("settled", |look| table::summary(&answer, &rows, None, look));
     assert!(summary::open_questions(&answer).is_empty());
 }
 
@@ -112,7 +112,12 @@ fn an_answer_with_open_questions() {
     row.variables.0[1].1.im = -0.5;
     row.condition = f64::INFINITY;
     check_widths("unsettled", |look| {
-        table::summary(&answer, std::slice::from_ref(&row), look)
+        table::summary(
+            &answer,
+            std::slice::from_ref(&row),
+            Some("answer".as_ref()),
+            look,
+        )
     });
     assert_eq!(summary::exit(&answer) as u8, 1);
     assert_eq!(summary::open_questions(&answer).len(), 2);

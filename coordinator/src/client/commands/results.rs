@@ -67,11 +67,8 @@ pub async fn show(
     let text = match output.format {
         Format::Json => json::summary(&json),
         Format::Table => {
-            let mut text = table::summary(&summary, &rows, Look::of_standard_output());
-            if let Some(path) = &output.output {
-                text.push_str(&format!("\n  written to {}\n", path.display()));
-            }
-            text
+            let look = Look::of_standard_output();
+            table::summary(&summary, &rows, output.output.as_deref(), look)
         }
     };
     output::print(&text)?;

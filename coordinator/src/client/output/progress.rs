@@ -67,7 +67,10 @@ impl Progress {
                 bar.set_length(standing.total);
                 bar.set_position(standing.done);
                 bar.set_prefix(standing.phase.clone());
-                bar.set_message(notes(standing));
+                bar.set_message(match standing.failed {
+                    0 => String::new(),
+                    _ => format!("{} ", notes(standing)),
+                });
             }
             Display::Plain { last, shown } => {
                 // The first line waits too: a job that takes a second needs none.
@@ -101,17 +104,14 @@ impl Progress {
 
 fn style() -> ProgressStyle {
     ProgressStyle::with_template(
-        "{spinner:.cyan} {prefix} {wide_bar:.cyan/dim} {human_pos}/{human_len} {msg} {elapsed} ",
+        "{spinner:.cyan} {prefix} {wide_bar:.cyan/dim} {human_pos}/{human_len} {msg}{elapsed} ",
     )
     .expect("the template is constant and well formed")
     .progress_chars("━╸─")
 }
 
 fn notes(standing: &Standing) -> String {
-    match standing.failed {
-        0 => String::new(),
-        n => format!("{} failed", count(n)),
-    }
+    format!("{} failed", count(standing.failed))
 }
 
 fn plain_line(standing: &Standing, elapsed: Duration) -> String {

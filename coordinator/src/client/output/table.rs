@@ -6,6 +6,7 @@ use crate::results::summary::Summary;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Solutions shown before a table says how many more there are.
 pub const SOLUTIONS_SHOWN: usize = 8;
@@ -63,8 +64,13 @@ impl Lines {
     }
 }
 
-/// The whole table; `solutions` are the first of them.
-pub fn summary(summary: &Summary, solutions: &[Solution], look: Look) -> String {
+/// The whole table; `solutions` are the first of them, `files` is the folder with all of them.
+pub fn summary(
+    summary: &Summary,
+    solutions: &[Solution],
+    files: Option<&Path>,
+    look: Look,
+) -> String {
     let paths = &summary.paths;
     let mut lines = Lines {
         text: String::new(),
@@ -82,7 +88,9 @@ pub fn summary(summary: &Summary, solutions: &[Solution], look: Look) -> String 
     if !solutions.is_empty() {
         lines.blank();
         let total = summary.solutions.distinct;
-        lines.text.push_str(&solution_list(solutions, total, look));
+        lines
+            .text
+            .push_str(&solution_list(solutions, total, files, look));
     }
     lines.text
 }
@@ -312,7 +320,12 @@ fn warnings(summary: &Summary, look: Look) -> String {
 }
 
 /// The first solutions, one a line, as many variables as fit; `total` is how many there are.
-pub fn solution_list(solutions: &[Solution], total: u64, look: Look) -> String {
+pub fn solution_list(
+    solutions: &[Solution],
+    total: u64,
+    files: Option<&Path>,
+    look: Look,
+) -> String {
     let mut text = String::new();
     let Some(first) = solutions.first() else {
         return text;
@@ -379,7 +392,10 @@ pub fn solution_list(solutions: &[Solution], total: u64, look: Look) -> String {
     let mut used = widths[..fixed].iter().map(|w| w + 2).sum::<usize>();
     let mut fitting = fixed;
     for (i, w) in widths.iter().enumerate().skip(fixed) {
-        let mark = if i + 1 < columns.len() { 12 } else { 0 };
+        let mark = match columns.len() - i - 1 {
+            0 => 0,
+            left => format!("  +{left} more").len(),
+        };
         if i > fixed && used + w + 2 + mark > look.width {
             break;
         }
@@ -403,12 +419,21 @@ pub fn solution_list(solutions: &[Solution], total: u64, look: Look) -> String {
         let _ = writeln!(text, "{}", cut(line.trim_end(), look.width));
     }
     let more = total.saturating_sub(shown.len() as u64);
-    if more > 0 || left_out > 0 {
-        let mut note = String::from("  ");
+    if more > 0 || left_out > 0 || files.is_some() {
+        let mut note = String::new();
         if more > 0 {
             let _ = write!(note, "and {} more; ", count(more));
         }
-        note.push_str("--output DIR writes all digits of all of them");
+        match files {
+            Some(folder) => {
+                let _ = write!(
+                    note,
+                    "all digits of all of them are in {}",
+                    folder.display()
+                );
+            }
+            None => note.push_str("--output DIR writes all digits of all of them"),
+        }
         for line in wrapped(&note, look.width - 2) {
             let _ = writeln!(text, "  {}", look.dim(&line));
         }
