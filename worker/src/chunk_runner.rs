@@ -196,10 +196,7 @@ impl Running {
                 results
             })))
         };
-        let cpu = match (cpu_begin, thread_cpu_time()) {
-            (Some(before), Some(after)) => after.saturating_sub(before),
-            _ => begin.elapsed(),
-        };
+        let cpu = thread_cpu_time().saturating_sub(cpu_begin);
         let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         progress.cpu += cpu;
         progress.open -= 1;
@@ -248,11 +245,13 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
         .unwrap_or_else(|| "a panic without a message".to_owned())
 }
 
-/// Time that this thread has run on a processor; `None` where the kernel does not tell.
-fn thread_cpu_time() -> Option<Duration> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds = text.split_ascii_whitespace().next()?.parse().ok()?;
-    Some(Duration::from_nanos(nanoseconds))
+/// Time that this thread has run on a processor, by the clock: the kernel's statistics are only
+/// brought up to date now and then, and a short chunk would cost nothing.
+fn thread_cpu_time() -> Duration {
+    let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    let seconds = u64::try_from(now.tv_sec).unwrap_or(0);
+    let nanoseconds = u64::try_from(now.tv_nsec).unwrap_or(0);
+    Duration::from_secs(seconds) + Duration::from_nanos(nanoseconds)
 }
 
 #[cfg(test)]

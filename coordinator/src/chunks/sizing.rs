@@ -35,6 +35,9 @@ impl Default for Sizing {
     }
 }
 
+/// Less CPU time than this says nothing about the next chunk, in microseconds.
+const MEASURED_MICROS: u64 = 1000;
+
 /// What is known when a chunk is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Situation {
@@ -56,8 +59,8 @@ impl Sizing {
         let threads = now.threads.max(1);
         let all_threads = now.all_threads.max(threads);
         let share = now.ready_items.saturating_mul(threads) / all_threads / self.tail.max(1);
-        // While nothing is measured, half a vector of lanes a thread is worth the exchange.
-        let (shortest, longest) = if now.done_items == 0 {
+        // While next to nothing is measured, half a vector of lanes a thread is worth the exchange.
+        let (shortest, longest) = if now.done_micros < MEASURED_MICROS {
             let first = self.first_items.saturating_mul(threads);
             (first.div_ceil(2), first)
         } else {
@@ -108,7 +111,12 @@ mod tests {
         // An item of a minute: one at a time.
         assert_eq!(sizing.items(&situation(4, 1, 60_000_000)), 1);
         // Fast items: bounded by their number.
-        assert_eq!(sizing.items(&situation(1_000_000_000, 1000, 1)), 10_000);
+        assert_eq!(
+            sizing.items(&situation(1_000_000_000, 100_000, 2000)),
+            10_000
+        );
+        // Hardly measured is not measured.
+        assert_eq!(sizing.items(&situation(1_000_000_000, 6, 0)), 16);
     }
 
     #[test]
