@@ -81,7 +81,11 @@ fn a_job_outlives_its_coordinator_twice() {
     );
     let end = client.progress(&job).expect("the job is known");
     let counted = accepted_paths(&client);
-    assert_eq!(counted, total(&end), "each path was accepted from one worker, once");
+    assert_eq!(
+        counted,
+        total(&end),
+        "each path was accepted from one worker, once"
+    );
     check_not_tracked_again(&cluster);
     cluster.stop();
 }

@@ -35,7 +35,10 @@ fn check(summary: &Value, paths: u64, nonsingular: u64, real: u64) {
     assert_eq!(counts["total"], paths, "{summary:#}");
     assert_eq!(sum, paths, "every path is counted once: {counts:#}");
     assert_eq!(counts["failed"], 0, "{counts:#}");
-    assert_eq!(summary["solutions"]["nonsingular"], nonsingular, "{summary:#}");
+    assert_eq!(
+        summary["solutions"]["nonsingular"], nonsingular,
+        "{summary:#}"
+    );
     assert_eq!(summary["solutions"]["real"], real, "{summary:#}");
 }
 

@@ -118,9 +118,11 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
         match turns {
             // How often the coordinate turns around 0 is a whole number: it says
             // without tolerance whether the coordinate vanishes, unless something
-            // else lies within the radius. Both must agree for infinity.
+            // else lies within the radius. Both must agree for infinity, except
+            // where the coordinate is rounding error and nothing was there to turn.
             Some(&turns) => {
-                at_infinity |= vanishes && turns > 0;
+                let nothing = coordinate <= tolerances.infinity_floor;
+                at_infinity |= nothing || (vanishes && turns > 0);
                 by_precision_limit |= vanishes != (turns > 0);
             }
             None => {
@@ -210,6 +212,10 @@ mod tests {
         assert_eq!(
             verdict(&singular(0, &point(1e-11), 2, &[0])),
             (Verdict::Singular, true)
+        );
+        assert_eq!(
+            verdict(&singular(0, &point(1e-16), 3, &[0])),
+            (Verdict::AtInfinity, true)
         );
         assert_eq!(
             verdict(&singular(0, &point(1e-3), 2, &[1])),
