@@ -1,0 +1,425 @@
+//! Tidy: the house's rules that a compiler does not keep.
+//!
+//! README's code map and drawing agree with the tree and with the manifests;
+//! what is forbidden somewhere (unsafe, protobuf, clocks, stubs) is not there.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// A file of the repository: its path from the root, and its text.
+struct File {
+    path: String,
+    text: String,
+}
+
+fn root() -> PathBuf {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = manifest.parent().expect("tests/ stands in the repository");
+    root.to_owned()
+}
+
+/// All files whose names end so, sorted; what git ignores is not among them.
+fn files(ending: &str) -> Vec<File> {
+    fn walk(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+        let entries = std::fs::read_dir(folder).expect("the repository can be read");
+        for entry in entries {
+            let path = entry.expect("the repository can be read").path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if path.is_dir() {
+                if !matches!(&*name, "target" | ".git" | "results") {
+                    walk(&path, ending, found);
+                }
+            } else if name.ends_with(ending) {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for folder in [
+        "common",
+        "worker",
+        "coordinator",
+        "tests",
+        "deploy",
+        "proto",
+    ] {
+        walk(&root().join(folder), ending, &mut found);
+    }
+    found.sort();
+    let files = found.into_iter().map(|path| File {
+        text: std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display())),
+        path: path
+            .strip_prefix(root())
+            .expect("the walk began at the root")
+            .to_string_lossy()
+            .into_owned(),
+    });
+    let files: Vec<File> = files.collect();
+    assert!(
+        !files.is_empty(),
+        "the walk found no file that ends with {ending}"
+    );
+    files
+}
+
+/// Source files; `this` file names what it forbids, so it is left out.
+fn sources() -> Vec<File> {
+    let mut files = files(".rs");
+    files.retain(|file| file.path != "tests/tidy/main.rs");
+    assert!(
+        files.len() > 100,
+        "the walk found only {} files",
+        files.len()
+    );
+    files
+}
+
+/// Fails with every offence named, one a line.
+fn check(offences: Vec<String>) {
+    assert!(offences.is_empty(), "\n{}", offences.join("\n"));
+}
+
+/// A line without its comment and without what stands in quotes.
+fn code(line: &str) -> String {
+    let mut code = String::new();
+    let mut quoted = false;
+    let mut before = ' ';
+    for c in line.chars() {
+        if c == '"' && before != '\\' {
+            quoted = !quoted;
+        }
+        if !quoted {
+            code.push(c);
+            if code.ends_with("//") {
+                return code;
+            }
+        }
+        before = c;
+    }
+    code
+}
+
+/// Lines of code that name one of these, as `path:line: name`.
+fn uses(file: &File, names: &[&str]) -> Vec<String> {
+    let mut found = Vec::new();
+    for (number, line) in file.text.lines().enumerate() {
+        let code = code(line);
+        for name in names.iter().filter(|name| code.contains(**name)) {
+            found.push(format!("{}:{}: {name}", file.path, number + 1));
+        }
+    }
+    found
+}
+
+#[test]
+fn every_source_file_says_what_stands_in_it() {
+    let without = sources()
+        .into_iter()
+        .filter(|file| !file.text.starts_with("//! "));
+    check(
+        without
+            .map(|file| format!("{} does not begin with `//! `", file.path))
+            .collect(),
+    );
+}
+
+#[test]
+fn no_file_grows_beyond_a_thousand_lines() {
+    let long = sources().into_iter().filter_map(|file| {
+        let lines = file.text.lines().count();
+        (lines > 1000).then(|| {
+            format!(
+                "{} has {lines} lines: has a second noun moved in?",
+                file.path
+            )
+        })
+    });
+    check(long.collect());
+}
+
+#[test]
+fn unsafe_code_stands_in_the_dispatch_alone() {
+    let mut offences = Vec::new();
+    for file in sources() {
+        if file.path == "common/numeric/src/lanes/dispatch.rs" {
+            let lines: Vec<&str> = file.text.lines().collect();
+            for (number, line) in lines.iter().enumerate() {
+                if code(line).contains("unsafe") {
+                    let above = lines[number.saturating_sub(5)..number].join("\n");
+                    if !above.contains("// SAFETY:") {
+                        offences.push(format!("{}:{}: no `// SAFETY:`", file.path, number + 1));
+                    }
+                }
+            }
+            continue;
+        }
+        for use_of in uses(&file, &["unsafe "]) {
+            offences.push(use_of);
+        }
+        let begins_a_crate =
+            file.path.ends_with("src/lib.rs") || file.path.ends_with("src/main.rs");
+        if begins_a_crate
+            && file.path != "common/numeric/src/lib.rs"
+            && !file.text.contains("#![forbid(unsafe_code)]")
+        {
+            offences.push(format!("{} does not forbid unsafe code", file.path));
+        }
+    }
+    check(offences);
+}
+
+#[test]
+fn only_the_edges_know_protobuf() {
+    let edges = [
+        "common/protocol/",
+        "coordinator/src/api/",
+        "coordinator/src/client/",
+        "coordinator/src/intake.rs",
+        "coordinator/src/server.rs",
+        "coordinator/src/service/",
+        "coordinator/src/transport/",
+        "coordinator/tests/",
+        "tests/",
+        "worker/src/transport/",
+    ];
+    let mut offences = Vec::new();
+    for file in sources() {
+        if !edges.iter().any(|edge| file.path.starts_with(edge)) {
+            let names = [
+                "tonic::",
+                "prost::",
+                "cognate_protocol::v1",
+                "use tonic",
+                "use prost",
+            ];
+            offences.extend(uses(&file, &names));
+        }
+    }
+    check(offences);
+}
+
+#[test]
+fn mathematics_knows_no_clock_no_file_no_thread() {
+    let mut offences = Vec::new();
+    for file in sources() {
+        let is_mathematics = file.path.starts_with("common/") && file.path.contains("/src/");
+        if is_mathematics {
+            // What stands below `mod tests` is not the mathematics.
+            let text = file
+                .text
+                .split("#[cfg(test)]\nmod ")
+                .next()
+                .unwrap_or_default();
+            let file = File {
+                path: file.path,
+                text: text.to_owned(),
+            };
+            let names = [
+                "Instant::now",
+                "SystemTime",
+                "std::fs",
+                "File::open",
+                "std::net",
+                "thread::",
+                "println!",
+                "eprintln!",
+                "tracing::",
+                "rayon::",
+                "tokio::",
+                "use rand",
+            ];
+            offences.extend(uses(&file, &names));
+        }
+    }
+    check(offences);
+}
+
+#[test]
+fn nothing_is_a_stub() {
+    let names = ["todo!(", "unimplemented!(", "dbg!(", "#[ignore]"];
+    check(
+        sources()
+            .iter()
+            .flat_map(|file| uses(file, &names))
+            .collect(),
+    );
+}
+
+/// The crates of the workspace by folder, each with the crates of the house that it depends on.
+fn crates() -> BTreeMap<String, BTreeSet<String>> {
+    let manifests = files("Cargo.toml").into_iter();
+    let crates: BTreeMap<_, _> = manifests
+        .map(|file| {
+            let folder = file.path.trim_end_matches("/Cargo.toml").to_owned();
+            let mut section = String::new();
+            let mut dependencies = BTreeSet::new();
+            for line in file.text.lines() {
+                if line.starts_with('[') {
+                    section = line.trim().to_owned();
+                } else if section == "[dependencies]"
+                    && let Some(rest) = line.strip_prefix("cognate-")
+                {
+                    let name = rest.split(['.', ' ', '=']).next().unwrap_or_default();
+                    dependencies.insert(name.to_owned());
+                }
+            }
+            (folder, dependencies)
+        })
+        .collect();
+    assert!(crates.len() >= 8, "{:?}", crates.keys());
+    crates
+}
+
+fn short_name(folder: &str) -> &str {
+    folder.rsplit('/').next().unwrap_or(folder)
+}
+
+fn readme() -> String {
+    std::fs::read_to_string(root().join("README.md")).expect("there is a README.md")
+}
+
+/// The text under a heading, up to the next heading of the same or a higher level.
+fn section<'a>(readme: &'a str, heading: &str) -> &'a str {
+    let start = readme.find(&format!("\n{heading}\n"));
+    let start = start.unwrap_or_else(|| panic!("README.md has no `{heading}`")) + 1;
+    let text = &readme[start + heading.len()..];
+    let level = heading.chars().take_while(|c| *c == '#').count();
+    let mut end = text.len();
+    for next in 1..=level {
+        if let Some(found) = text.find(&format!("\n{} ", "#".repeat(next))) {
+            end = end.min(found);
+        }
+    }
+    &text[..end]
+}
+
+/// The order of the house: the line of the drawing that begins with `numeric`, then the coordinator
+/// and the tests.
+fn drawn_order(readme: &str) -> Vec<String> {
+    let line = readme
+        .lines()
+        .find(|line| line.trim_start().starts_with("numeric ◄"))
+        .expect("README.md has the drawing, a line `numeric ◄ systems ◄ ...`");
+    let mut order: Vec<String> = line.split('◄').map(|name| name.trim().to_owned()).collect();
+    order.extend(["coordinator".to_owned(), "tests".to_owned()]);
+    order
+}
+
+#[test]
+fn the_drawing_is_the_order_of_dependencies() {
+    let order = drawn_order(&readme());
+    let place = |name: &str| order.iter().position(|drawn| drawn == name);
+    let mut offences = Vec::new();
+    for (folder, dependencies) in crates() {
+        let name = short_name(&folder);
+        let Some(own) = place(name) else {
+            offences.push(format!("{name} is not in the drawing"));
+            continue;
+        };
+        for dependency in dependencies {
+            if place(&dependency).is_none_or(|other| other >= own) {
+                offences.push(format!(
+                    "{name} depends on {dependency}, which the drawing puts after it"
+                ));
+            }
+        }
+    }
+    check(offences);
+}
+
+#[test]
+fn the_mathematics_builds_without_wire_and_runtime() {
+    let mut offences = Vec::new();
+    for file in files("Cargo.toml") {
+        let is_mathematics = file.path.starts_with("common/") && !file.path.contains("protocol");
+        for name in ["tonic", "prost", "tokio", "rayon", "tracing", "sqlx"] {
+            let has = file.text.lines().any(|line| line.starts_with(name));
+            if is_mathematics && has {
+                offences.push(format!("{} names {name}", file.path));
+            }
+        }
+        let mut section = "";
+        for line in file.text.lines() {
+            if line.starts_with('[') {
+                section = line;
+            } else if section.ends_with("dependencies]")
+                && line.contains('=')
+                && !line.contains("workspace = true")
+            {
+                let path = &file.path;
+                offences.push(format!(
+                    "{path}: `{line}` has a version of its own; the list is in Cargo.toml"
+                ));
+            }
+        }
+    }
+    check(offences);
+}
+
+/// What the code map names: the first word of every line of its code blocks.
+fn mapped(readme: &str) -> BTreeSet<String> {
+    let map = section(readme, "## Code map");
+    let mut paths = BTreeSet::new();
+    let mut in_block = false;
+    for line in map.lines() {
+        if line.starts_with("```") {
+            in_block = !in_block;
+        } else if in_block && !line.trim().is_empty() {
+            let path = line.split_whitespace().next().unwrap_or_default();
+            paths.insert(path.trim_end_matches('/').to_owned());
+        }
+    }
+    assert!(!paths.is_empty(), "README's code map names nothing");
+    paths
+}
+
+#[test]
+fn the_code_map_names_what_is_there() {
+    let missing = mapped(&readme())
+        .into_iter()
+        .filter(|path| !root().join(path).exists());
+    check(
+        missing
+            .map(|path| format!("README's code map names {path}, which is not there"))
+            .collect(),
+    );
+}
+
+#[test]
+fn what_is_there_is_in_the_code_map() {
+    let mapped = mapped(&readme());
+    let is_mapped = |path: &str| {
+        let stem = path.trim_end_matches("/mod.rs").trim_end_matches(".rs");
+        mapped
+            .iter()
+            .any(|m| m == path || m.trim_end_matches("/mod.rs").trim_end_matches(".rs") == stem)
+    };
+    let mut offences = BTreeSet::new();
+    for folder in crates().keys() {
+        let below = format!("{folder}/");
+        if !mapped.contains(folder) && !mapped.iter().any(|path| path.starts_with(&below)) {
+            offences.insert(format!("the crate {folder} is not in README's code map"));
+        }
+    }
+    for file in sources() {
+        // A module directly below a crate's src/ is a noun of the crate: it must be on the map.
+        let Some((krate, inside)) = file.path.split_once("/src/") else {
+            continue;
+        };
+        let noun = inside.split('/').next().unwrap_or(inside);
+        let place = format!("{krate}/src/{noun}");
+        let is_table_of_contents = matches!(noun, "lib.rs" | "main.rs" | "bin");
+        if !is_table_of_contents && !is_mapped(&place) {
+            offences.insert(format!("{place} is not in README's code map"));
+        }
+    }
+    check(offences.into_iter().collect());
+}
+
+#[test]
+fn code_is_told_from_comments_and_quotes() {
+    assert_eq!(code("let a = 1; // todo!()"), "let a = 1; //");
+    assert!(!code(r#"panic!("no unsafe here: \" unsafe");"#).contains("unsafe"));
+    assert!(code("unsafe { x() }").contains("unsafe "));
+}
