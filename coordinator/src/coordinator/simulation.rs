@@ -277,11 +277,13 @@ impl Cluster {
     }
 
     async fn prepare(&self, lease: &Lease) -> Arc<PreparedStage> {
-        let known = self.prepared.lock().expect("nobody panics here");
-        if let Some(stage) = known.get(&lease.definition) {
-            return Arc::clone(stage);
+        let known = {
+            let prepared = self.prepared.lock().expect("nobody panics here");
+            prepared.get(&lease.definition).map(Arc::clone)
+        };
+        if let Some(stage) = known {
+            return stage;
         }
-        drop(known);
         let system: System = self
             .store
             .problem(lease.problem)

@@ -104,7 +104,7 @@ impl<B: Real<Context = (), Control = B>> Real for DoubleDouble<B> {
     fn from_rational(_: (), value: &Rational) -> Self {
         let hi = super::double::nearest_double(value);
         let rest = match Rational::from_f64(hi) {
-            Some(hi) => Rational::from(value - hi),
+            Some(hi) => value - hi,
             None => Rational::new(),
         };
         Self {
