@@ -39,14 +39,21 @@ fn phc(input: &Path, folder: &Path) -> Result<f64, String> {
     let output = Command::new("bash")
         .arg("-c")
         .arg("TIMEFORMAT='%U %S'; time phc -b -0 \"$1\" \"$2\" >/dev/null 2>/dev/null")
-        .args(["bash", &copy.to_string_lossy(), &folder.join("phc_output").to_string_lossy()])
+        .args([
+            "bash",
+            &copy.to_string_lossy(),
+            &folder.join("phc_output").to_string_lossy(),
+        ])
         .output()
         .map_err(|error| error.to_string())?;
     if !output.status.success() {
         return Err("phc is not installed or failed".into());
     }
     let text = String::from_utf8_lossy(&output.stderr);
-    let times: Vec<f64> = text.split_whitespace().filter_map(|t| t.parse().ok()).collect();
+    let times: Vec<f64> = text
+        .split_whitespace()
+        .filter_map(|t| t.parse().ok())
+        .collect();
     match times[..] {
         [user, system] => Ok(user + system),
         _ => Err(format!("no times in {text:?}")),
@@ -59,7 +66,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("system            paths  distinct  tracking CPU s  paths/s   phc -b CPU s   ratio");
     for (name, file) in [
         ("katsura-10", "deploy/examples/katsura_10.bertini"),
-        ("Stewart-Gough", "tests/systems/stewart_gough_dietmaier/system.bertini"),
+        (
+            "Stewart-Gough",
+            "tests/systems/stewart_gough_dietmaier/system.bertini",
+        ),
         ("noon-5", "deploy/examples/noon_5.bertini"),
         ("cyclic-5", "deploy/examples/cyclic_5.bertini"),
     ] {
@@ -72,7 +82,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut best = f64::INFINITY;
         let mut counts = (0, 0, 0);
         for seed in 1..=3 {
-            let options = PlanOptions { seed, ..PlanOptions::default() };
+            let options = PlanOptions {
+                seed,
+                ..PlanOptions::default()
+            };
             let mut plan = plan(&system, &options)?;
             let before = cpu_seconds().ok_or("no /proc/thread-self/schedstat here")?;
             let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 16)?;
