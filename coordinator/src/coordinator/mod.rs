@@ -175,7 +175,7 @@ impl Coordinator {
             seed: options.seed.unwrap_or_default(),
             first_state: self
                 .store
-                .put_record(&STATE, &plan.algorithm.snapshot())
+                .put_record(&STATE, plan.algorithm.snapshot())
                 .await?,
             warnings: warnings.clone(),
         };

@@ -279,7 +279,7 @@ impl Cluster {
     async fn prepare(&self, lease: &Lease) -> Arc<PreparedStage> {
         let known = {
             let prepared = self.prepared.lock().expect("nobody panics here");
-            prepared.get(&lease.definition).map(Arc::clone)
+            prepared.get(&lease.definition).cloned()
         };
         if let Some(stage) = known {
             return stage;

@@ -18,6 +18,7 @@ use cognate_continuation::work::StageId;
 use futures::{StreamExt, TryStreamExt};
 use std::sync::Arc;
 
+const HERE: &str = "the steward is back before the step ends";
 /// Result objects that are read at once.
 const READ_AHEAD: usize = 8;
 /// Chunk rows that are read at once.
@@ -78,12 +79,14 @@ pub enum Driven {
     Ended,
 }
 
-/// A job that this coordinator drives.
+/// A job that this coordinator drives. After an error it is dropped: its state may be ahead of
+/// what is written, and is read again.
 pub struct Drive {
     job: JobId,
     epoch: Epoch,
     planned: Planned,
-    steward: Steward,
+    /// Away only while it works on another thread.
+    steward: Option<Steward>,
     /// Nothing was opened yet, or the algorithm is done and the job must be ended.
     pending: Option<Wanted>,
 }
@@ -138,7 +141,7 @@ impl Drive {
             job,
             epoch,
             planned,
-            steward,
+            steward: Some(steward),
             pending,
         })
     }
@@ -150,7 +153,26 @@ impl Drive {
 
     /// The steward with the job's state.
     pub fn steward(&self) -> &Steward {
-        &self.steward
+        self.steward.as_ref().expect(HERE)
+    }
+
+    /// Lets the steward work, where it holds nobody up.
+    async fn at_work<T: Send + 'static>(
+        &mut self,
+        work: impl FnOnce(&mut Steward) -> T + Send + 'static,
+    ) -> T {
+        let mut steward = self.steward.take().expect(HERE);
+        let working = tokio::task::spawn_blocking(move || {
+            let value = work(&mut steward);
+            (steward, value)
+        });
+        match working.await {
+            Ok((steward, value)) => {
+                self.steward = Some(steward);
+                value
+            }
+            Err(error) => std::panic::resume_unwind(error.into_panic()),
+        }
     }
 
     /// Keeps the right to drive; false once it is lost.
@@ -182,11 +204,7 @@ impl Drive {
 
     async fn try_step(&mut self, tools: &Tools<'_>) -> Result<Driven, DriveError> {
         if let Some(wanted) = self.pending.take() {
-            let went = self.carry_out(tools, &[], &wanted).await;
-            if went.is_err() {
-                self.pending = Some(wanted);
-            }
-            return went;
+            return self.carry_out(tools, &[], &wanted).await;
         }
         let stages = tools.ledger.stages(self.job).await?;
         // Asked after the stages were read: if the job is still ours, nobody else moved them.
@@ -200,19 +218,10 @@ impl Drive {
         let stage = stage.stage;
         let results = self.results(tools, stage).await?;
         tracing::info!(job = %self.job, stage = stage.0, items = results.len(), "absorbing a stage");
-        // Absorbed on a copy: if a write fails, the step is made again from the state before it.
-        let mut next = self.steward.clone();
-        let (next, wanted) = off_thread(results.len() > 5000, move || {
-            let wanted = next.absorb(stage, results);
-            (next, wanted)
-        })
-        .await;
-        let before = std::mem::replace(&mut self.steward, next);
-        let went = self.carry_out(tools, &[stage], &wanted).await;
-        if went.is_err() {
-            self.steward = before;
-        }
-        went
+        let wanted = self
+            .at_work(move |steward| steward.absorb(stage, results))
+            .await;
+        self.carry_out(tools, &[stage], &wanted).await
     }
 
     /// Writes what the algorithm wants: objects, then one row.
@@ -238,8 +247,8 @@ impl Drive {
             });
         }
         if !step.close.is_empty() || !step.open.is_empty() {
-            let state = self.steward.snapshot();
-            step.snapshot = Some(tools.store.put_record(&STATE, &state).await?);
+            let state = self.at_work(|steward| steward.snapshot()).await;
+            step.snapshot = Some(tools.store.put_record(&STATE, state).await?);
             for stage in &step.open {
                 let (number, items) = (stage.stage.0, stage.items);
                 tracing::info!(job = %self.job, stage = number, items, "opening a stage");
@@ -265,17 +274,16 @@ impl Drive {
         Ok(Driven::Went)
     }
 
-    async fn finish(&self, tools: &Tools<'_>) -> Result<(), DriveError> {
+    async fn finish(&mut self, tools: &Tools<'_>) -> Result<(), DriveError> {
         let Tools { ledger, store, .. } = tools;
-        let steward = self.steward.clone();
-        let sets = off_thread(self.planned.paths > 5000, move || steward.solution_sets()).await;
+        let sets = self.at_work(|steward| steward.solution_sets()).await;
         let row = ledger.job(self.job).await?;
         let row = row.ok_or(LedgerError::UnknownJob(self.job))?;
         let stages = ledger.stages(self.job).await?;
         let workers = ledger.contributions(self.job).await?;
         let now = ledger.now().await?;
         let summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
-        let solutions = store.put_record(&summary::SOLUTIONS, &sets).await?;
+        let solutions = store.put_record(&summary::SOLUTIONS, sets).await?;
         let summary = store.put(summary.to_json().into()).await?;
         let end = JobEnd::Solved { solutions, summary };
         ledger.finish(self.job, self.epoch, end).await?;
@@ -357,16 +365,5 @@ impl Drive {
         } else {
             Driven::Went
         })
-    }
-}
-
-/// Runs long work where it holds nobody up.
-async fn off_thread<T: Send + 'static>(long: bool, work: impl FnOnce() -> T + Send + 'static) -> T {
-    if !long {
-        return work();
-    }
-    match tokio::task::spawn_blocking(work).await {
-        Ok(value) => value,
-        Err(error) => std::panic::resume_unwind(error.into_panic()),
     }
 }

@@ -167,40 +167,45 @@ impl Store {
     }
 
     /// Keeps what serde can write, compressed, with a name for its kind before it.
-    pub async fn put_record<T: Serialize>(
+    pub async fn put_record<T: Serialize + Send + 'static>(
         &self,
-        kind: &RecordKind,
-        value: &T,
+        kind: &'static RecordKind,
+        value: T,
     ) -> Result<Digest, StoreError> {
-        let plain = postcard::to_stdvec(value).expect("memory takes every byte");
-        let mut bytes = kind.0.to_vec();
-        bytes.extend_from_slice(&(plain.len() as u64).to_le_bytes());
-        let compressed =
-            zstd::bulk::compress(&plain, LEVEL).expect("memory takes whatever zstd writes");
-        bytes.extend_from_slice(&compressed);
-        self.put(bytes.into()).await
+        let bytes = off_thread(true, move || {
+            let plain = postcard::to_stdvec(&value).expect("memory takes every byte");
+            let mut bytes = kind.0.to_vec();
+            bytes.extend_from_slice(&(plain.len() as u64).to_le_bytes());
+            let compressed =
+                zstd::bulk::compress(&plain, LEVEL).expect("memory takes whatever zstd writes");
+            bytes.extend_from_slice(&compressed);
+            bytes
+        });
+        self.put(bytes.await.into()).await
     }
 
     /// Reads what [`Self::put_record`] kept.
-    pub async fn record<T: DeserializeOwned>(
+    pub async fn record<T: DeserializeOwned + Send + 'static>(
         &self,
-        kind: &RecordKind,
+        kind: &'static RecordKind,
         digest: Digest,
     ) -> Result<T, StoreError> {
         let bytes = self.get(digest).await?;
         let address = object_address(digest);
-        let (head, compressed) = bytes
-            .split_at_checked(16)
-            .filter(|(head, _)| head.starts_with(kind.0))
-            .ok_or_else(|| damaged(&address, "it is of another kind or version"))?;
-        let word = head[8..16].first_chunk::<8>();
-        let capacity = word
-            .map(|word| u64::from_le_bytes(*word))
-            .filter(|&length| length <= LONGEST_RECORDS)
-            .and_then(|length| usize::try_from(length).ok())
-            .ok_or_else(|| damaged(&address, "it claims to be absurdly long"))?;
-        let plain = decompress(&address, compressed, capacity)?;
-        postcard::from_bytes(&plain).map_err(|error| damaged(&address, error))
+        off_thread(true, move || {
+            let (head, compressed) = bytes
+                .split_at_checked(16)
+                .filter(|(head, _)| head.starts_with(kind.0))
+                .ok_or_else(|| damaged(&address, "it is of another kind or version"))?;
+            let word = head[8..16].first_chunk::<8>();
+            let length = word
+                .map(|word| u64::from_le_bytes(*word))
+                .and_then(|length| usize::try_from(length).ok())
+                .ok_or_else(|| damaged(&address, "it claims to be absurdly long"))?;
+            let plain = decompress(&address, compressed, length)?;
+            postcard::from_bytes(&plain).map_err(|error| damaged(&address, error))
+        })
+        .await
     }
 
     /// Keeps the results of a lease. Sent twice, they are kept once.

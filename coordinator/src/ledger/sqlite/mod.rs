@@ -4,6 +4,7 @@
 //! after it. Readers have connections of their own (WAL).
 
 mod decode;
+mod file_system;
 mod leases;
 mod stewardship;
 mod writer;
@@ -47,6 +48,10 @@ impl From<sqlx::Error> for LedgerError {
 impl SqliteLedger {
     /// Opens the ledger in this file, or makes it; brings an older one up to date.
     pub async fn open(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, LedgerError> {
+        if let Some(kind) = file_system::network_file_system(path) {
+            tracing::warn!(path = %path.display(), kind, "the ledger is on a network file system: \
+                SQLite's locks and syncs cannot be relied on there, put it on a local disk");
+        }
         let options = SqliteConnectOptions::new()
             .filename(path)
             .create_if_missing(true)
