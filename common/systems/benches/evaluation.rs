@@ -9,6 +9,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::named;
+use cognate_systems::straight_line_program::schedule::Scheduling;
 use mechanisms::{Plain, nine_points, platform};
 use std::time::Instant;
 
@@ -57,9 +58,9 @@ fn measure<R: Real<Context = ()>>(interpreter: &Interpreter) -> f64 {
     );
     let mut out = Matrix::zeros((), shape.equations, shape.variables + 2);
     let mut scratch = interpreter.scratch(());
-    let count = (40_000_000 / interpreter.flops() / R::WIDTH).max(1);
+    let count = (4_000_000 / interpreter.flops() / R::WIDTH).max(1);
     let mut best = f64::INFINITY;
-    for _ in 0..15 {
+    for _ in 0..400 {
         let job = Evaluations {
             interpreter,
             x: x.clone(),
@@ -98,44 +99,83 @@ fn main() {
         expressions: n.system.expressions,
         equations: n.system.equations,
     };
-    for (name, plain) in [
+    let systems = [
         ("nine-point", nine_points()),
         ("platform", platform()),
         ("katsura-10", from_named(named::katsura(10))),
         ("cyclic-7", from_named(named::cyclic(7))),
         ("noon-10", from_named(named::noon(10))),
-    ] {
-        let interpreter = Interpreter::compile(
-            &plain.expressions,
-            &plain.equations,
-            plain.variables,
-            plain.parameters,
-        );
-        let program = interpreter.linearize_program();
-        let times = [
-            measure::<f64>(&interpreter),
-            measure::<Lanes<1>>(&interpreter),
-            measure::<Lanes<8>>(&interpreter),
-            measure::<Lanes<16>>(&interpreter),
+    ];
+    let asked = |flag: &str| std::env::args().any(|a| a == flag);
+    let schedules = if asked("--schedules") {
+        let pairs = [
+            (1, 1),
+            (16, 16),
+            (32, 16),
+            (48, 16),
+            (64, 4),
+            (64, 8),
+            (64, 16),
+            (96, 16),
+            (128, 16),
+            (256, 16),
+            (1000, 64),
         ];
-        println!(
-            "{:<12} {:>7} {:>6} {:>6} {:>5} {:>7.1} | {:>8.1} {:>8.1} {:>8.1} {:>8.1} | {:>8.2}",
-            name,
-            program.instruction_count(),
-            program.flops(),
-            program.temporaries(),
-            program.runs().len(),
-            interpreter.scratch_bytes::<Lanes<16>>() as f64 / 1024.0,
-            times[0],
-            times[1],
-            times[2],
-            times[3],
-            interpreter.flops() as f64 / times[3],
-        );
-        if std::env::args().any(|a| a == "--operations") {
-            for operation in cognate_systems::straight_line_program::instruction::Operation::ALL {
-                println!("    {operation:?}: {}", program.count_of(operation));
-            }
+        pairs
+            .map(|(window, longest_run)| Scheduling {
+                window,
+                longest_run,
+            })
+            .into()
+    } else {
+        vec![Scheduling::default()]
+    };
+    for (name, plain) in &systems {
+        for &scheduling in &schedules {
+            line(name, plain, scheduling, asked("--operations"));
+        }
+    }
+}
+
+fn line(name: &str, plain: &Plain, scheduling: Scheduling, operations: bool) {
+    let interpreter = Interpreter::compile_with(
+        &plain.expressions,
+        &plain.equations,
+        plain.variables,
+        plain.parameters,
+        scheduling,
+    );
+    let program = interpreter.linearize_program();
+    let times = [
+        measure::<f64>(&interpreter),
+        measure::<Lanes<1>>(&interpreter),
+        measure::<Lanes<8>>(&interpreter),
+        measure::<Lanes<16>>(&interpreter),
+    ];
+    println!(
+        "{:<12} {:>4}/{:<2} {:>5} {:>6} {:>5} {:>5} {:>6.1} | {:>8.1} {:>8.1} {:>8.1} {:>8.1} | {:>8.2}",
+        name,
+        scheduling.window,
+        scheduling.longest_run,
+        program.instruction_count(),
+        program.flops(),
+        program.temporaries(),
+        program.runs().len(),
+        interpreter.scratch_bytes::<Lanes<16>>() as f64 / 1024.0,
+        times[0],
+        times[1],
+        times[2],
+        times[3],
+        interpreter.flops() as f64 / times[3],
+    );
+    if operations {
+        let mut counts = std::collections::BTreeMap::new();
+        for run in program.runs() {
+            let entry = counts.entry(run.operation).or_insert((0, 0));
+            *entry = (entry.0 + run.length, entry.1 + 1);
+        }
+        for (operation, (instructions, runs)) in counts {
+            println!("    {instructions:>4} in {runs:>3} runs: {operation:?}");
         }
     }
 }

@@ -66,6 +66,7 @@ impl<const W: usize> Real for Lanes<W> {
     type Context = ();
     type Mask = LaneMask<W>;
     type Control = Self;
+    type Single = f64;
     const WIDTH: usize = W;
 
     #[inline(always)]
@@ -130,6 +131,24 @@ impl<const W: usize> Real for Lanes<W> {
     fn mul_sub(&mut self, a: &Self, b: &Self) {
         for i in 0..W {
             self.0[i] = (-a.0[i]).mul_add(b.0[i], self.0[i]);
+        }
+    }
+    #[inline(always)]
+    fn mul_single(&mut self, c: &f64) {
+        for i in 0..W {
+            self.0[i] *= *c;
+        }
+    }
+    #[inline(always)]
+    fn mul_add_single(&mut self, c: &f64, a: &Self) {
+        for i in 0..W {
+            self.0[i] = c.mul_add(a.0[i], self.0[i]);
+        }
+    }
+    #[inline(always)]
+    fn mul_sub_single(&mut self, c: &f64, a: &Self) {
+        for i in 0..W {
+            self.0[i] = (-*c).mul_add(a.0[i], self.0[i]);
         }
     }
     #[inline(always)]

@@ -58,6 +58,23 @@ pub fn check<R: Real>(context: R::Context) {
             for lane in 0..R::WIDTH {
                 assert_eq!(lost.lane(lane), again.lane(lane), "{a} * {b}");
             }
+            // A constant for all lanes acts as itself in every lane.
+            let single = R::Single::from_f64(context, b);
+            each(&with(&|r| r.mul_single(&single)), a * b);
+            for sub in [false, true] {
+                let mut sum = R::from_f64(context, 0.3);
+                let mut expected = sum.clone();
+                if sub {
+                    sum.mul_sub_single(&single, &x);
+                    expected.mul_sub(&y, &x);
+                } else {
+                    sum.mul_add_single(&single, &x);
+                    expected.mul_add(&y, &x);
+                }
+                for lane in 0..R::WIDTH {
+                    assert_eq!(sum.lane(lane), expected.lane(lane), "{a} * {b}");
+                }
+            }
             assert_eq!(x.less(&y).lane(0), a < b);
             assert_eq!(x.less_equal(&y).lane(R::WIDTH - 1), a <= b);
             let mut chosen = x.clone();

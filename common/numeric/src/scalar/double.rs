@@ -44,6 +44,7 @@ impl Real for f64 {
     type Context = ();
     type Mask = bool;
     type Control = f64;
+    type Single = f64;
     const WIDTH: usize = 1;
 
     #[inline(always)]
@@ -97,6 +98,18 @@ impl Real for f64 {
     #[inline(always)]
     fn mul_sub(&mut self, a: &Self, b: &Self) {
         *self = (-*a).mul_add(*b, *self);
+    }
+    #[inline(always)]
+    fn mul_single(&mut self, c: &f64) {
+        *self *= *c;
+    }
+    #[inline(always)]
+    fn mul_add_single(&mut self, c: &f64, a: &Self) {
+        *self = c.mul_add(*a, *self);
+    }
+    #[inline(always)]
+    fn mul_sub_single(&mut self, c: &f64, a: &Self) {
+        *self = (-*c).mul_add(*a, *self);
     }
     #[inline(always)]
     fn neg(&mut self) {

@@ -47,6 +47,8 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
     type Mask: Mask;
     /// Norms, steps and t: doubles of the same width.
     type Control: Real<Mask = Self::Mask, Context = (), Control = Self::Control>;
+    /// One number for all lanes: a constant, broadcast where it is used.
+    type Single: Real<Context = Self::Context>;
     /// Number of lanes.
     const WIDTH: usize;
 
@@ -78,6 +80,12 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
     fn mul_add(&mut self, a: &Self, b: &Self);
     /// `self -= a*b` with one rounding.
     fn mul_sub(&mut self, a: &Self, b: &Self);
+    /// `self *= c`.
+    fn mul_single(&mut self, c: &Self::Single);
+    /// `self += c*a` with one rounding.
+    fn mul_add_single(&mut self, c: &Self::Single, a: &Self);
+    /// `self -= c*a` with one rounding.
+    fn mul_sub_single(&mut self, c: &Self::Single, a: &Self);
     /// `self = -self`.
     fn neg(&mut self);
     /// `self = |self|`.
@@ -264,18 +272,40 @@ impl<R: Real> Complex<R> {
         self.im.mul(r);
     }
 
-    /// `self += r*a` with `r` real.
+    /// `self = r*a` with `r` real.
     #[inline(always)]
-    pub fn scale_add(&mut self, r: &R, a: &Self) {
-        self.re.mul_add(r, &a.re);
-        self.im.mul_add(r, &a.im);
+    pub fn set_multiple(&mut self, r: &R::Single, a: &Self) {
+        self.set(a);
+        self.re.mul_single(r);
+        self.im.mul_single(r);
     }
 
-    /// `self -= r*a` with `r` real.
+    /// `self += r*a` with `r` real.
     #[inline(always)]
-    pub fn scale_sub(&mut self, r: &R, a: &Self) {
-        self.re.mul_sub(r, &a.re);
-        self.im.mul_sub(r, &a.im);
+    pub fn add_multiple(&mut self, r: &R::Single, a: &Self) {
+        self.re.mul_add_single(r, &a.re);
+        self.im.mul_add_single(r, &a.im);
+    }
+
+    /// `self = c*a`, rounded as [`Complex::set_product`].
+    #[inline(always)]
+    pub fn set_turned(&mut self, c: &Complex<R::Single>, a: &Self) {
+        self.re.set(&a.im);
+        self.re.mul_single(&c.im);
+        self.re.neg();
+        self.re.mul_add_single(&c.re, &a.re);
+        self.im.set(&a.re);
+        self.im.mul_single(&c.im);
+        self.im.mul_add_single(&c.re, &a.im);
+    }
+
+    /// `self += c*a`, rounded as [`Complex::mul_add`].
+    #[inline(always)]
+    pub fn add_turned(&mut self, c: &Complex<R::Single>, a: &Self) {
+        self.re.mul_add_single(&c.re, &a.re);
+        self.re.mul_sub_single(&c.im, &a.im);
+        self.im.mul_add_single(&c.re, &a.im);
+        self.im.mul_add_single(&c.im, &a.re);
     }
 
     /// `|self|^2`.

@@ -15,6 +15,7 @@ impl Real for MultiplePrecision {
     type Context = u32;
     type Mask = bool;
     type Control = f64;
+    type Single = Self;
     const WIDTH: usize = 1;
 
     fn from_f64(bits: u32, value: f64) -> Self {
@@ -59,6 +60,15 @@ impl Real for MultiplePrecision {
     }
     fn mul_sub(&mut self, a: &Self, b: &Self) {
         self.0 -= &a.0 * &b.0;
+    }
+    fn mul_single(&mut self, c: &Self) {
+        self.mul(c);
+    }
+    fn mul_add_single(&mut self, c: &Self, a: &Self) {
+        self.mul_add(c, a);
+    }
+    fn mul_sub_single(&mut self, c: &Self, a: &Self) {
+        self.mul_sub(c, a);
     }
     fn neg(&mut self) {
         self.0.neg_assign();

@@ -8,11 +8,11 @@ use super::{Evaluate, Shape};
 use crate::expression::{Expressions, NodeId};
 use crate::straight_line_program::compile::FlowGraph;
 use crate::straight_line_program::constant::ConstantPool;
-use crate::straight_line_program::instruction::{Assignment, Operation};
+use crate::straight_line_program::instruction::{Assignment, FREQUENT, Operand, Operation, Terms};
 use crate::straight_line_program::jacobian::{Sweep, linearization};
 use crate::straight_line_program::optimize::fuse;
-use crate::straight_line_program::schedule::schedule;
-use crate::straight_line_program::{Layout, StraightLineProgram, Target};
+use crate::straight_line_program::schedule::{Scheduling, schedule};
+use crate::straight_line_program::{Index, Layout, StraightLineProgram, Target};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};
 use std::sync::Arc;
@@ -28,7 +28,11 @@ pub struct Interpreter(Arc<Compiled>);
 #[derive(Debug)]
 struct Compiled {
     shape: Shape,
-    constants: ConstantPool,
+    pool: ConstantPool,
+    /// Constants of the pool that fill all lanes, in the order of the memory.
+    constants: Vec<u32>,
+    /// Constants of the pool that stand once for all lanes.
+    singles: Vec<u32>,
     linearize: StraightLineProgram,
     value: StraightLineProgram,
 }
@@ -37,7 +41,7 @@ struct Compiled {
 /// of rounding.
 pub(super) struct Assignments {
     pub shape: Shape,
-    pub constants: ConstantPool,
+    pub pool: ConstantPool,
     pub linearize: Vec<Assignment>,
     pub value: Vec<Assignment>,
 }
@@ -52,9 +56,9 @@ impl Assignments {
         parameters: usize,
     ) -> Self {
         let first_direction = u32::try_from(parameters).expect("fewer than 2^32 parameters");
-        let mut constants = ConstantPool::default();
-        let graph = FlowGraph::lower(expressions, equations, first_direction, &mut constants);
-        let value = fuse(&graph, &mut constants);
+        let mut pool = ConstantPool::default();
+        let graph = FlowGraph::lower(expressions, equations, first_direction, &mut pool);
+        let value = fuse(&graph, &mut pool);
         let sweeps = [
             (Sweep::Reverse, Sweep::Reverse),
             (Sweep::Reverse, Sweep::Forward),
@@ -67,9 +71,12 @@ impl Assignments {
             sweeps.len()
         };
         let cost = |assignments: &[Assignment]| -> usize {
-            assignments.iter().map(|a| a.operation.flops() + 1).sum()
+            assignments
+                .iter()
+                .map(|a| a.operation.flops() + 2 * a.operands.len() + 4)
+                .sum()
         };
-        let (linearize, constants) = sweeps[..tried]
+        let (linearize, pool) = sweeps[..tried]
             .iter()
             .map(|&(jacobian, along_path)| {
                 let all = linearization(
@@ -81,7 +88,7 @@ impl Assignments {
                     along_path,
                 );
                 // The pool of each attempt starts from that of the values.
-                let mut pool = constants.for_another_arena();
+                let mut pool = pool.for_another_arena();
                 let graph = FlowGraph::lower(&all.arena, &all.entries, first_direction, &mut pool);
                 let assignments = fuse(&graph, &mut pool);
                 (assignments, pool)
@@ -94,10 +101,38 @@ impl Assignments {
                 parameters,
                 equations: equations.len(),
             },
-            constants,
+            pool,
             linearize,
             value,
         }
+    }
+
+    /// Numbers the constants of one kind afresh, those that are used, from 0;
+    /// gives their numbers in the pool.
+    fn number_constants(
+        &mut self,
+        kind: fn(u32) -> Operand,
+        is_kind: fn(&Operand) -> Option<u32>,
+    ) -> Vec<u32> {
+        let programs = [&mut self.linearize, &mut self.value];
+        let used: std::collections::BTreeSet<u32> = programs
+            .iter()
+            .flat_map(|program| program.iter())
+            .flat_map(|assignment| &assignment.operands)
+            .filter_map(is_kind)
+            .collect();
+        let used: Vec<u32> = used.into_iter().collect();
+        for operand in programs
+            .into_iter()
+            .flatten()
+            .flat_map(|assignment| &mut assignment.operands)
+        {
+            if let Some(number) = is_kind(operand) {
+                let place = used.binary_search(&number).expect("collected above");
+                *operand = kind(u32::try_from(place).expect("fewer than 2^32 constants"));
+            }
+        }
+        used
     }
 }
 
@@ -110,19 +145,47 @@ impl Interpreter {
         variables: usize,
         parameters: usize,
     ) -> Self {
-        let assignments = Assignments::compile(expressions, equations, variables, parameters);
+        Self::compile_with(
+            expressions,
+            equations,
+            variables,
+            parameters,
+            Scheduling::default(),
+        )
+    }
+
+    /// The same with another way to form runs, to measure what runs bring. The
+    /// schedule does not change any result.
+    pub fn compile_with(
+        expressions: &Expressions,
+        equations: &[NodeId],
+        variables: usize,
+        parameters: usize,
+        scheduling: Scheduling,
+    ) -> Self {
+        let mut programs = Assignments::compile(expressions, equations, variables, parameters);
+        let constants = programs.number_constants(Operand::Constant, |operand| match operand {
+            Operand::Constant(c) => Some(*c),
+            _ => None,
+        });
+        let singles = programs.number_constants(Operand::Single, |operand| match operand {
+            Operand::Single(c) => Some(*c),
+            _ => None,
+        });
         let layout = Layout {
             variables,
             parameters,
-            constants: assignments.constants.constants().len(),
+            constants: constants.len(),
+            singles: singles.len(),
         };
-        let equations = equations.len();
-        let program = |list: &[Assignment], outputs| schedule(list, layout, outputs, WINDOW);
+        let entries = equations.len() * (variables + 2);
         Self(Arc::new(Compiled {
-            linearize: program(&assignments.linearize, equations * (variables + 2)),
-            value: program(&assignments.value, equations),
-            shape: assignments.shape,
-            constants: assignments.constants,
+            linearize: schedule(&programs.linearize, layout, entries, scheduling),
+            value: schedule(&programs.value, layout, equations.len(), scheduling),
+            shape: programs.shape,
+            pool: programs.pool,
+            constants,
+            singles,
         }))
     }
 
@@ -149,16 +212,15 @@ impl Interpreter {
     /// Bytes of scratch space, of which most is used in every call.
     pub fn scratch_bytes<R: Real>(&self) -> usize {
         self.0.linearize.memory().max(self.0.value.memory()) * size_of::<Complex<R>>()
+            + self.0.singles.len() * size_of::<Complex<R::Single>>()
     }
 }
 
-/// How far ahead the scheduler looks (`benches/evaluation.rs` has the figures).
-const WINDOW: usize = 128;
-
 /// Work space of an [`Interpreter`]: inputs, constants, temporaries.
 #[derive(Debug)]
-pub struct Scratch<R> {
+pub struct Scratch<R: Real> {
     memory: Vec<Complex<R>>,
+    singles: Vec<Complex<R::Single>>,
     /// Results are formed here before they are written, since a result may
     /// replace an operand. Lanes keep it in registers.
     result: Option<Complex<R>>,
@@ -176,11 +238,14 @@ impl<R: Real> Evaluate<R> for Interpreter {
         let layout = program.layout();
         let length = program.memory().max(self.0.value.memory());
         let mut memory = vec![Complex::zero(context); length];
-        let constants = layout.temporaries() - layout.constants;
-        memory[constants..layout.temporaries()]
-            .clone_from_slice(&self.0.constants.round::<R>(context));
+        let first = layout.temporaries() - layout.constants;
+        for (slot, &constant) in memory[first..].iter_mut().zip(&self.0.constants) {
+            *slot = self.0.pool.round(constant, context);
+        }
+        let round = |&constant| self.0.pool.round(constant, context);
         Scratch {
             memory,
+            singles: self.0.singles.iter().map(round).collect(),
             result: Some(Complex::zero(context)),
         }
     }
@@ -235,98 +300,106 @@ fn load<R: Real>(memory: &mut [Complex<R>], from: &[Complex<R>], start: usize, l
 fn execute<R: Real>(program: &StraightLineProgram, s: &mut Scratch<R>, out: &mut [Complex<R>]) {
     let mut result = s.result.take().expect("the result is put back below");
     let memory = &mut s.memory[..program.memory()];
+    let singles = s.singles.as_slice();
     let out = &mut out[..program.outputs()];
-    let operands = program.operands();
-    let (mut unary, mut binary) = (operands.unary.as_slice(), operands.binary.as_slice());
-    let (mut ternary, mut quaternary) =
-        (operands.ternary.as_slice(), operands.quaternary.as_slice());
-    // One arm for each operation and target; `$m` is the memory, the names are
-    // operands, the body leaves the value in `$r`.
-    macro_rules! run {
-        ($list:ident, $run:ident, |$r:ident $(, $name:ident)+| $body:expr) => {{
-            let (now, later) = $list.split_at($run.length as usize);
-            $list = later;
-            match $run.target {
-                Target::Memory => {
-                    for &[target $(, $name)+] in now {
-                        {
-                            let $r = &mut result;
-                            $(let $name = &memory[$name as usize];)+
-                            $body;
-                        }
-                        memory[target as usize].set(&result);
-                    }
-                }
-                Target::Output => {
-                    for &[target $(, $name)+] in now {
-                        {
-                            let $r = &mut result;
-                            $(let $name = &memory[$name as usize];)+
-                            $body;
-                        }
-                        out[target as usize].set(&result);
-                    }
-                }
-            }
-        }};
-    }
+    let mut code = program.code();
     for run in program.runs() {
-        match run.operation {
-            Operation::Copy => run!(unary, run, |r, a| r.set(a)),
-            Operation::Negate => run!(unary, run, |r, a| {
-                r.set(a);
-                r.neg();
-            }),
-            Operation::Square => run!(unary, run, |r, a| r.set_square(a)),
-            Operation::Inverse => run!(unary, run, |r, a| *r = a.inverse()),
-            Operation::Add => run!(binary, run, |r, a, b| {
-                r.set(a);
-                r.add(b);
-            }),
-            Operation::Subtract => run!(binary, run, |r, a, b| {
-                r.set(a);
-                r.sub(b);
-            }),
-            Operation::Multiply => run!(binary, run, |r, a, b| r.set_product(a, b)),
-            Operation::Scale => run!(binary, run, |r, a, b| {
-                r.set(b);
-                r.scale(&a.re);
-            }),
-            Operation::MultiplyAdd => run!(ternary, run, |r, a, b, c| {
-                r.set(c);
-                r.mul_add(a, b);
-            }),
-            Operation::MultiplySubtract => run!(ternary, run, |r, a, b, c| {
-                r.set(c);
-                r.neg();
-                r.mul_add(a, b);
-            }),
-            Operation::SubtractProduct => run!(ternary, run, |r, a, b, c| {
-                r.set(c);
-                r.mul_sub(a, b);
-            }),
-            Operation::ScaleAdd => run!(ternary, run, |r, a, b, c| {
-                r.set(c);
-                r.scale_add(&a.re, b);
-            }),
-            Operation::ScaleSubtract => run!(ternary, run, |r, a, b, c| {
-                r.set(c);
-                r.neg();
-                r.scale_add(&a.re, b);
-            }),
-            Operation::SubtractScaled => run!(ternary, run, |r, a, b, c| {
-                r.set(c);
-                r.scale_sub(&a.re, b);
-            }),
-            Operation::ProductSum => run!(quaternary, run, |r, a, b, c, d| {
-                r.set_product(c, d);
-                r.mul_add(a, b);
-            }),
-            Operation::ProductDifference => run!(quaternary, run, |r, a, b, c, d| {
-                r.set_product(a, b);
-                r.mul_sub(c, d);
-            }),
+        let (now, later) = code.split_at(run.stride() * run.length as usize);
+        code = later;
+        // Stride and terms are known in most arms, and the loops over the terms
+        // of a sum then unroll.
+        macro_rules! each {
+            ($stride:expr, |$operands:ident| $body:expr) => {
+                for instruction in now.chunks_exact($stride) {
+                    let (target, $operands) = (instruction[0] as usize, &instruction[1..]);
+                    $body;
+                    match run.target {
+                        Target::Memory => memory[target].set(&result),
+                        Target::Output => out[target].set(&result),
+                    }
+                }
+            };
         }
+        macro_rules! arms {
+            ($($arm:literal)+) => {
+                match (run.arm, run.operation) {
+                    $(
+                        ($arm, _) => each!(const { 1 + FREQUENT[$arm].operands() }, |operands| {
+                            sum(const { FREQUENT[$arm] }, operands, memory, singles, &mut result)
+                        }),
+                    )+
+                    (_, Operation::Sum(terms)) => each!(run.stride(), |operands| {
+                        sum(terms, operands, memory, singles, &mut result)
+                    }),
+                    (_, Operation::Square) => {
+                        each!(2, |a| result.set_square(&memory[a[0] as usize]))
+                    }
+                    (_, Operation::Inverse) => {
+                        each!(2, |a| result = memory[a[0] as usize].inverse())
+                    }
+                }
+            };
+        }
+        const { assert!(FREQUENT.len() == 20, "each frequent sum has its arm") };
+        arms!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19);
     }
     s.result = Some(result);
+}
+
+/// One sum; see [`Terms`] for the order.
+#[inline(always)]
+fn sum<R: Real>(
+    terms: Terms,
+    operands: &[Index],
+    memory: &[Complex<R>],
+    singles: &[Complex<R::Single>],
+    result: &mut Complex<R>,
+) {
+    let (mut plus, rest) = operands.split_at(terms.plus as usize);
+    let (mut minus, rest) = rest.split_at(terms.minus as usize);
+    let (mut scaled, rest) = rest.split_at(2 * terms.scaled as usize);
+    let (mut turned, rest) = rest.split_at(2 * terms.turned as usize);
+    let (mut products, rest) = rest.split_at(2 * terms.products as usize);
+    let mut negatives = &rest[..2 * terms.negatives as usize];
+    let at = |index: Index| &memory[index as usize];
+    let constant = |index: Index| &singles[index as usize];
+    if terms.plus > 0 {
+        result.set(at(plus[0]));
+        plus = &plus[1..];
+    } else if terms.minus > 0 {
+        result.set(at(minus[0]));
+        result.neg();
+        minus = &minus[1..];
+    } else if terms.scaled > 0 {
+        result.set_multiple(&constant(scaled[0]).re, at(scaled[1]));
+        scaled = &scaled[2..];
+    } else if terms.turned > 0 {
+        result.set_turned(constant(turned[0]), at(turned[1]));
+        turned = &turned[2..];
+    } else if terms.products > 0 {
+        result.set_product(at(products[0]), at(products[1]));
+        products = &products[2..];
+    } else {
+        result.set_product(at(negatives[0]), at(negatives[1]));
+        result.neg();
+        negatives = &negatives[2..];
+    }
+    for &a in plus {
+        result.add(at(a));
+    }
+    for &a in minus {
+        result.sub(at(a));
+    }
+    for pair in scaled.chunks_exact(2) {
+        result.add_multiple(&constant(pair[0]).re, at(pair[1]));
+    }
+    for pair in turned.chunks_exact(2) {
+        result.add_turned(constant(pair[0]), at(pair[1]));
+    }
+    for pair in products.chunks_exact(2) {
+        result.mul_add(at(pair[0]), at(pair[1]));
+    }
+    for pair in negatives.chunks_exact(2) {
+        result.mul_sub(at(pair[0]), at(pair[1]));
+    }
 }

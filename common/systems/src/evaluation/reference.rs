@@ -32,7 +32,7 @@ impl Reference {
 }
 
 impl<R: Real> Evaluate<R> for Reference {
-    /// The constants, rounded.
+    /// All constants, rounded.
     type Scratch = Vec<Complex<R>>;
 
     fn shape(&self) -> Shape {
@@ -40,7 +40,10 @@ impl<R: Real> Evaluate<R> for Reference {
     }
 
     fn scratch(&self, context: R::Context) -> Vec<Complex<R>> {
-        self.0.constants.round(context)
+        let count = self.0.pool.constants().len() as u32;
+        (0..count)
+            .map(|constant| self.0.pool.round(constant, context))
+            .collect()
     }
 
     fn linearize(
@@ -76,13 +79,13 @@ fn evaluate<R: Real>(
     let mut values: Vec<Complex<R>> = Vec::with_capacity(assignments.len());
     for assignment in assignments {
         let operands: Vec<Complex<R>> = assignment
-            .used()
+            .operands
             .iter()
             .map(|operand| match *operand {
                 Operand::Variable(v) => x[v as usize].clone(),
                 Operand::Parameter(q) => p[q as usize].clone(),
                 Operand::Direction(q) => dp[q as usize].clone(),
-                Operand::Constant(c) => constants[c as usize].clone(),
+                Operand::Constant(c) | Operand::Single(c) => constants[c as usize].clone(),
                 Operand::Value(v) => values[v as usize].clone(),
             })
             .collect();
@@ -119,7 +122,22 @@ fn fused<R: Real>(a: &R, b: &R, c: &R) -> R {
     r
 }
 
-/// `c + a*b`: real parts first, then imaginary ones.
+fn minus<R: Real>(a: &Complex<R>) -> Complex<R> {
+    Complex {
+        re: negative(&a.re),
+        im: negative(&a.im),
+    }
+}
+
+/// `a*b`, the product of the imaginary part of a rounded first.
+fn multiply<R: Real>(a: &Complex<R>, b: &Complex<R>) -> Complex<R> {
+    Complex {
+        re: fused(&a.re, &b.re, &negative(&product(&a.im, &b.im))),
+        im: fused(&a.re, &b.im, &product(&a.im, &b.re)),
+    }
+}
+
+/// `c + a*b`, the real part of a first.
 fn add_product<R: Real>(c: &Complex<R>, a: &Complex<R>, b: &Complex<R>) -> Complex<R> {
     Complex {
         re: fused(&negative(&a.im), &b.im, &fused(&a.re, &b.re, &c.re)),
@@ -128,18 +146,7 @@ fn add_product<R: Real>(c: &Complex<R>, a: &Complex<R>, b: &Complex<R>) -> Compl
 }
 
 fn apply<R: Real>(operation: Operation, operands: &[Complex<R>]) -> Complex<R> {
-    let each = |f: &dyn Fn(&R) -> R, a: &Complex<R>| Complex {
-        re: f(&a.re),
-        im: f(&a.im),
-    };
-    let multiply = |a: &Complex<R>, b: &Complex<R>| Complex {
-        re: fused(&a.re, &b.re, &negative(&product(&a.im, &b.im))),
-        im: fused(&a.re, &b.im, &product(&a.im, &b.re)),
-    };
-    let minus = |a: &Complex<R>| each(&negative, a);
     match (operation, operands) {
-        (Operation::Copy, [a]) => a.clone(),
-        (Operation::Negate, [a]) => minus(a),
         (Operation::Square, [a]) => Complex {
             re: fused(&a.re, &a.re, &negative(&product(&a.im, &a.im))),
             im: product(&sum(&a.re, &a.re), &a.im),
@@ -152,33 +159,59 @@ fn apply<R: Real>(operation: Operation, operands: &[Complex<R>]) -> Complex<R> {
             inverse.im.div(&modulus);
             inverse
         }
-        (Operation::Add, [a, b]) => Complex {
-            re: sum(&a.re, &b.re),
-            im: sum(&a.im, &b.im),
-        },
-        (Operation::Subtract, [a, b]) => Complex {
-            re: sum(&a.re, &negative(&b.re)),
-            im: sum(&a.im, &negative(&b.im)),
-        },
-        (Operation::Multiply, [a, b]) => multiply(a, b),
-        (Operation::Scale, [a, b]) => each(&|x| product(&a.re, x), b),
-        (Operation::MultiplyAdd, [a, b, c]) => add_product(c, a, b),
-        (Operation::MultiplySubtract, [a, b, c]) => add_product(&minus(c), a, b),
-        (Operation::SubtractProduct, [a, b, c]) => add_product(c, &minus(a), b),
-        (Operation::ScaleAdd, [a, b, c]) => Complex {
-            re: fused(&a.re, &b.re, &c.re),
-            im: fused(&a.re, &b.im, &c.im),
-        },
-        (Operation::ScaleSubtract, [a, b, c]) => Complex {
-            re: fused(&a.re, &b.re, &negative(&c.re)),
-            im: fused(&a.re, &b.im, &negative(&c.im)),
-        },
-        (Operation::SubtractScaled, [a, b, c]) => Complex {
-            re: fused(&negative(&a.re), &b.re, &c.re),
-            im: fused(&negative(&a.re), &b.im, &c.im),
-        },
-        (Operation::ProductSum, [a, b, c, d]) => add_product(&multiply(c, d), a, b),
-        (Operation::ProductDifference, [a, b, c, d]) => add_product(&multiply(a, b), &minus(c), d),
-        _ => unreachable!("an assignment has as many operands as its operation"),
+        (Operation::Sum(terms), _) => {
+            let mut rest = operands.iter();
+            let mut next = || rest.next().expect("a sum has all its operands");
+            let mut total: Option<Complex<R>> = None;
+            for _ in 0..terms.plus {
+                let a = next();
+                total = Some(match total {
+                    None => a.clone(),
+                    Some(t) => Complex {
+                        re: sum(&t.re, &a.re),
+                        im: sum(&t.im, &a.im),
+                    },
+                });
+            }
+            for _ in 0..terms.minus {
+                let a = minus(next());
+                total = Some(match total {
+                    None => a,
+                    Some(t) => Complex {
+                        re: sum(&t.re, &a.re),
+                        im: sum(&t.im, &a.im),
+                    },
+                });
+            }
+            for _ in 0..terms.scaled {
+                let (r, a) = (&next().re, next());
+                total = Some(match total {
+                    None => Complex {
+                        re: product(r, &a.re),
+                        im: product(r, &a.im),
+                    },
+                    Some(t) => Complex {
+                        re: fused(r, &a.re, &t.re),
+                        im: fused(r, &a.im, &t.im),
+                    },
+                });
+            }
+            for _ in 0..u32::from(terms.turned) + u32::from(terms.products) {
+                let (a, b) = (next(), next());
+                total = Some(match total {
+                    None => multiply(a, b),
+                    Some(t) => add_product(&t, a, b),
+                });
+            }
+            for _ in 0..terms.negatives {
+                let (a, b) = (next(), next());
+                total = Some(match total {
+                    None => minus(&multiply(a, b)),
+                    Some(t) => add_product(&t, &minus(a), b),
+                });
+            }
+            total.expect("a sum has a term")
+        }
+        _ => unreachable!("a square and a reciprocal have one operand"),
     }
 }

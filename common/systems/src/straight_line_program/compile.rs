@@ -1,7 +1,7 @@
 //! From an expression graph to a flow graph: signs, constants and powers resolved.
 //!
 //! What comes in is the arena with the wanted expressions; what goes out knows
-//! only sums, differences, products, squares, real multiples and inverses of
+//! only sums, differences, products, squares, multiples and inverses of
 //! inputs and constants. Signs are carried outwards, so that a and -a are one
 //! value; powers of one base share their repeated products.
 
@@ -25,7 +25,7 @@ pub(crate) enum Flow {
     Multiply(u32, u32),
     /// Square.
     Square(u32),
-    /// A real constant times a value.
+    /// A constant times a value.
     Scale(u32, u32),
     /// Reciprocal.
     Inverse(u32),
@@ -225,43 +225,41 @@ impl FlowGraph {
             return Some(Signed { value, negative });
         }
         for (number, factor) in [(a, b), (b, a)] {
-            let Some(c) = self.exact(pool, number.value).cloned() else {
+            let Flow::Leaf(Operand::Constant(_)) = self.values[number.value as usize] else {
                 continue;
             };
-            if c.is_one() {
-                return Some(Signed {
-                    value: factor.value,
-                    negative,
-                });
-            }
-            if let Some(d) = self.exact(pool, factor.value) {
-                let product = c.multiply(d);
-                let constant = self.constant(pool, Constant::Exact(product));
-                return constant.map(|p| p.negate_if(negative));
-            }
-            if !c.is_real() {
-                break;
-            }
-            let mut number = number.value;
-            let mut factor = factor.value;
-            if let Flow::Scale(inner, value) = self.values[factor as usize]
-                && let Some(d) = self.exact(pool, inner)
-            {
-                let product = c.multiply(d);
-                number = self
-                    .constant(pool, Constant::Exact(product))
-                    .expect("a product of positive constants")
-                    .value;
-                factor = value;
-            }
-            if self
-                .exact(pool, number)
-                .is_some_and(ComplexRational::is_one)
-            {
-                return Some(Signed {
-                    value: factor,
-                    negative,
-                });
+            let (mut number, mut factor) = (number.value, factor.value);
+            let mut negative = negative;
+            // Exact constants that meet become one.
+            if let Some(c) = self.exact(pool, number).cloned() {
+                let (inner, rest) = match self.values[factor as usize] {
+                    Flow::Scale(inner, value) => (inner, Some(value)),
+                    _ => (factor, None),
+                };
+                if let Some(d) = self.exact(pool, inner) {
+                    let product = c.multiply(d);
+                    let constant = self.constant(pool, Constant::Exact(product))?;
+                    negative = negative != constant.negative;
+                    number = constant.value;
+                    match rest {
+                        None => {
+                            return Some(Signed {
+                                value: number,
+                                negative,
+                            });
+                        }
+                        Some(value) => factor = value,
+                    }
+                }
+                if self
+                    .exact(pool, number)
+                    .is_some_and(ComplexRational::is_one)
+                {
+                    return Some(Signed {
+                        value: factor,
+                        negative,
+                    });
+                }
             }
             let value = self.insert(Flow::Scale(number, factor));
             return Some(Signed { value, negative });
@@ -274,6 +272,12 @@ impl FlowGraph {
     fn inverse(&mut self, pool: &mut ConstantPool, a: Option<Signed>) -> Signed {
         // A denominator that cancels to 0 gives infinities, as division does.
         let a = a.unwrap_or_else(|| self.leaf(Operand::Constant(pool.zero())));
+        if let Flow::Leaf(Operand::Constant(c)) = self.values[a.value as usize]
+            && let Some(inverse) = pool.inverse(c)
+        {
+            let constant = self.leaf(Operand::Constant(inverse));
+            return constant.negate_if(a.negative);
+        }
         Signed {
             value: self.insert(Flow::Inverse(a.value)),
             negative: a.negative,

@@ -77,18 +77,45 @@ impl ConstantPool {
         }
     }
 
-    /// Every constant, rounded to nearest for this context.
-    pub fn round<R: Real>(&self, context: R::Context) -> Vec<Complex<R>> {
-        let bits = R::bits(context);
-        self.constants
-            .iter()
-            .map(|constant| match constant {
-                Constant::Exact(c) => Complex::from_rational(context, c),
-                Constant::Algebraic(id) => {
-                    Complex::from_rational(context, &algebraic(&self.arena, *id, bits))
-                }
-            })
-            .collect()
+    /// The number of the negative of a constant.
+    pub(crate) fn negative(&mut self, constant: u32) -> u32 {
+        let negative = match self.constants[constant as usize].clone() {
+            Constant::Exact(c) => Constant::Exact(c.negate()),
+            Constant::Algebraic(id) => Constant::Algebraic(self.arena.negate(id)),
+        };
+        self.insert(negative)
+    }
+
+    /// The number of the reciprocal of a constant; `None` for exactly 0.
+    pub(crate) fn inverse(&mut self, constant: u32) -> Option<u32> {
+        let one = ComplexRational::real(1);
+        let inverse = match self.constants[constant as usize].clone() {
+            Constant::Exact(c) => Constant::Exact(one.divide(&c)?),
+            Constant::Algebraic(id) => {
+                let one = self.arena.constant(one);
+                Constant::Algebraic(self.arena.divide(one, id))
+            }
+        };
+        Some(self.insert(inverse))
+    }
+
+    /// Whether a constant is real; for an algebraic one, to a thousand bits.
+    pub(crate) fn is_real(&self, constant: u32) -> bool {
+        match &self.constants[constant as usize] {
+            Constant::Exact(c) => c.is_real(),
+            Constant::Algebraic(id) => algebraic(&self.arena, *id, 53).is_real(),
+        }
+    }
+
+    /// A constant, rounded to nearest for this context.
+    pub fn round<R: Real>(&self, constant: u32, context: R::Context) -> Complex<R> {
+        match &self.constants[constant as usize] {
+            Constant::Exact(c) => Complex::from_rational(context, c),
+            Constant::Algebraic(id) => {
+                let value = algebraic(&self.arena, *id, R::bits(context));
+                Complex::from_rational(context, &value)
+            }
+        }
     }
 }
 
@@ -193,7 +220,7 @@ mod tests {
         let mut pool = ConstantPool::default();
         let described = pool.describe(&e, root);
         pool.insert(described);
-        let value = pool.round::<f64>(())[0].re;
+        let value = pool.round::<f64>(0, ()).re;
         let mut expected = 3.0;
         Real::sqrt(&mut expected);
         assert_eq!(value, expected);
@@ -201,7 +228,7 @@ mod tests {
         let pi = e.function(Function::Pi, zero);
         let described = pool.describe(&e, pi);
         pool.insert(described);
-        assert_eq!(pool.round::<f64>(())[1].re, std::f64::consts::PI);
+        assert_eq!(pool.round::<f64>(1, ()).re, std::f64::consts::PI);
     }
 
     #[test]

@@ -10,9 +10,9 @@ pub mod constant;
 pub mod instruction;
 pub mod jacobian;
 pub(crate) mod optimize;
-pub(crate) mod schedule;
+pub mod schedule;
 
-use instruction::Operation;
+use instruction::{FREQUENT, Operation};
 
 /// An address in memory or an entry of the output.
 pub type Index = u32;
@@ -24,8 +24,10 @@ pub struct Layout {
     pub variables: usize,
     /// Number of parameters, and of their derivatives along the path.
     pub parameters: usize,
-    /// Number of constants.
+    /// Number of constants that fill all lanes.
     pub constants: usize,
+    /// Number of constants that stand once for all lanes, outside the memory.
+    pub singles: usize,
 }
 
 impl Layout {
@@ -82,19 +84,30 @@ pub struct Run {
     pub target: Target,
     /// How many they are.
     pub length: u32,
+    /// Place of the operation in [`FREQUENT`], or the length of that list.
+    pub arm: u8,
 }
 
-/// Targets and operands of all instructions, by number of operands, in the order of the runs.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Operands {
-    /// Target, a.
-    pub unary: Vec<[Index; 2]>,
-    /// Target, a, b.
-    pub binary: Vec<[Index; 3]>,
-    /// Target, a, b, c.
-    pub ternary: Vec<[Index; 4]>,
-    /// Target, a, b, c, d.
-    pub quaternary: Vec<[Index; 5]>,
+impl Run {
+    /// A run of this operation.
+    pub fn new(operation: Operation, target: Target, length: usize) -> Self {
+        let arm = FREQUENT
+            .iter()
+            .position(|&terms| operation == Operation::Sum(terms))
+            .unwrap_or(FREQUENT.len());
+        Self {
+            operation,
+            target,
+            length: u32::try_from(length).expect("a run is shorter than 2^32"),
+            arm: arm as u8,
+        }
+    }
+
+    /// Words of code for each instruction: its target and its operands.
+    #[inline(always)]
+    pub fn stride(&self) -> usize {
+        1 + self.operation.operands()
+    }
 }
 
 /// A checked program.
@@ -104,12 +117,12 @@ pub struct StraightLineProgram {
     memory: usize,
     outputs: usize,
     runs: Vec<Run>,
-    operands: Operands,
+    code: Vec<Index>,
 }
 
 impl StraightLineProgram {
     /// Checks a program: every address is in the memory, only temporaries are
-    /// written, every output is written exactly once, runs and operands match.
+    /// written, every output is written exactly once, runs and code match.
     ///
     /// # Panics
     /// When it is not so; programs are made by the compiler, never read from outside.
@@ -118,27 +131,19 @@ impl StraightLineProgram {
         temporaries: usize,
         outputs: usize,
         runs: Vec<Run>,
-        operands: Operands,
+        code: Vec<Index>,
     ) -> Self {
         let memory = layout.temporaries() + temporaries;
-        let program = Self {
-            layout,
-            memory,
-            outputs,
-            runs,
-            operands,
-        };
-        let mut cursors = [0usize; 4];
         let mut written = vec![false; outputs];
-        for run in &program.runs {
-            let arity = run.operation.arity();
-            let start = cursors[arity - 1];
-            cursors[arity - 1] += run.length as usize;
-            for k in start..cursors[arity - 1] {
-                let instruction = program
-                    .operands
-                    .instruction(arity, k)
-                    .expect("a run is as long as its operands");
+        let mut rest = code.as_slice();
+        for run in &runs {
+            assert!(run.operation.operands() > 0, "a sum has a term");
+            let words = run.stride() * run.length as usize;
+            let (now, later) = rest
+                .split_at_checked(words)
+                .expect("a run is as long as its code");
+            rest = later;
+            for instruction in now.chunks_exact(run.stride()) {
                 let target = instruction[0] as usize;
                 match run.target {
                     Target::Memory => assert!(
@@ -150,22 +155,25 @@ impl StraightLineProgram {
                         "an output is written once"
                     ),
                 }
-                for &operand in &instruction[1..] {
-                    assert!((operand as usize) < memory, "an operand is in the memory");
+                for (k, &operand) in instruction[1..].iter().enumerate() {
+                    let room = if run.operation.takes_single(k) {
+                        layout.singles
+                    } else {
+                        memory
+                    };
+                    assert!((operand as usize) < room, "an operand is where it can be");
                 }
             }
         }
-        for arity in 1..=4 {
-            assert!(
-                program
-                    .operands
-                    .instruction(arity, cursors[arity - 1])
-                    .is_none(),
-                "every instruction is in a run"
-            );
-        }
+        assert!(rest.is_empty(), "every instruction is in a run");
         assert!(written.iter().all(|&w| w), "every output is written");
-        program
+        Self {
+            layout,
+            memory,
+            outputs,
+            runs,
+            code,
+        }
     }
 
     /// Where things stand in the memory.
@@ -174,6 +182,7 @@ impl StraightLineProgram {
     }
 
     /// Length of the memory: inputs, constants and temporaries.
+    #[inline(always)]
     pub fn memory(&self) -> usize {
         self.memory
     }
@@ -184,32 +193,26 @@ impl StraightLineProgram {
     }
 
     /// Number of entries of the output.
+    #[inline(always)]
     pub fn outputs(&self) -> usize {
         self.outputs
     }
 
     /// The runs, in order.
+    #[inline(always)]
     pub fn runs(&self) -> &[Run] {
         &self.runs
     }
 
-    /// Targets and operands.
-    pub fn operands(&self) -> &Operands {
-        &self.operands
+    /// Target and operands of every instruction, in the order of the runs.
+    #[inline(always)]
+    pub fn code(&self) -> &[Index] {
+        &self.code
     }
 
-    /// Number of instructions, copies included.
+    /// Number of instructions.
     pub fn instruction_count(&self) -> usize {
         self.runs.iter().map(|run| run.length as usize).sum()
-    }
-
-    /// Number of instructions of one operation.
-    pub fn count_of(&self, operation: Operation) -> usize {
-        self.runs
-            .iter()
-            .filter(|run| run.operation == operation)
-            .map(|run| run.length as usize)
-            .sum()
     }
 
     /// Real operations of one evaluation of one path (`Operation::flops`).
@@ -218,17 +221,5 @@ impl StraightLineProgram {
             .iter()
             .map(|run| run.length as usize * run.operation.flops())
             .sum()
-    }
-}
-
-impl Operands {
-    /// Target and operands of one instruction.
-    pub fn instruction(&self, arity: usize, k: usize) -> Option<&[Index]> {
-        match arity {
-            1 => self.unary.get(k).map(|i| &i[..]),
-            2 => self.binary.get(k).map(|i| &i[..]),
-            3 => self.ternary.get(k).map(|i| &i[..]),
-            _ => self.quaternary.get(k).map(|i| &i[..]),
-        }
     }
 }

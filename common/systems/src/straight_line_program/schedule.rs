@@ -9,20 +9,35 @@ use super::instruction::{Assignment, Operand, Operation};
 use super::{Index, Layout, Run, StraightLineProgram, Target};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Longest run that is formed while other operations wait: longer ones keep
-/// more alive and save nothing.
-const LONGEST_RUN: usize = 16;
+/// How runs are formed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scheduling {
+    /// How far ahead of the first waiting assignment one may be taken: further
+    /// makes longer runs and keeps more values alive.
+    pub window: usize,
+    /// Longest run that is formed while other operations wait.
+    pub longest_run: usize,
+}
+
+impl Default for Scheduling {
+    /// Best for lanes and near the best for single paths
+    /// (`benches/evaluation.rs` has the figures).
+    fn default() -> Self {
+        Self {
+            window: 96,
+            longest_run: 16,
+        }
+    }
+}
 
 /// Orders the assignments, gives them slots, and packs them.
-///
-/// `window` is how far ahead of the first waiting assignment one may be taken.
 pub(crate) fn schedule(
     assignments: &[Assignment],
     layout: Layout,
     outputs: usize,
-    window: usize,
+    scheduling: Scheduling,
 ) -> StraightLineProgram {
-    let runs = order_in_runs(assignments, window);
+    let runs = order_in_runs(assignments, scheduling);
     let (slots, place) = give_slots(assignments, &runs);
     let address = |operand: &Operand| -> Index {
         match *operand {
@@ -30,46 +45,38 @@ pub(crate) fn schedule(
             Operand::Parameter(p) => layout.parameter(p),
             Operand::Direction(p) => layout.direction(p),
             Operand::Constant(c) => layout.constant(c),
+            Operand::Single(c) => c,
             Operand::Value(v) => layout.temporary(place[v as usize]),
         }
     };
     let mut packed = Vec::new();
-    let mut operands = super::Operands::default();
+    let mut code = Vec::new();
     for run in &runs {
         let first = &assignments[run[0] as usize];
-        packed.push(Run {
-            operation: first.operation,
-            target: if first.output.is_some() {
-                Target::Output
-            } else {
-                Target::Memory
-            },
-            length: u32::try_from(run.len()).expect("runs are short"),
-        });
+        let target = if first.output.is_some() {
+            Target::Output
+        } else {
+            Target::Memory
+        };
+        packed.push(Run::new(first.operation, target, run.len()));
         for &number in run {
             let assignment = &assignments[number as usize];
-            let target = match assignment.output {
+            code.push(match assignment.output {
                 Some(entry) => entry,
                 None => layout.temporary(place[number as usize]),
-            };
-            let [a, b, c, d] = assignment.operands.each_ref().map(address);
-            match assignment.operation.arity() {
-                1 => operands.unary.push([target, a]),
-                2 => operands.binary.push([target, a, b]),
-                3 => operands.ternary.push([target, a, b, c]),
-                _ => operands.quaternary.push([target, a, b, c, d]),
-            }
+            });
+            code.extend(assignment.operands.iter().map(address));
         }
     }
-    StraightLineProgram::new(layout, slots, outputs, packed, operands)
+    StraightLineProgram::new(layout, slots, outputs, packed, code)
 }
 
 /// All assignments, in runs of equal operation and target.
-fn order_in_runs(assignments: &[Assignment], window: usize) -> Vec<Vec<u32>> {
+fn order_in_runs(assignments: &[Assignment], scheduling: Scheduling) -> Vec<Vec<u32>> {
     let mut waiting_for = vec![0u32; assignments.len()];
     let mut users: Vec<Vec<u32>> = vec![Vec::new(); assignments.len()];
     for (number, assignment) in assignments.iter().enumerate() {
-        for operand in assignment.used() {
+        for operand in &assignment.operands {
             if let Operand::Value(v) = operand {
                 waiting_for[number] += 1;
                 users[*v as usize].push(number as u32);
@@ -91,19 +98,20 @@ fn order_in_runs(assignments: &[Assignment], window: usize) -> Vec<Vec<u32>> {
     let mut first_waiting = 0usize;
     let mut runs = Vec::new();
     while first_waiting < assignments.len() {
-        let limit = u32::try_from(first_waiting + window).unwrap_or(u32::MAX);
+        let limit = first_waiting.saturating_add(scheduling.window.max(1));
+        let limit = u32::try_from(limit).unwrap_or(u32::MAX);
         let best = ready
             .iter()
             .filter(|(_, set)| set.first().is_some_and(|&first| first < limit))
             .max_by_key(|(_, set)| {
-                let count = set.range(..limit).take(LONGEST_RUN).count();
+                let count = set.range(..limit).take(scheduling.longest_run).count();
                 let first = set.first().copied().unwrap_or(u32::MAX);
                 (count, std::cmp::Reverse(first))
             })
             .map(|(&kind, _)| kind)
             .expect("the first waiting assignment is ready, since its operands stand before it");
         let mut run = Vec::new();
-        while run.len() < LONGEST_RUN {
+        while run.len() < scheduling.longest_run.max(1) {
             let set = ready.get_mut(&best).expect("chosen among the ready");
             let Some(&number) = set.first().filter(|&&first| first < limit) else {
                 break;
@@ -118,6 +126,9 @@ fn order_in_runs(assignments: &[Assignment], window: usize) -> Vec<Vec<u32>> {
                 }
             }
         }
+        if ready.get(&best).is_some_and(BTreeSet::is_empty) {
+            ready.remove(&best);
+        }
         runs.push(run);
         while done.get(first_waiting) == Some(&true) {
             first_waiting += 1;
@@ -130,7 +141,7 @@ fn order_in_runs(assignments: &[Assignment], window: usize) -> Vec<Vec<u32>> {
 fn give_slots(assignments: &[Assignment], runs: &[Vec<u32>]) -> (usize, Vec<u32>) {
     let mut remaining = vec![0u32; assignments.len()];
     for assignment in assignments {
-        for operand in assignment.used() {
+        for operand in &assignment.operands {
             if let Operand::Value(v) = operand {
                 remaining[*v as usize] += 1;
             }
@@ -142,7 +153,7 @@ fn give_slots(assignments: &[Assignment], runs: &[Vec<u32>]) -> (usize, Vec<u32>
     for &number in runs.iter().flatten() {
         let assignment = &assignments[number as usize];
         // An operation reads before it writes, so it may write over an operand.
-        for operand in assignment.used() {
+        for operand in &assignment.operands {
             if let Operand::Value(v) = operand {
                 remaining[*v as usize] -= 1;
                 if remaining[*v as usize] == 0 {
