@@ -6,20 +6,14 @@
 
 use super::{Evaluate, Shape};
 use crate::expression::{Expressions, NodeId};
-use crate::straight_line_program::compile::FlowGraph;
+use crate::straight_line_program::assignments::Assignments;
 use crate::straight_line_program::constant::ConstantPool;
-use crate::straight_line_program::instruction::{Assignment, FREQUENT, Operand, Operation, Terms};
-use crate::straight_line_program::jacobian::{Sweep, linearization};
-use crate::straight_line_program::optimize::fuse;
+use crate::straight_line_program::instruction::{FREQUENT, Operation, Terms};
 use crate::straight_line_program::schedule::{Scheduling, schedule};
 use crate::straight_line_program::{Index, Layout, StraightLineProgram, Target};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};
 use std::sync::Arc;
-
-/// Past this many nodes only one way to differentiate is tried: compiling
-/// should stay far below a second.
-const TRY_ALL_BELOW: usize = 20_000;
 
 /// A compiled system. Cloning shares the programs.
 #[derive(Clone, Debug)]
@@ -33,106 +27,26 @@ struct Compiled {
     constants: Vec<u32>,
     /// Constants of the pool that stand once for all lanes.
     singles: Vec<u32>,
+    wide: Programs,
+    /// The same for one path at a time.
+    narrow: Programs,
+}
+
+#[derive(Debug)]
+struct Programs {
     linearize: StraightLineProgram,
     value: StraightLineProgram,
 }
 
-/// Programs before they are scheduled: what they compute and in which order
-/// of rounding.
-pub(super) struct Assignments {
-    pub shape: Shape,
-    pub pool: ConstantPool,
-    pub linearize: Vec<Assignment>,
-    pub value: Vec<Assignment>,
-}
-
-impl Assignments {
-    /// Differentiates, lowers and fuses; of the ways to differentiate, the
-    /// one with the fewest real operations.
-    pub fn compile(
-        expressions: &Expressions,
-        equations: &[NodeId],
-        variables: usize,
-        parameters: usize,
-    ) -> Self {
-        let first_direction = u32::try_from(parameters).expect("fewer than 2^32 parameters");
-        let mut pool = ConstantPool::default();
-        let graph = FlowGraph::lower(expressions, equations, first_direction, &mut pool);
-        let value = fuse(&graph, &mut pool);
-        let sweeps = [
-            (Sweep::Reverse, Sweep::Reverse),
-            (Sweep::Reverse, Sweep::Forward),
-            (Sweep::Forward, Sweep::Reverse),
-            (Sweep::Forward, Sweep::Forward),
-        ];
-        let tried = if value.len() * variables.max(1) > TRY_ALL_BELOW {
-            1
+impl Compiled {
+    /// The programs for one type of number.
+    #[inline(always)]
+    fn programs<R: Real>(&self) -> &Programs {
+        if R::WIDTH == 1 {
+            &self.narrow
         } else {
-            sweeps.len()
-        };
-        let cost = |assignments: &[Assignment]| -> usize {
-            assignments
-                .iter()
-                .map(|a| a.operation.flops() + 2 * a.operands.len() + 4)
-                .sum()
-        };
-        let (linearize, pool) = sweeps[..tried]
-            .iter()
-            .map(|&(jacobian, along_path)| {
-                let all = linearization(
-                    expressions,
-                    equations,
-                    variables,
-                    parameters,
-                    jacobian,
-                    along_path,
-                );
-                // The pool of each attempt starts from that of the values.
-                let mut pool = pool.for_another_arena();
-                let graph = FlowGraph::lower(&all.arena, &all.entries, first_direction, &mut pool);
-                let assignments = fuse(&graph, &mut pool);
-                (assignments, pool)
-            })
-            .min_by_key(|(assignments, _)| cost(assignments))
-            .expect("at least one way to differentiate is tried");
-        Self {
-            shape: Shape {
-                variables,
-                parameters,
-                equations: equations.len(),
-            },
-            pool,
-            linearize,
-            value,
+            &self.wide
         }
-    }
-
-    /// Numbers the constants of one kind afresh, those that are used, from 0;
-    /// gives their numbers in the pool.
-    fn number_constants(
-        &mut self,
-        kind: fn(u32) -> Operand,
-        is_kind: fn(&Operand) -> Option<u32>,
-    ) -> Vec<u32> {
-        let programs = [&mut self.linearize, &mut self.value];
-        let used: std::collections::BTreeSet<u32> = programs
-            .iter()
-            .flat_map(|program| program.iter())
-            .flat_map(|assignment| &assignment.operands)
-            .filter_map(is_kind)
-            .collect();
-        let used: Vec<u32> = used.into_iter().collect();
-        for operand in programs
-            .into_iter()
-            .flatten()
-            .flat_map(|assignment| &mut assignment.operands)
-        {
-            if let Some(number) = is_kind(operand) {
-                let place = used.binary_search(&number).expect("collected above");
-                *operand = kind(u32::try_from(place).expect("fewer than 2^32 constants"));
-            }
-        }
-        used
     }
 }
 
@@ -163,15 +77,9 @@ impl Interpreter {
         parameters: usize,
         scheduling: Scheduling,
     ) -> Self {
-        let mut programs = Assignments::compile(expressions, equations, variables, parameters);
-        let constants = programs.number_constants(Operand::Constant, |operand| match operand {
-            Operand::Constant(c) => Some(*c),
-            _ => None,
-        });
-        let singles = programs.number_constants(Operand::Single, |operand| match operand {
-            Operand::Single(c) => Some(*c),
-            _ => None,
-        });
+        let mut assignments = Assignments::compile(expressions, equations, variables, parameters);
+        let constants = assignments.number_constants();
+        let singles = assignments.number_singles();
         let layout = Layout {
             variables,
             parameters,
@@ -179,11 +87,20 @@ impl Interpreter {
             singles: singles.len(),
         };
         let entries = equations.len() * (variables + 2);
+        let programs = |scheduling| Programs {
+            linearize: schedule(&assignments.linearize, layout, entries, scheduling),
+            value: schedule(&assignments.value, layout, equations.len(), scheduling),
+        };
         Self(Arc::new(Compiled {
-            linearize: schedule(&programs.linearize, layout, entries, scheduling),
-            value: schedule(&programs.value, layout, equations.len(), scheduling),
-            shape: programs.shape,
-            pool: programs.pool,
+            wide: programs(scheduling),
+            // A slot of one double is small, and a mispredicted jump costs
+            // more than an instruction: long runs before all.
+            narrow: programs(Scheduling {
+                window: scheduling.window.saturating_mul(16),
+                longest_run: scheduling.longest_run.saturating_mul(4),
+            }),
+            shape: assignments.shape,
+            pool: assignments.pool,
             constants,
             singles,
         }))
@@ -194,24 +111,25 @@ impl Interpreter {
         self.0.shape
     }
 
-    /// The program of `linearize`.
+    /// The program of `linearize` for lanes.
     pub fn linearize_program(&self) -> &StraightLineProgram {
-        &self.0.linearize
+        &self.0.wide.linearize
     }
 
-    /// The program of `value`.
+    /// The program of `value` for lanes.
     pub fn value_program(&self) -> &StraightLineProgram {
-        &self.0.value
+        &self.0.wide.value
     }
 
     /// Real operations of one `linearize` of one path.
     pub fn flops(&self) -> usize {
-        self.0.linearize.flops()
+        self.0.wide.linearize.flops()
     }
 
     /// Bytes of scratch space, of which most is used in every call.
     pub fn scratch_bytes<R: Real>(&self) -> usize {
-        self.0.linearize.memory().max(self.0.value.memory()) * size_of::<Complex<R>>()
+        let programs = self.0.programs::<R>();
+        programs.linearize.memory().max(programs.value.memory()) * size_of::<Complex<R>>()
             + self.0.singles.len() * size_of::<Complex<R::Single>>()
     }
 }
@@ -234,9 +152,9 @@ impl<R: Real> Evaluate<R> for Interpreter {
     }
 
     fn scratch(&self, context: R::Context) -> Scratch<R> {
-        let program = &self.0.linearize;
-        let layout = program.layout();
-        let length = program.memory().max(self.0.value.memory());
+        let programs = self.0.programs::<R>();
+        let layout = programs.linearize.layout();
+        let length = programs.linearize.memory().max(programs.value.memory());
         let mut memory = vec![Complex::zero(context); length];
         let first = layout.temporaries() - layout.constants;
         for (slot, &constant) in memory[first..].iter_mut().zip(&self.0.constants) {
@@ -268,7 +186,7 @@ impl<R: Real> Evaluate<R> for Interpreter {
         load(&mut s.memory, p, shape.variables, shape.parameters);
         let directions = shape.variables + shape.parameters;
         load(&mut s.memory, dp, directions, shape.parameters);
-        execute(&self.0.linearize, s, &mut out.entries);
+        execute(&self.0.programs::<R>().linearize, s, &mut out.entries);
     }
 
     #[inline(always)]
@@ -282,7 +200,7 @@ impl<R: Real> Evaluate<R> for Interpreter {
         let shape = &self.0.shape;
         load(&mut s.memory, x, 0, shape.variables);
         load(&mut s.memory, p, shape.variables, shape.parameters);
-        execute(&self.0.value, s, out);
+        execute(&self.0.programs::<R>().value, s, out);
     }
 }
 

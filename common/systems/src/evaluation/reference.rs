@@ -4,9 +4,9 @@
 //! rounding) and nothing after that: no schedule, no slots, no runs, none of
 //! the complex arithmetic. The interpreter must agree with it bit for bit.
 
-use super::interpreter::Assignments;
 use super::{Evaluate, Shape};
 use crate::expression::{Expressions, NodeId};
+use crate::straight_line_program::assignments::Assignments;
 use crate::straight_line_program::instruction::{Assignment, Operand, Operation};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};

@@ -70,6 +70,16 @@ pub(crate) struct FlowGraph {
     /// What the program has to give; `None` is 0.
     pub outputs: Vec<Option<Signed>>,
     index: HashMap<Flow, u32>,
+    association: Association,
+}
+
+/// How a product with a constant is bracketed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Association {
+    /// As it was written: (c*x)*y shares c*x with a derivative.
+    AsWritten,
+    /// Constants outermost: c*(x*y) shares x*y with other equations.
+    ConstantsOutside,
 }
 
 /// The first parameter that stands for a direction instead: parameters from
@@ -82,9 +92,11 @@ impl FlowGraph {
         expressions: &Expressions,
         wanted: &[NodeId],
         first_direction: FirstDirection,
+        association: Association,
         pool: &mut ConstantPool,
     ) -> Self {
         let mut graph = Self {
+            association,
             values: Vec::new(),
             outputs: Vec::new(),
             index: HashMap::new(),
@@ -263,6 +275,26 @@ impl FlowGraph {
             }
             let value = self.insert(Flow::Scale(number, factor));
             return Some(Signed { value, negative });
+        }
+        if self.association == Association::ConstantsOutside {
+            for (multiple, factor) in [(a, b), (b, a)] {
+                if let Flow::Scale(constant, rest) = self.values[multiple.value as usize] {
+                    let rest = Signed {
+                        value: rest,
+                        negative: false,
+                    };
+                    let constant = Signed {
+                        value: constant,
+                        negative,
+                    };
+                    let factor = Signed {
+                        negative: false,
+                        ..factor
+                    };
+                    let product = self.multiply(pool, Some(rest), Some(factor));
+                    return self.multiply(pool, Some(constant), product);
+                }
+            }
         }
         let (first, second) = (a.value.min(b.value), a.value.max(b.value));
         let value = self.insert(Flow::Multiply(first, second));

@@ -2,9 +2,11 @@
 //!
 //! `jacobian` differentiates on the expression graph, `compile` lowers it to a
 //! flow graph, `optimize` fuses operations and drops dead code, `schedule`
-//! forms runs of equal operation and gives slots. A program works on one
+//! forms runs of equal operation and gives slots; `assignments` calls the first
+//! three in all their variants and takes the cheapest. A program works on one
 //! memory: inputs, constants, temporaries; results go straight to the caller.
 
+pub(crate) mod assignments;
 pub(crate) mod compile;
 pub mod constant;
 pub mod instruction;

@@ -1,6 +1,7 @@
 //! From a flow graph to assignments: dead code dropped, sums fused with their terms.
 //!
-//! A sum, product or multiple that only one sum uses becomes part of that sum.
+//! A sum or product that only one sum uses becomes part of that sum, and a
+//! multiple by a constant part of every sum that uses it.
 //! The order of evaluation inside a sum is fixed (`instruction.rs`), so what a
 //! program gives is decided here and not by the schedule.
 
@@ -265,7 +266,8 @@ impl Fusion<'_> {
                     };
                     side.push((a, a));
                 }
-                Flow::Scale(c, a) if absorbed => {
+                // One more constant to read is cheaper than one more value to store.
+                Flow::Scale(c, a) => {
                     let constant = match self.graph.values[c as usize] {
                         Flow::Leaf(Operand::Constant(constant)) => constant,
                         _ => unreachable!("a multiple's first operand is a constant"),
