@@ -64,6 +64,15 @@ impl<B: Real<Context = (), Control = B>> DoubleDouble<B> {
         self.lo = lo;
     }
 
+    /// The same number in every lane.
+    #[inline(always)]
+    fn everywhere(c: &DoubleDouble<f64>) -> Self {
+        Self {
+            hi: B::from_f64((), c.hi),
+            lo: B::from_f64((), c.lo),
+        }
+    }
+
     /// `self += hi + lo` (AccurateDWPlusDW, relative error at most 3 u^2).
     #[inline(always)]
     fn accumulate(&mut self, hi: &B, lo: &B) {
@@ -92,6 +101,7 @@ impl<B: Real<Context = (), Control = B>> Real for DoubleDouble<B> {
     type Context = ();
     type Mask = B::Mask;
     type Control = B;
+    type Single = DoubleDouble<f64>;
     const WIDTH: usize = B::WIDTH;
 
     #[inline(always)]
@@ -181,6 +191,19 @@ impl<B: Real<Context = (), Control = B>> Real for DoubleDouble<B> {
         hi.neg();
         lo.neg();
         self.accumulate(&hi, &lo);
+    }
+    #[inline(always)]
+    fn mul_single(&mut self, c: &DoubleDouble<f64>) {
+        let product = Self::product(&Self::everywhere(c), self);
+        self.put(product);
+    }
+    #[inline(always)]
+    fn mul_add_single(&mut self, c: &DoubleDouble<f64>, a: &Self) {
+        self.mul_add(&Self::everywhere(c), a);
+    }
+    #[inline(always)]
+    fn mul_sub_single(&mut self, c: &DoubleDouble<f64>, a: &Self) {
+        self.mul_sub(&Self::everywhere(c), a);
     }
     #[inline(always)]
     fn neg(&mut self) {
