@@ -10,7 +10,7 @@ use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::named;
 use cognate_systems::straight_line_program::schedule::Scheduling;
-use mechanisms::{Plain, nine_points, platform};
+use mechanisms::{Plain, nine_points, platform, straight_line};
 use std::time::Instant;
 
 struct Evaluations<'a, R: Real> {
@@ -80,7 +80,7 @@ fn measure<R: Real<Context = ()>>(interpreter: &Interpreter) -> f64 {
 fn main() {
     println!("instruction set: {}", InstructionSet::detect().name());
     println!(
-        "{:<12} {:>7} {:>6} {:>6} {:>5} {:>7} | {:>8} {:>8} {:>8} {:>8} | {:>8}",
+        "{:<12} {:>7} {:>6} {:>6} {:>5} {:>7} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8}",
         "system",
         "instr",
         "flops",
@@ -102,6 +102,7 @@ fn main() {
     let systems = [
         ("nine-point", nine_points()),
         ("platform", platform()),
+        ("platform, t", straight_line(platform())),
         ("katsura-10", from_named(named::katsura(10))),
         ("cyclic-7", from_named(named::cyclic(7))),
         ("noon-10", from_named(named::noon(10))),
@@ -138,6 +139,7 @@ fn main() {
 }
 
 fn line(name: &str, plain: &Plain, scheduling: Scheduling, operations: bool) {
+    let start = Instant::now();
     let interpreter = Interpreter::compile_with(
         &plain.expressions,
         &plain.equations,
@@ -145,6 +147,7 @@ fn line(name: &str, plain: &Plain, scheduling: Scheduling, operations: bool) {
         plain.parameters,
         scheduling,
     );
+    let compiling = start.elapsed().as_secs_f64() * 1e3;
     let program = interpreter.linearize_program();
     let times = [
         measure::<f64>(&interpreter),
@@ -153,7 +156,7 @@ fn line(name: &str, plain: &Plain, scheduling: Scheduling, operations: bool) {
         measure::<Lanes<16>>(&interpreter),
     ];
     println!(
-        "{:<12} {:>4}/{:<2} {:>5} {:>6} {:>5} {:>5} {:>6.1} | {:>8.1} {:>8.1} {:>8.1} {:>8.1} | {:>8.2}",
+        "{:<12} {:>4}/{:<2} {:>5} {:>6} {:>5} {:>5} {:>6.1} | {:>8.1} {:>8.1} {:>8.1} {:>8.1} | {:>8.2} {:>8.1}",
         name,
         scheduling.window,
         scheduling.longest_run,
@@ -167,6 +170,7 @@ fn line(name: &str, plain: &Plain, scheduling: Scheduling, operations: bool) {
         times[2],
         times[3],
         interpreter.flops() as f64 / times[3],
+        compiling,
     );
     if operations {
         let mut counts = std::collections::BTreeMap::new();

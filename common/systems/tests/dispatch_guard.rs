@@ -81,7 +81,10 @@ fn sixteen_lanes_are_at_least_two_and_a_half_times_faster() {
     }
     for (name, plain) in [
         ("nine points", mechanisms::nine_points()),
-        ("platform", mechanisms::platform()),
+        (
+            "platform",
+            mechanisms::straight_line(mechanisms::platform()),
+        ),
     ] {
         check(name, &plain);
     }

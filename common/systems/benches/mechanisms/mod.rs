@@ -110,3 +110,29 @@ pub fn platform() -> Plain {
         parameters: 0,
     }
 }
+
+/// The straight-line homotopy p F + q G from G = x_i^2 - 1, as trackers make it:
+/// both parameters run along the path.
+pub fn straight_line(target: Plain) -> Plain {
+    let mut e = target.expressions;
+    let (p, q) = (e.parameter(0), e.parameter(1));
+    let minus_one = e.integer(-1);
+    let equations = target
+        .equations
+        .into_iter()
+        .enumerate()
+        .map(|(i, f)| {
+            let x = e.variable(i as u32);
+            let square = e.power(x, 2);
+            let g = e.add(square, minus_one);
+            let (f, g) = (e.multiply(p, f), e.multiply(q, g));
+            e.add(f, g)
+        })
+        .collect();
+    Plain {
+        expressions: e,
+        equations,
+        variables: target.variables,
+        parameters: 2,
+    }
+}

@@ -556,7 +556,7 @@ macro_rules! evaluator_conformance {
     ($module:ident, $compile:expr) => {
         mod $module {
             use cognate_numeric::lanes::Lanes;
-            use cognate_numeric::scalar::MultiplePrecision;
+            use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision};
             use $crate::evaluation::conformance as suite;
 
             #[test]
@@ -571,6 +571,7 @@ macro_rules! evaluator_conformance {
             fn agrees_with_the_reference_bit_for_bit() {
                 suite::check_against_reference::<f64, _>($compile, ());
                 suite::check_against_reference::<Lanes<8>, _>($compile, ());
+                suite::check_against_reference::<DoubleDouble<f64>, _>($compile, ());
                 suite::check_against_reference::<MultiplePrecision, _>($compile, 113);
             }
             #[test]

@@ -215,3 +215,40 @@ fn apply<R: Real>(operation: Operation, operands: &[Complex<R>]) -> Complex<R> {
         _ => unreachable!("a square and a reciprocal have one operand"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::conformance::check_exactly;
+    use crate::straight_line_program::assignments::WAYS;
+
+    /// One way alone, whatever it costs.
+    fn way<const W: usize>(
+        expressions: &Expressions,
+        equations: &[NodeId],
+        variables: usize,
+        parameters: usize,
+    ) -> Reference {
+        let ways = &WAYS[W..=W];
+        Reference(Assignments::compile_as(
+            expressions,
+            equations,
+            variables,
+            parameters,
+            ways,
+        ))
+    }
+
+    #[test]
+    fn every_way_to_derive_a_program_is_exact() {
+        const { assert!(WAYS.len() == 8) };
+        check_exactly(way::<0>);
+        check_exactly(way::<1>);
+        check_exactly(way::<2>);
+        check_exactly(way::<3>);
+        check_exactly(way::<4>);
+        check_exactly(way::<5>);
+        check_exactly(way::<6>);
+        check_exactly(way::<7>);
+    }
+}

@@ -10,12 +10,12 @@ use super::instruction::{Assignment, Operand};
 use super::jacobian::{Sweep, linearization};
 use super::optimize::fuse;
 use crate::evaluation::Shape;
+use crate::expression::differentiate::below;
 use crate::expression::{Expressions, NodeId};
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// Past this many operations only one way to differentiate is tried:
-/// compiling should stay far below a second.
+/// Past this many nodes times variables few ways are tried: compiling should
+/// stay far below a second.
 const TRY_ALL_BELOW: usize = 20_000;
 
 /// The programs of one system before they are scheduled.
@@ -30,12 +30,36 @@ pub(crate) struct Assignments {
     pub value: Vec<Assignment>,
 }
 
-/// One way to write what a program computes.
-struct Attempt<'a> {
-    arena: Cow<'a, Expressions>,
-    wanted: Cow<'a, [NodeId]>,
+/// How a program is derived from the equations.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    jacobian: Sweep,
+    along_path: Sweep,
     association: Association,
 }
+
+/// All of them; the first two serve where compiling takes long.
+pub(crate) const WAYS: [Way; 8] = {
+    const fn way(jacobian: Sweep, along_path: Sweep, association: Association) -> Way {
+        Way {
+            jacobian,
+            along_path,
+            association,
+        }
+    }
+    use Association::{AsWritten, ConstantsOutside};
+    use Sweep::{Forward, Reverse};
+    [
+        way(Reverse, Reverse, AsWritten),
+        way(Reverse, Reverse, ConstantsOutside),
+        way(Reverse, Forward, AsWritten),
+        way(Reverse, Forward, ConstantsOutside),
+        way(Forward, Reverse, AsWritten),
+        way(Forward, Reverse, ConstantsOutside),
+        way(Forward, Forward, AsWritten),
+        way(Forward, Forward, ConstantsOutside),
+    ]
+};
 
 /// What an assignment costs in wide lanes, roughly in cycles: operands are
 /// read and results written at the speed of the cache; a constant that stands
@@ -49,71 +73,60 @@ fn cost(assignment: &Assignment) -> usize {
     assignment.operation.flops() + 4 * read + 8
 }
 
-/// The cheapest of some attempts, with the constants of the pool and its own.
-fn cheapest<'a>(
-    pool: &ConstantPool,
-    first_direction: u32,
-    attempts: impl Iterator<Item = Attempt<'a>>,
-) -> (Vec<Assignment>, ConstantPool) {
-    attempts
-        .map(|attempt| {
-            let mut pool = pool.for_another_arena();
-            let graph = FlowGraph::lower(
-                &attempt.arena,
-                &attempt.wanted,
-                first_direction,
-                attempt.association,
-                &mut pool,
-            );
-            (fuse(&graph, &mut pool), pool)
-        })
-        .min_by_key(|(assignments, _)| assignments.iter().map(cost).sum::<usize>())
-        .expect("at least one attempt is made")
+fn total_cost(assignments: &[Assignment]) -> usize {
+    assignments.iter().map(cost).sum()
 }
 
 impl Assignments {
-    /// Differentiates, lowers and fuses.
+    /// Differentiates, lowers and fuses, in the cheapest way.
     pub(crate) fn compile(
         expressions: &Expressions,
         equations: &[NodeId],
         variables: usize,
         parameters: usize,
     ) -> Self {
+        let size = below(expressions, equations).len() * variables.max(1);
+        let tried = if size > TRY_ALL_BELOW { 2 } else { WAYS.len() };
+        let ways = &WAYS[..tried];
+        Self::compile_as(expressions, equations, variables, parameters, ways)
+    }
+
+    /// The same in the cheapest of some ways, at least one.
+    pub(crate) fn compile_as(
+        expressions: &Expressions,
+        equations: &[NodeId],
+        variables: usize,
+        parameters: usize,
+        ways: &[Way],
+    ) -> Self {
         let first_direction = u32::try_from(parameters).expect("fewer than 2^32 parameters");
-        let associations = [Association::AsWritten, Association::ConstantsOutside];
-        let values = associations.iter().map(|&association| Attempt {
-            arena: Cow::Borrowed(expressions),
-            wanted: Cow::Borrowed(equations),
-            association,
-        });
-        let (value, pool) = cheapest(&ConstantPool::default(), first_direction, values);
-        let sweeps = [
-            (Sweep::Reverse, Sweep::Reverse),
-            (Sweep::Reverse, Sweep::Forward),
-            (Sweep::Forward, Sweep::Reverse),
-            (Sweep::Forward, Sweep::Forward),
-        ];
-        let tried = if value.len() * variables.max(1) > TRY_ALL_BELOW {
-            1
-        } else {
-            sweeps.len()
+        let lower = |arena: &Expressions, wanted: &[NodeId], way: &Way, pool: &ConstantPool| {
+            let mut pool = pool.for_another_arena();
+            let association = way.association;
+            let graph = FlowGraph::lower(arena, wanted, first_direction, association, &mut pool);
+            (fuse(&graph, &mut pool), pool)
         };
-        let linearizations = sweeps[..tried].iter().flat_map(|&(jacobian, along_path)| {
-            let all = linearization(
-                expressions,
-                equations,
-                variables,
-                parameters,
-                jacobian,
-                along_path,
-            );
-            associations.map(|association| Attempt {
-                arena: Cow::Owned(all.arena.clone()),
-                wanted: Cow::Owned(all.entries.clone()),
-                association,
+        let (value, pool) = ways
+            .iter()
+            .take(2)
+            .map(|way| lower(expressions, equations, way, &ConstantPool::default()))
+            .min_by_key(|(assignments, _)| total_cost(assignments))
+            .expect("at least one way is tried");
+        let (linearize, pool) = ways
+            .iter()
+            .map(|way| {
+                let all = linearization(
+                    expressions,
+                    equations,
+                    variables,
+                    parameters,
+                    way.jacobian,
+                    way.along_path,
+                );
+                lower(&all.arena, &all.entries, way, &pool)
             })
-        });
-        let (linearize, pool) = cheapest(&pool, first_direction, linearizations);
+            .min_by_key(|(assignments, _)| total_cost(assignments))
+            .expect("at least one way is tried");
         Self {
             shape: Shape {
                 variables,
