@@ -80,8 +80,9 @@ fn measure<R: Real<Context = ()>>(interpreter: &Interpreter) -> f64 {
 fn main() {
     println!("instruction set: {}", InstructionSet::detect().name());
     println!(
-        "{:<12} {:>7} {:>6} {:>6} {:>5} {:>7} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8}",
+        "{:<12} {:>7} {:>5} {:>6} {:>5} {:>5} {:>6} | {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8}",
         "system",
+        "window",
         "instr",
         "flops",
         "slots",
