@@ -92,7 +92,8 @@ fn main() {
         "W=1",
         "W=8",
         "W=16",
-        "Gflop/s"
+        "Gflop/s",
+        "ms"
     );
     let from_named = |n: named::Named| Plain {
         variables: n.system.variable_count(),
