@@ -47,10 +47,12 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
     let system = from_proto::problem::system(&to_proto::problem::system(&system))
         .map_err(|e| e.within("system"))?;
     check_options(&options)?;
-    if let Some(PrecisionHint::Bits(bits)) = file.precision {
-        warnings.push(format!(
-            "the file asks for {bits} bits; this version computes in double precision"
-        ));
+    warnings.extend(precision_warning(&file));
+    let precision_bits = &mut options.settings.precision_bits;
+    match options.precision {
+        PrecisionChoice::Adaptive => {}
+        PrecisionChoice::Double => *precision_bits = Some(DOUBLE_BITS),
+        PrecisionChoice::Bits(bits) => *precision_bits = Some(arithmetic(bits)),
     }
     let base = options.settings.preset.unwrap_or_default().settings();
     options.settings = SettingsChoice::all(
@@ -83,6 +85,31 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
     })
 }
 
+/// Bits of hardware doubles, the first arithmetic.
+const DOUBLE_BITS: u32 = 53;
+
+/// Bits of double-doubles, the widest arithmetic of this version.
+pub const MOST_BITS: u32 = 106;
+
+/// The narrowest arithmetic with at least so many bits, else the widest.
+fn arithmetic(bits: u32) -> u32 {
+    if bits <= DOUBLE_BITS {
+        DOUBLE_BITS
+    } else {
+        MOST_BITS
+    }
+}
+
+/// What to say about a file that asks for more bits than there are.
+pub fn precision_warning(file: &FileSettings) -> Option<String> {
+    match file.precision {
+        Some(PrecisionHint::Bits(bits)) if bits > MOST_BITS => Some(format!(
+            "the file asks for {bits} bits; this version computes in {MOST_BITS} at most"
+        )),
+        _ => None,
+    }
+}
+
 /// What a file's settings mean here. Ours are tighter than what most files say, and looser ones
 /// would only lose paths: tolerances are taken where they are smaller.
 pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
@@ -97,6 +124,10 @@ pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
             .maximum_steps
             .filter(|&steps| steps > 0)
             .map(|steps| u32::try_from(steps).unwrap_or(u32::MAX).min(1_000_000_000)),
+        precision_bits: match file.precision {
+            Some(PrecisionHint::Bits(bits)) => Some(arithmetic(bits)),
+            _ => None,
+        },
         ..SettingsChoice::default()
     }
 }
@@ -104,10 +135,10 @@ pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
 /// What fits together; the rest is the planner's business.
 fn check_options(options: &Options) -> Result<(), ApiError> {
     if let PrecisionChoice::Bits(bits) = options.precision
-        && bits > 53
+        && bits > MOST_BITS
     {
         return Err(ApiError::NotInThisVersion(format!(
-            "precision of {bits} bits; this version computes in double precision"
+            "precision of {bits} bits; this version computes in {MOST_BITS} at most"
         )));
     }
     match (options.start, &options.start_solutions) {

@@ -7,6 +7,7 @@ use crate::config::DEFAULT_ADDRESS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use cognate_protocol::submission::PrecisionChoice;
 use std::path::PathBuf;
 
 const STYLES: Styles = Styles::styled()
@@ -133,6 +134,18 @@ pub enum PresetName {
     Reckless,
 }
 
+/// An arithmetic, as typed.
+fn precision(text: &str) -> Result<PrecisionChoice, String> {
+    match text {
+        "adaptive" => Ok(PrecisionChoice::Adaptive),
+        "double" => Ok(PrecisionChoice::Double),
+        bits => match bits.parse::<u32>() {
+            Ok(bits) if bits > 0 => Ok(PrecisionChoice::Bits(bits)),
+            _ => Err("expected adaptive, double or a number of bits".into()),
+        },
+    }
+}
+
 /// What is solved and how: the options of everything that takes a system.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Problem")]
@@ -172,9 +185,9 @@ pub struct ProblemArguments {
     /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t)]
     pub preset: PresetName,
-    /// Arithmetic of the paths
-    #[arg(long, value_name = "double")]
-    pub precision: Option<String>,
+    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
+    pub precision: PrecisionChoice,
     /// Generators of a symmetry group of the solutions (not in this version)
     #[arg(long, value_name = "FILE", hide = true)]
     pub symmetry: Option<PathBuf>,
@@ -196,7 +209,7 @@ pub struct OutputArguments {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-    /// Also write summary.json, solutions.jsonl and Bertini's files here
+    /// Also write summary.json, solutions.jsonl, paths.parquet and Bertini's files here
     #[arg(long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 }

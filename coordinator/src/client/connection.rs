@@ -70,6 +70,13 @@ impl Connection {
 
     /// What an error of the service means for the person who waits.
     fn explain(&self, status: &Status) -> ClientError {
+        // A cause of its own: the connection broke; what the service says has none.
+        if std::error::Error::source(status).is_some() {
+            return ClientError::Unreachable {
+                address: self.address.clone(),
+                reason: innermost(status),
+            };
+        }
         let message = status.message().to_string();
         match status.code() {
             Code::InvalidArgument

@@ -2,6 +2,8 @@
 
 use super::arguments::{Command, Coordinator, ProblemArguments, ServiceArguments, Start, Worker};
 use super::error::ClientError;
+use crate::intake::MOST_BITS;
+use cognate_protocol::submission::PrecisionChoice;
 
 /// Refuses the first thing asked for that this version does not have.
 pub fn refuse(command: &Command) -> Result<(), ClientError> {
@@ -52,9 +54,11 @@ fn problem(a: &ProblemArguments) -> Option<String> {
                 .find(|(asked, _)| *asked)
                 .map(|(_, name)| (*name).into())
         })
-        .or_else(|| match a.precision.as_deref() {
-            None | Some("double") => None,
-            Some(other) => Some(format!("--precision {other} (only double)")),
+        .or_else(|| match a.precision {
+            PrecisionChoice::Bits(bits) if bits > MOST_BITS => {
+                Some(format!("--precision {bits} (at most {MOST_BITS} bits)"))
+            }
+            _ => None,
         })
 }
 

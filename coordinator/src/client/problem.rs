@@ -6,9 +6,9 @@ use crate::intake;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{
-    Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+    Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
-use cognate_systems::formats::{self, FormatError, PrecisionHint};
+use cognate_systems::formats::{self, FormatError};
 use cognate_systems::system::System;
 use std::io::Read;
 use std::path::Path;
@@ -80,12 +80,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         let (name, content) = read_file(path)?;
         formats::degenerate::read(&name, &content, &mut system).map_err(|e| described(&e))?;
     }
-    if let Some(PrecisionHint::Bits(bits)) = file.precision {
-        warnings.push(format!(
-            "{}: the file asks for {bits} bits; this version computes in double precision",
-            short_name(&a.file)
-        ));
-    }
+    warnings.extend(intake::precision_warning(&file));
     let start_solutions = match &a.start_solutions {
         None => None,
         Some(path) => Some(start_points(path, &system)?),
@@ -130,10 +125,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             preset: Some(preset),
             ..intake::of_file(&file, &preset.settings())
         },
-        precision: match a.precision.as_deref() {
-            Some(_) => PrecisionChoice::Double,
-            None => PrecisionChoice::Adaptive,
-        },
+        precision: a.precision,
         start_parameters: start_parameters.pop().unwrap_or_default(),
         target_parameters: parameters(a.target_parameters.as_deref(), &system)?,
         start_solutions,

@@ -6,10 +6,11 @@
 use crate::ledger::identity::ItemRange;
 use crate::results::store::RecordKind;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
+use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::{Next, PathAlgorithm, PlanError};
 use cognate_continuation::stage::{PrepareError, PreparedStage};
 use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
-use cognate_protocol::submission::{Options, StartKind, StartSolutions};
+use cognate_protocol::submission::{Options, PrecisionChoice, StartKind, StartSolutions};
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -111,6 +112,11 @@ pub fn plan_options(
         target_parameters: options.target_parameters.clone(),
         seed: options.seed.unwrap_or_default(),
         settings: options.settings.resolve(),
+        max_retries: match options.precision {
+            // From the second time on a path is tracked again in double-doubles.
+            PrecisionChoice::Double => 1,
+            PrecisionChoice::Adaptive | PrecisionChoice::Bits(_) => MAX_RETRIES,
+        },
         ..PlanOptions::default()
     })
 }

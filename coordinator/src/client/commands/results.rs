@@ -5,6 +5,7 @@ use crate::client::arguments::{Format, OutputArguments, Results};
 use crate::client::connection::Connection;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::files::Folder;
+use crate::client::output::paths::Paths;
 use crate::client::output::table::SOLUTIONS_SHOWN;
 use crate::client::output::text::{Look, counted};
 use crate::client::output::{self, json, summary, table};
@@ -55,6 +56,9 @@ pub async fn show(
                 Ok(true)
             })
             .await?;
+        let mut paths = Paths::new(path.join("paths.parquet"));
+        connection.paths(job, |path| paths.path(path)).await?;
+        paths.finish()?;
         folder.finish(&json)?;
     } else if wanted > 0 {
         connection

@@ -3,6 +3,8 @@
 pub mod drawing;
 pub mod files;
 pub mod json;
+pub mod parquet;
+pub mod paths;
 pub mod progress;
 pub mod summary;
 pub mod table;
