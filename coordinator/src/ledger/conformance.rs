@@ -9,6 +9,7 @@ use super::rows::*;
 use super::{Ledger, LedgerError};
 use crate::chunks::sizing::Sizing;
 use cognate_continuation::work::StageId;
+use cognate_numeric::NUMERICS_REVISION;
 
 /// Runs the whole suite on one kind of ledger.
 macro_rules! ledger_conformance {
@@ -64,7 +65,7 @@ pub fn new_job(tenant: &str, content: u8) -> NewJob {
         label: "test".into(),
         problem: digest_of(&[content]),
         options: vec![content, 255],
-        numerics_revision: 1,
+        numerics_revision: NUMERICS_REVISION,
     }
 }
 
@@ -88,7 +89,7 @@ pub fn wants(who: &str, name: &str, slots: u32) -> LeaseRequest {
     LeaseRequest {
         worker: worker(who),
         request: request(name),
-        numerics_revision: 1,
+        numerics_revision: NUMERICS_REVISION,
         threads: 1,
         slots,
         duration_ms: 1000,
@@ -366,9 +367,9 @@ pub async fn tenants_and_jobs_take_turns(ledger: &dyn Ledger, _: &ManualClock) {
 pub async fn other_numerics_get_no_chunk(ledger: &dyn Ledger, _: &ManualClock) {
     running(ledger, "r", "t", 5, 5).await;
     let mut wanted = wants("w", "1", 1);
-    wanted.numerics_revision = 2;
+    wanted.numerics_revision = NUMERICS_REVISION + 1;
     assert!(ledger.lease(wanted.clone()).await.unwrap().is_empty());
-    wanted.numerics_revision = 1;
+    wanted.numerics_revision = NUMERICS_REVISION;
     assert_eq!(ledger.lease(wanted).await.unwrap().len(), 1);
 }
 
@@ -398,7 +399,7 @@ pub fn seen(who: &str, threads: u32) -> WorkerSeen {
     WorkerSeen {
         worker: worker(who),
         version: "0.1.0".into(),
-        numerics_revision: 1,
+        numerics_revision: NUMERICS_REVISION,
         instruction_set: "avx2".into(),
         threads,
         lane_width: 8,
