@@ -1,4 +1,48 @@
 //! Nanoseconds per path of one `linearize` ([J | H | H_t]), by system and width.
+//!
+//! `cargo bench -p cognate-systems --bench evaluation`; with `-- --schedules` for
+//! several ways to form runs, with `-- --operations` for the instructions. The best
+//! of 400 short rounds counts, so a loaded machine disturbs little. Columns: window
+//! and longest run of the schedule; instructions, real operations, temporaries, runs
+//! and scratch space of the program for lanes; ns a path for `f64`, `Lanes<1>` (whose
+//! numbers fill a cache line each), `Lanes<8>`, `Lanes<16>`; Gflop/s at W = 16;
+//! milliseconds to compile.
+//!
+//! # Figures
+//!
+//! One core of a shared Zen 4 EPYC at about 3.5 GHz with AVX-512, other work on it;
+//! they repeat to about 5 %.
+//!
+//! | system | instructions | flops | f64 | W = 8 | W = 16 | Gflop/s |
+//! |---|---|---|---|---|---|---|
+//! | nine points, 8 x 8, 16 parameters | 328 | 3264 | 740 | 171 | 138 | 23.6 |
+//! | platform: 6 leg quadrics, Study, patch | 106 | 1802 | 593 | 94 | 81 | 22.4 |
+//! | the same as p F + q G | 144 | 2218 | 735 | 119 | 99 | 22.5 |
+//! | katsura-10 | 191 | 872 | 421 | 91 | 62 | 14.0 |
+//! | cyclic-7 | 107 | 1082 | 314 | 58 | 46 | 23.4 |
+//! | noon-10 | 157 | 854 | 393 | 70 | 55 | 15.5 |
+//!
+//! What runs of equal operation bring (nine points; every run costs a jump that is
+//! often mispredicted; a longer window keeps more values alive):
+//!
+//! | window / longest run | runs | temporaries | f64 | W = 8 | W = 16 |
+//! |---|---|---|---|---|---|
+//! | 1 / 1: one dispatch for each instruction | 328 | 23 | 1845 | 284 | 189 |
+//! | 16 / 16 | 161 | 29 | 1298 | 237 | 156 |
+//! | 64 / 16 | 80 | 44 | 958 | 181 | 144-150 |
+//! | 96 / 16 (lanes) | 64 | 62 | 921 | 171 | 138 |
+//! | 128 / 16 | 68 | 78 | 915 | 177 | 141 |
+//! | 1000 / 64 (about that for `f64`) | 21 | 148 | 730 | 162 | 146 |
+//!
+//! What one instruction for a whole sum brings (the same with at most two terms in
+//! an instruction, and constants filled into all lanes): platform 495 instructions,
+//! 60 KiB of scratch space and 123-142 ns at W = 16, instead of 106, 14 KiB and 81 ns;
+//! cyclic-7 54-59 ns instead of 46; nine points, katsura and noon the same.
+//!
+//! What bounds W = 16: reading operands and writing results through the first-level
+//! cache (eight loads and four stores of 64 bytes take 2.7 ns here, eight fused
+//! multiply-adds 2.2), and that cache's 32 KiB: a 8 x 10 result alone has 20. Fewer
+//! multiplications that cost more reads do not pay.
 
 mod mechanisms;
 
