@@ -19,10 +19,10 @@ fn first_stage(text: &str) -> PreparedStage {
         ..PlanOptions::default()
     };
     let mut plan = plan(&problem.system, &options).expect("a plan");
-    let Next::Open(stage) = plan.algorithm.next() else {
+    let Next::Open(opening) = plan.algorithm.next() else {
         panic!("a solve begins with a stage");
     };
-    PreparedStage::new(&plan.system, &stage, &|_| None).expect("a stage to track")
+    PreparedStage::new(&plan.system, &opening.stage, &|_| None).expect("a stage to track")
 }
 
 /// Problems by name: regular, multihomogeneous, with paths to infinity and to singular ends.

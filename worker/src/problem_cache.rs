@@ -7,7 +7,7 @@ use crate::chunk_runner::ChunkTracker;
 use crate::transport::{Lease, Transport, TransportError};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::stage::PreparedStage;
-use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_systems::system::System;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -107,7 +107,7 @@ impl ProblemCache {
         let cell = lock(&self.systems).cell(lease.problem);
         let fetch = || async { transport.system(lease.problem).await.map(Arc::new) };
         let system = Arc::clone(cell.get_or_try_init(fetch).await?);
-        let points = match stored_points(&stage.start_points) {
+        let points = match stage.start_points.object() {
             Some(object) => Some((object, Arc::new(transport.points(object).await?))),
             None => None,
         };
@@ -130,15 +130,6 @@ impl ProblemCache {
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The object that the start points are read from, if they are data.
-fn stored_points(points: &StartPoints) -> Option<Digest> {
-    match points {
-        StartPoints::Stored { object, .. } => Some(*object),
-        StartPoints::Selected { base, .. } => stored_points(base),
-        StartPoints::TotalDegree { .. } | StartPoints::Multihomogeneous { .. } => None,
-    }
 }
 
 /// Unknowns up to which sixteen lanes of program and matrix fit in about 64 KB: n (n + 2)
@@ -177,18 +168,5 @@ mod tests {
         assert!(!recent.cell(3).initialized(), "new; 2 had to go");
         assert!(recent.cell(1).initialized());
         assert!(!recent.cell(2).initialized());
-    }
-
-    #[test]
-    fn stored_points_are_found_under_a_selection() {
-        let object = Digest([7; 32]);
-        let stored = StartPoints::Stored { object, count: 3 };
-        let selected = StartPoints::Selected {
-            base: Box::new(stored),
-            indices: vec![0, 2],
-        };
-        assert_eq!(stored_points(&selected), Some(object));
-        let degrees = vec![2, 2];
-        assert_eq!(stored_points(&StartPoints::TotalDegree { degrees }), None);
     }
 }

@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod any_algorithm;
+pub mod opening;
 pub mod parameter_solve;
 pub mod plan;
 pub mod plan_error;
@@ -18,12 +19,13 @@ pub mod start_costs;
 pub mod zero_dimensional_solve;
 
 pub use any_algorithm::{AnyAlgorithm, RestoreError};
+pub use opening::Opening;
 pub use plan::{Plan, PlanOptions, plan};
 pub use plan_error::PlanError;
 pub use progress::{Progress, StageProgress, VerdictCounts};
 
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::{Stage, StageId};
+use cognate_continuation::work::StageId;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 
@@ -31,7 +33,7 @@ use cognate_systems::system::System;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Next {
     /// Open this stage; several may be open.
-    Open(Box<Stage>),
+    Open(Box<Opening>),
     /// Nothing until an open stage has been absorbed.
     Wait,
     /// All is known.

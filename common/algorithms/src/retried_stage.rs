@@ -108,7 +108,7 @@ impl RetriedStage {
                 .expect("a plan has only stages whose paths can be counted"),
             absorbed: false,
         });
-        Next::Open(Box::new(stage))
+        Next::Open(Box::new(stage.into()))
     }
 
     fn repetition(&self, indices: Vec<u64>) -> Stage {
@@ -303,9 +303,9 @@ mod tests {
         fate: impl Fn(u64, u16) -> Fate,
     ) -> (Vec<Stage>, Vec<SolutionSet>) {
         let mut stages = Vec::new();
-        let done: Result<(), Infallible> = drive(algorithm, &mut |stage| {
-            stages.push(stage.clone());
-            Ok(track(stage, &fate))
+        let done: Result<(), Infallible> = drive(algorithm, &mut |opening| {
+            stages.push(opening.stage.clone());
+            Ok(track(&opening.stage, &fate))
         });
         assert_eq!(done, Ok(()));
         assert!(algorithm.progress().done);
@@ -415,7 +415,7 @@ mod tests {
             assert_eq!(restored, algorithm);
             algorithm = restored;
             match algorithm.next() {
-                Next::Open(stage) => open.push(stage),
+                Next::Open(opening) => open.push(opening.stage),
                 Next::Wait => {
                     let stage = open.pop().unwrap();
                     let results = track(&stage, fate);

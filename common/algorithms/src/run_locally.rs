@@ -1,18 +1,19 @@
 //! Any algorithm from beginning to end in one thread: for examples, tests and tools.
 
-use crate::{Next, PathAlgorithm};
+use crate::{Next, Opening, PathAlgorithm};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::stage::{PrepareError, PreparedStage};
 use cognate_continuation::start_points::{Digest, StoredPoints};
-use cognate_continuation::work::Stage;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
+use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
 /// Solves with lanes of this width; one solution set for each target.
 ///
 /// `system` is the plan's, not the one that was planned for. `objects` finds
-/// stored start points.
+/// start points that were stored before the solve began; those that it makes
+/// itself are kept here.
 ///
 /// ```
 /// use cognate_algorithms::{PlanOptions, plan, run_locally::run_locally};
@@ -30,8 +31,12 @@ pub fn run_locally(
     objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     width: usize,
 ) -> Result<Vec<SolutionSet>, PrepareError> {
-    drive::<PrepareError>(algorithm, &mut |stage| {
-        let prepared = PreparedStage::new(system, stage, objects)?;
+    let mut made: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+    drive::<PrepareError>(algorithm, &mut |opening| {
+        let objects_of_stage = opening.objects.iter();
+        made.extend(objects_of_stage.map(|points| (points.digest(), Arc::clone(points))));
+        let find = |wanted: Digest| made.get(&wanted).cloned().or_else(|| objects(wanted));
+        let prepared = PreparedStage::new(system, &opening.stage, &find)?;
         Ok(prepared.track(0..prepared.items(), width))
     })?;
     Ok(algorithm.solution_sets(system))
@@ -41,20 +46,106 @@ pub fn run_locally(
 /// in item order; its first error ends the run.
 pub fn drive<E>(
     algorithm: &mut dyn PathAlgorithm,
-    track: &mut dyn FnMut(&Stage) -> Result<Vec<PathResult>, E>,
+    track: &mut dyn FnMut(&Opening) -> Result<Vec<PathResult>, E>,
 ) -> Result<(), E> {
-    let mut open = std::collections::VecDeque::new();
+    let mut open = VecDeque::new();
     loop {
         match algorithm.next() {
-            Next::Open(stage) => open.push_back(stage),
+            Next::Open(opening) => open.push_back(opening),
             Next::Wait => {
-                let stage: Box<Stage> = open
+                let opening: Box<Opening> = open
                     .pop_front()
                     .expect("an algorithm waits only for a stage that it opened");
-                let results = track(&stage)?;
-                algorithm.absorb(stage.id, &mut results.into_iter());
+                let results = track(&opening)?;
+                algorithm.absorb(opening.stage.id, &mut results.into_iter());
             }
             Next::Done => return Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Progress;
+    use crate::synthetic::{first_stage, system};
+    use cognate_continuation::homotopies::HomotopyKind;
+    use cognate_continuation::work::{Stage, StageId};
+    use num_complex::Complex64;
+
+    /// Solves x^4 = 2 from 1, then goes on from what it found: to 3, then to 5 from there.
+    #[derive(Default)]
+    struct Relay {
+        opened: u32,
+        points: Option<Arc<StoredPoints>>,
+        ends: Vec<PathResult>,
+    }
+
+    fn one(re: f64) -> Vec<Complex64> {
+        vec![Complex64::new(re, 0.0)]
+    }
+
+    impl PathAlgorithm for Relay {
+        fn next(&mut self) -> Next {
+            let leg = |start, target| HomotopyKind::Parameter {
+                start: one(start),
+                targets: vec![one(target)],
+            };
+            let opening = match (self.opened, self.points.take()) {
+                (0, _) => first_stage(HomotopyKind::StraightLine {
+                    parameters: one(2.0),
+                })
+                .into(),
+                (3, Some(points)) => {
+                    self.points = Some(points);
+                    return Next::Done;
+                }
+                (_, None) => return Next::Wait,
+                (k, Some(points)) => Opening {
+                    stage: Stage {
+                        id: StageId(k),
+                        start_points: points.as_start(),
+                        ..first_stage(if k == 1 { leg(2.0, 3.0) } else { leg(3.0, 5.0) })
+                    },
+                    objects: vec![points],
+                },
+            };
+            self.opened += 1;
+            Next::Open(Box::new(opening))
+        }
+        fn absorb(&mut self, _: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+            self.ends = results.collect();
+            let values = self.ends.iter().map(|result| {
+                let z = result.endpoint.to_double();
+                z[1] / z[0]
+            });
+            self.points = Some(Arc::new(StoredPoints {
+                dimension: 1,
+                coordinates: values.collect(),
+            }));
+        }
+        fn progress(&self) -> Progress {
+            unreachable!("nobody asks")
+        }
+        fn snapshot(&self) -> Vec<u8> {
+            unreachable!("nobody asks")
+        }
+        fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
+            Vec::new()
+        }
+    }
+
+    #[test]
+    fn a_stage_may_start_at_points_that_an_earlier_one_found() {
+        let mut relay = Relay::default();
+        run_locally(&system(), &mut relay, &|_| None, 8).unwrap();
+        let points = relay.points.unwrap();
+        assert_eq!((relay.ends.len(), points.len()), (4, 4));
+        for k in 0..4 {
+            let x = points.point(k)[0];
+            assert!((x * x * x * x - 5.0).norm_sqr() < 1e-24, "{x}");
+            let apart = (0..k).all(|j| (points.point(j)[0] - x).norm_sqr() > 1.0);
+            assert!(apart, "{points:?}");
         }
     }
 }

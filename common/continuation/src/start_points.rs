@@ -76,6 +76,19 @@ impl StoredPoints {
         &self.coordinates[index * self.dimension..(index + 1) * self.dimension]
     }
 
+    /// The points as they are named: by the digest of [`Self::to_bytes`].
+    pub fn digest(&self) -> Digest {
+        Digest(*blake3::hash(&self.to_bytes()).as_bytes())
+    }
+
+    /// All of these points as the start points of a stage.
+    pub fn as_start(&self) -> StartPoints {
+        StartPoints::Stored {
+            object: self.digest(),
+            count: self.len() as u64,
+        }
+    }
+
     /// The bytes of the object: magic, dimension, then coordinates, little endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(16 + 16 * self.coordinates.len());
@@ -144,6 +157,15 @@ impl StartPoints {
         }
     }
 
+    /// The object that they are read from, if they are data.
+    pub fn object(&self) -> Option<Digest> {
+        match self {
+            Self::Stored { object, .. } => Some(*object),
+            Self::Selected { base, .. } => base.object(),
+            Self::TotalDegree { .. } | Self::Multihomogeneous { .. } => None,
+        }
+    }
+
     /// The index, in the stage that first started it, of item `index`.
     pub fn origin(&self, index: u64) -> u64 {
         match self {
@@ -158,14 +180,51 @@ mod tests {
     use super::*;
 
     #[test]
+    fn every_bit_survives() {
+        // 0 and -0 are equal numbers, but another bit is another path.
+        let tiny = f64::from_bits(1);
+        let points = |zero: f64| StoredPoints {
+            dimension: 1,
+            coordinates: vec![Complex64::new(zero, tiny), Complex64::new(0.1, f64::MAX)],
+        };
+        let bits = |p: &StoredPoints| -> Vec<u64> {
+            let parts = p.coordinates.iter().flat_map(|z| [z.re, z.im]);
+            parts.map(f64::to_bits).collect()
+        };
+        let read = StoredPoints::from_bytes(&points(-0.0).to_bytes()).unwrap();
+        assert_eq!(bits(&read), bits(&points(-0.0)));
+        assert_ne!(points(0.0).digest(), points(-0.0).digest());
+        let expected = StartPoints::Stored {
+            object: read.digest(),
+            count: 2,
+        };
+        assert_eq!(read.as_start(), expected);
+    }
+
+    #[test]
     fn stored_points_come_back() {
         let points = StoredPoints {
             dimension: 2,
             coordinates: (0..6).map(|k| Complex64::new(f64::from(k), -0.5)).collect(),
         };
         let bytes = points.to_bytes();
-        assert_eq!(StoredPoints::from_bytes(&bytes).unwrap(), points);
+        let read = StoredPoints::from_bytes(&bytes).unwrap();
+        assert_eq!(read, points);
+        assert_eq!(read.digest(), points.digest());
         assert!(StoredPoints::from_bytes(&bytes[..bytes.len() - 1]).is_err());
         assert!(StoredPoints::from_bytes(b"").is_err());
+    }
+
+    #[test]
+    fn stored_points_are_found_under_a_selection() {
+        let object = Digest([7; 32]);
+        let stored = StartPoints::Stored { object, count: 3 };
+        let selected = StartPoints::Selected {
+            base: Box::new(stored),
+            indices: vec![0, 2],
+        };
+        assert_eq!(selected.object(), Some(object));
+        let degrees = vec![2, 2];
+        assert_eq!(StartPoints::TotalDegree { degrees }.object(), None);
     }
 }

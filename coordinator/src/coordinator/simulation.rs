@@ -10,7 +10,7 @@ use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use crate::results::store::Store;
 use cognate_continuation::stage::PreparedStage;
-use cognate_continuation::start_points::Digest;
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_protocol::submission::{Options, SettingsChoice};
 use cognate_systems::system::System;
 use std::collections::{BTreeMap, HashMap};
@@ -294,7 +294,17 @@ impl Cluster {
             .stage(lease.definition)
             .await
             .expect("it is there");
-        let prepared = PreparedStage::new(&system, &stage, &|_| None).expect("it can be prepared");
+        let points = match stage.start_points.object() {
+            None => None,
+            Some(object) => {
+                let bytes = self.store.get(object).await.expect("it is there");
+                Some(Arc::new(
+                    StoredPoints::from_bytes(&bytes).expect("they are points"),
+                ))
+            }
+        };
+        let prepared = PreparedStage::new(&system, &stage, &|_| points.clone());
+        let prepared = prepared.expect("it can be prepared");
         let prepared = Arc::new(prepared);
         let mut known = self.prepared.lock().expect("nobody panics here");
         known.insert(lease.definition, Arc::clone(&prepared));

@@ -13,6 +13,7 @@ use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::{Store, StoreError};
 use crate::results::summary::{self, Summary};
+use cognate_algorithms::Opening;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use futures::{StreamExt, TryStreamExt};
@@ -235,7 +236,10 @@ impl Drive {
             close: close.to_vec(),
             ..Advance::default()
         };
-        for stage in &wanted.open {
+        for Opening { stage, objects } in &wanted.open {
+            for points in objects {
+                tools.store.put(points.to_bytes().into()).await?;
+            }
             let items = stage
                 .items()
                 .ok_or(LedgerError::TooLarge("the number of items of a stage"))?;

@@ -136,8 +136,9 @@ pub fn plan_job(
         let found = given.as_ref().filter(|(object, _)| *object == wanted);
         found.map(|(_, points)| Arc::clone(points))
     };
-    if let Next::Open(stage) = plan.algorithm.clone().next() {
-        PreparedStage::new(&plan.system, &stage, &find)?;
+    if let Next::Open(opening) = plan.algorithm.clone().next() {
+        let find = |wanted: Digest| opening.object(wanted).or_else(|| find(wanted));
+        PreparedStage::new(&plan.system, &opening.stage, &find)?;
     }
     Ok(plan)
 }

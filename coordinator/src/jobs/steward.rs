@@ -5,9 +5,9 @@
 //! state that lived through it.
 
 use crate::ledger::rows::StageRow;
-use cognate_algorithms::{AnyAlgorithm, Next, PathAlgorithm, RestoreError};
+use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::{Stage, StageId};
+use cognate_continuation::work::StageId;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use std::sync::Arc;
@@ -22,8 +22,8 @@ pub struct Steward {
 /// What the algorithm wants now.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wanted {
-    /// Stages to open.
-    pub open: Vec<Stage>,
+    /// Stages to open, with the points that were made for them.
+    pub open: Vec<Opening>,
     /// All is known.
     pub done: bool,
 }
@@ -54,7 +54,7 @@ impl Steward {
         let mut wanted = Wanted::default();
         loop {
             match self.algorithm.next() {
-                Next::Open(stage) => wanted.open.push(*stage),
+                Next::Open(opening) => wanted.open.push(*opening),
                 Next::Wait => return wanted,
                 Next::Done => {
                     wanted.done = true;

@@ -109,7 +109,7 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
             ),
         });
     }
-    let Next::Open(stage) = plan.algorithm.next() else {
+    let Next::Open(opening) = plan.algorithm.next() else {
         return Err(ClientError::Local("the plan begins without paths".into()));
     };
     let points = match start {
@@ -118,9 +118,10 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
             StoredPoints::from_bytes(bytes).map_err(|e| wrong(&e))?,
         )),
     };
-    // The start solutions are the only object that a first stage can ask for.
-    let objects = |_: Digest| points.clone();
-    let stage = PreparedStage::new(&plan.system, &stage, &objects).map_err(|e| wrong(&e))?;
+    // A first stage asks for what it brings, or else for the start solutions.
+    let objects = |wanted: Digest| opening.object(wanted).or_else(|| points.clone());
+    let stage =
+        PreparedStage::new(&plan.system, &opening.stage, &objects).map_err(|e| wrong(&e))?;
     let (result, steps) = stage.trace(index);
     let shape = PointShape::of(&plan.system);
     let verdict = classify(&result, &shape, &Tolerances::default()).verdict;

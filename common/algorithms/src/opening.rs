@@ -1,0 +1,35 @@
+//! Opening: a stage to open, with the points that were made for it.
+
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::work::Stage;
+use std::sync::Arc;
+
+/// A stage to open. Whoever carries it out keeps the objects first, under
+/// their digests, and only then lets workers know of the stage: objects are
+/// written once, so doing it again after a crash changes nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opening {
+    /// The stage.
+    pub stage: Stage,
+    /// Points that its start points name and that nobody has yet: made from earlier results.
+    /// Later stages may name them again without bringing them.
+    pub objects: Vec<Arc<StoredPoints>>,
+}
+
+impl Opening {
+    /// The object of this digest, where the stage brings it.
+    pub fn object(&self, wanted: Digest) -> Option<Arc<StoredPoints>> {
+        let found = self.objects.iter().find(|points| points.digest() == wanted);
+        found.cloned()
+    }
+}
+
+/// A stage that brings nothing: its start points are made from their index, or stored already.
+impl From<Stage> for Opening {
+    fn from(stage: Stage) -> Self {
+        Self {
+            stage,
+            objects: Vec::new(),
+        }
+    }
+}
