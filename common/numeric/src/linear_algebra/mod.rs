@@ -5,5 +5,6 @@
 //! to a library.
 
 pub mod condition;
+pub mod inverse;
 pub mod lu;
 pub mod matrix;

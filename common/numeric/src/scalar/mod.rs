@@ -6,11 +6,14 @@
 //! and sixteen paths in lockstep are the same code and give the same bits.
 
 pub mod conformance;
+pub mod directed;
 mod double;
 mod double_double;
+mod interval;
 mod multiple_precision;
 
 pub use double_double::DoubleDouble;
+pub use interval::Interval;
 pub use multiple_precision::MultiplePrecision;
 
 use crate::rational::{ComplexRational, Rational};
@@ -51,11 +54,18 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
     type Single: Real<Context = Self::Context>;
     /// Number of lanes.
     const WIDTH: usize;
+    /// True for intervals, which enclose what they are made of instead of rounding it.
+    const ENCLOSES: bool = false;
 
     /// The same double in every lane, exactly.
     fn from_f64(context: Self::Context, value: f64) -> Self;
     /// A rational, rounded to nearest, in every lane.
     fn from_rational(context: Self::Context, value: &Rational) -> Self;
+    /// A number that is known to lie between two rationals: an interval encloses both, any
+    /// other scalar takes the lower.
+    fn between(context: Self::Context, lower: &Rational, _upper: &Rational) -> Self {
+        Self::from_rational(context, lower)
+    }
     /// A control number, exactly.
     fn from_control(context: Self::Context, value: &Self::Control) -> Self;
     /// Bits of the significand of numbers made with this context.

@@ -12,7 +12,8 @@ use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_numeric::scalar::{Complex, MultiplePrecision, Real};
+use cognate_numeric::scalar::directed::Directed;
+use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision, Real};
 
 /// A system to check evaluators on.
 pub struct Case {
@@ -355,6 +356,73 @@ pub fn check_exactly<E: Evaluate<MultiplePrecision>>(compile: Compile<E>) {
     }
 }
 
+/// Values and derivatives over boxes: the exact ones, at points of the boxes, lie within.
+///
+/// # Panics
+/// When an exact value or derivative is outside of its enclosure, or nothing is enclosed.
+pub fn check_enclosures<R: Directed, E: Evaluate<Interval<R>>>(
+    compile: Compile<E>,
+    context: R::Context,
+) {
+    for case in cases().into_iter().filter(Case::is_rational) {
+        let evaluator = case.compile(compile);
+        let mut scratch = evaluator.scratch(context);
+        let (n, m, rows) = (case.variables, case.parameters, case.equations.len());
+        let mut stream = RandomStream::new(13, Purpose::Test, 0);
+        let centre = rational_point(n, &mut stream);
+        let p = rational_point(m, &mut stream);
+        let dp = rational_point(m, &mut stream);
+        for width in [Rational::new(), Rational::from((1, 1u64 << 40))] {
+            let mut side = || {
+                let step = Rational::from((i64::try_from(stream.below(5)).unwrap_or(0) - 2, 2));
+                step * &width
+            };
+            let x: Vec<ComplexRational> = centre
+                .iter()
+                .map(|z| z.add(&ComplexRational::new(side(), side())))
+                .collect();
+            let around = |part: &Rational| {
+                let (lower, upper) = (part.clone() - &width, part.clone() + &width);
+                Interval::<R>::between(context, &lower, &upper)
+            };
+            let boxes: Vec<Complex<Interval<R>>> = centre
+                .iter()
+                .map(|z| Complex {
+                    re: around(&z.re),
+                    im: around(&z.im),
+                })
+                .collect();
+            let (ps, dps) = (round(context, &p), round(context, &dp));
+            let mut out = Matrix::zeros(context, rows, n + 2);
+            evaluator.linearize(&boxes, &ps, &dps, &mut out, &mut scratch);
+            let mut values = vec![Complex::zero(context); rows];
+            evaluator.value(&boxes, &ps, &mut values, &mut scratch);
+            let inside = |what: &str, found: &Complex<Interval<R>>, exact: &ComplexRational| {
+                assert!(
+                    found.re.contains(&exact.re) && found.im.contains(&exact.im),
+                    "{}: {what} {exact:?} is not in {found:?}",
+                    case.name
+                );
+            };
+            let still = |count| vec![ComplexRational::default(); count];
+            for v in 0..n {
+                let mut direction = still(n);
+                direction[v] = ComplexRational::real(1);
+                let along = exact_along(&case, [&x, &p], [&direction, &still(m)]);
+                for (row, (_, slope)) in along.iter().enumerate() {
+                    inside("derivative", out.at(row, v), slope);
+                }
+            }
+            let along = exact_along(&case, [&x, &p], [&still(n), &dp]);
+            for (row, (value, slope)) in along.iter().enumerate() {
+                inside("value", out.at(row, n), value);
+                inside("value by its own program", &values[row], value);
+                inside("derivative along the parameters", out.at(row, n + 1), slope);
+            }
+        }
+    }
+}
+
 /// All derivatives against central differences of the values at 600 bits.
 ///
 /// # Panics
@@ -565,6 +633,11 @@ macro_rules! evaluator_conformance {
             #[test]
             fn agrees_with_exact_arithmetic() {
                 suite::check_exactly($compile);
+            }
+            #[test]
+            fn intervals_enclose_exact_arithmetic() {
+                suite::check_enclosures::<f64, _>($compile, ());
+                suite::check_enclosures::<MultiplePrecision, _>($compile, 128);
             }
             #[test]
             fn derivatives_agree_with_differences() {

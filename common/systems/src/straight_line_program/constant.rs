@@ -3,9 +3,11 @@
 //! They are rounded once, when scratch space is made, from their exact
 //! meaning to the precision of that scratch space.
 
+use super::enclosure::enclose;
 use crate::expression::{Expressions, Function, Node, NodeId};
 use cognate_numeric::rational::ComplexRational;
-use cognate_numeric::scalar::{Complex, Real};
+use cognate_numeric::scalar::directed::Directed;
+use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision, Real};
 use rug::Float;
 use std::collections::HashMap;
 
@@ -107,15 +109,38 @@ impl ConstantPool {
         }
     }
 
-    /// A constant, rounded to nearest for this context.
+    /// An algebraic constant between proven bounds. The program treats as real what is so to a
+    /// thousand bits; where that is not proven, neither is anything else.
+    fn enclosed<R: Real>(&self, constant: u32, id: NodeId, context: R::Context) -> Complex<R> {
+        let bounds = enclose(&self.arena, id, R::bits(context) + 64);
+        let imaginary = bounds.im.lower().is_negative() || bounds.im.upper().is_positive();
+        if imaginary && self.is_real(constant) {
+            return Complex::from_f64(context, f64::NAN, f64::NAN);
+        }
+        Complex {
+            re: between(context, &bounds.re),
+            im: between(context, &bounds.im),
+        }
+    }
+
+    /// A constant, rounded to nearest for this context; enclosed where the scalar encloses.
     pub fn round<R: Real>(&self, constant: u32, context: R::Context) -> Complex<R> {
         match &self.constants[constant as usize] {
             Constant::Exact(c) => Complex::from_rational(context, c),
+            Constant::Algebraic(id) if R::ENCLOSES => self.enclosed(constant, *id, context),
             Constant::Algebraic(id) => {
                 let value = algebraic(&self.arena, *id, R::bits(context));
                 Complex::from_rational(context, &value)
             }
         }
+    }
+}
+
+/// An interval's part between two bounds; NaN, which no proof survives, where there are none.
+fn between<R: Real>(context: R::Context, part: &Interval<MultiplePrecision>) -> R {
+    match (part.lower().to_rational(), part.upper().to_rational()) {
+        (Some(lower), Some(upper)) => R::between(context, &lower, &upper),
+        _ => R::from_f64(context, f64::NAN),
     }
 }
 
