@@ -19,6 +19,8 @@ pub struct Answer {
     pub singular_paths: u64,
     /// Paths to infinity.
     pub at_infinity: u64,
+    /// Paths to solutions only of the combinations of equations that are tracked.
+    pub excess: u64,
     /// Distinct singular solutions.
     pub singular: Option<u64>,
     /// Real solutions; the inner `None` where the system is not invariant.
@@ -68,6 +70,7 @@ pub fn complaints(set: &SolutionSet, answer: &Answer) -> String {
     expect("finite paths", paths.finite, answer.nonsingular);
     expect("singular paths", paths.singular, answer.singular_paths);
     expect("at infinity", paths.at_infinity, answer.at_infinity);
+    expect("excess", paths.excess.unwrap_or(0), answer.excess);
     if let Some(singular) = answer.singular {
         expect("singular", counts.singular, singular);
     }

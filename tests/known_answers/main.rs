@@ -7,5 +7,6 @@ mod check;
 mod classical_systems;
 mod hard_paths;
 mod mechanisms;
+mod overdetermined;
 mod parameter_homotopies;
 mod singular_endpoints;

@@ -49,9 +49,9 @@ fn cases() -> Vec<(&'static str, Vec<u8>, Vec<&'static str>)> {
             vec!["binary_junk"],
         ),
         (
-            "too_many_equations",
-            input("variable_group x;\nfunction f, g;\nf = x^2 - 2;\ng = x^3 - 2;"),
-            vec!["not in this version"],
+            "too_few_equations",
+            input("variable_group x, y;\nfunction f;\nf = x^2 - y;"),
+            vec!["not in this version", "Add one equation"],
         ),
         ("too_large", many(1001), vec!["VARIABLES"]),
         (

@@ -276,6 +276,7 @@ pub(crate) mod tests {
             infinity_turns: Vec::new(),
             precision_bits: 53,
             counts: Counts::default(),
+            asked: None,
         }
     }
 

@@ -4,7 +4,7 @@ use crate::any_algorithm::AnyAlgorithm;
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
 use crate::retried_stage::MAX_RETRIES;
-use crate::start_costs::{StartKind, Starts, check_square, checked_degrees};
+use crate::start_costs::{StartKind, Starts, check_equations, checked_degrees};
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::{Digest, StartPoints};
@@ -178,7 +178,7 @@ fn plan_start_system(
         return Err(PlanError::StartParametersAlone);
     }
     let parameters = one_target(system, options)?;
-    let starts = Starts::of(system)?;
+    let starts = Starts::of(system, options.seed)?;
     let (kind, why) = match choice {
         StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
         StartChoice::Multihomogeneous => (StartKind::Multihomogeneous, "asked for".to_string()),
@@ -207,7 +207,7 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
         });
     }
     checked_degrees(system)?;
-    check_square(system)?;
+    check_equations(system)?;
     let homotopy = if system.path_variable.is_some() {
         HomotopyKind::PathVariable {
             parameters: one_target(system, options)?,
@@ -382,11 +382,16 @@ mod tests {
              \"notes\":{\"linear_product\":\"not in this version\",\
              \"mixed_volume\":\"not in this version\"}}"
         );
-        let more = bertini("variable_group x; function f, g; f = x^2 - 1; g = x - 1;");
+        let more = bertini("variable_group x; function f, g; f = x - 1; g = x^2 - 1;");
         let costs = StartCosts::of(&more).unwrap();
+        let found = (costs.choice, costs.total_degree);
+        assert_eq!(found, (Some(StartKind::TotalDegree), Some(2)));
+        assert!(costs.why.ends_with("of 1 combination of the 2 equations"));
+        assert_eq!(costs.degrees, [1, 2], "as they are given");
+        let fewer = bertini("variable_group x, y, z; function f; f = x*y - z;");
+        let costs = StartCosts::of(&fewer).unwrap();
         assert_eq!((costs.choice, costs.total_degree), (None, None));
-        assert!(costs.why.contains("not in this version"), "{}", costs.why);
-        assert_eq!(costs.degrees, [2, 1]);
+        assert!(costs.why.contains("Add 2 equations"), "{}", costs.why);
     }
 
     #[test]

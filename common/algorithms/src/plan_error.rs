@@ -7,21 +7,15 @@ use cognate_systems::polynomial::PolynomialError;
 /// Why there is no plan.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
-    /// Overdetermined.
-    #[error(
-        "not in this version: {equations} equations for {unknowns} unknowns; a system must have \
-         as many equations as unknowns"
-    )]
-    MoreEquations {
-        /// How many equations.
-        equations: usize,
-        /// How many unknowns: variables, less one for each homogeneous group.
-        unknowns: usize,
-    },
     /// Underdetermined.
     #[error(
-        "{equations} equations for {unknowns} unknowns: the solution set is positive-dimensional, \
-         which is not in this version; as many equations as unknowns are needed"
+        "not in this version: {equations} equations for {unknowns} unknowns, so that no solution \
+         is isolated. Add {0} to ask for points of the solution set (random linear ones: a slice, \
+         whose solutions are as many as the set's degree), or fix as many variables",
+        .unknowns.checked_sub(*.equations).map_or(String::new(), |n| match n {
+            1 => "one equation".to_string(),
+            n => format!("{n} equations"),
+        })
     )]
     FewerEquations {
         /// How many equations.

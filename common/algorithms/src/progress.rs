@@ -25,6 +25,8 @@ pub struct VerdictCounts {
     pub singular: u64,
     /// At infinity.
     pub at_infinity: u64,
+    /// Solutions only of the combinations of equations that are tracked.
+    pub excess: u64,
     /// Failed.
     pub failed: u64,
 }

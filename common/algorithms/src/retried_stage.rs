@@ -184,6 +184,7 @@ impl RetriedStage {
                     Verdict::Finite => book.verdicts.finite += 1,
                     Verdict::Singular => book.verdicts.singular += 1,
                     Verdict::AtInfinity => book.verdicts.at_infinity += 1,
+                    Verdict::Excess => book.verdicts.excess += 1,
                     Verdict::Failed => {
                         book.verdicts.failed += 1;
                         if can_be_helped(result.outcome) {
@@ -206,6 +207,7 @@ impl RetriedStage {
             paths.finite += book.verdicts.finite;
             paths.singular += book.verdicts.singular;
             paths.at_infinity += book.verdicts.at_infinity;
+            paths.excess += book.verdicts.excess;
             paths.failed += book.verdicts.failed;
         }
         let open = self.stages.iter().find(|stage| !stage.absorbed);

@@ -2,8 +2,9 @@
 
 use crate::plan_error::PlanError;
 use cognate_continuation::start_points::StartPoints;
-use cognate_systems::polynomial::{Degrees, check_homogeneous, degrees};
+use cognate_systems::polynomial::{self, Degrees, check_homogeneous};
 use cognate_systems::system::{System, VariableGroup};
+use cognate_systems::transform::randomize;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -66,11 +67,13 @@ pub struct StartCosts {
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
 
-/// The start systems of a square system, each with the system as it is tracked by it.
+/// The start systems of a system, each with the system as it is tracked by it.
 #[derive(Clone, Debug)]
 pub struct Starts {
-    /// Degrees of the equations.
+    /// Degrees of the equations that are tracked.
     pub degrees: Degrees,
+    /// How many equations are combined to how many, where they are more than the unknowns.
+    pub combined: Option<(usize, usize)>,
     /// Total degree: all affine groups are one.
     pub total_degree: Result<(System, StartPoints, u64), PlanError>,
     /// By the groups of the file.
@@ -78,13 +81,17 @@ pub struct Starts {
 }
 
 impl Starts {
-    /// Both starts of a system, or why one does not serve.
-    pub fn of(system: &System) -> Result<Self, PlanError> {
+    /// Both starts of a system, or why one does not serve. More equations than unknowns are
+    /// combined as the stages of this seed will combine them.
+    pub fn of(system: &System, seed: u64) -> Result<Self, PlanError> {
         let degrees = checked_degrees(system)?;
-        check_square(system)?;
+        check_equations(system)?;
+        let degrees = tracked_degrees(system, degrees, seed)?;
         Ok(Self {
             total_degree: total_degree(system, &degrees),
             multihomogeneous: multihomogeneous(system, &degrees),
+            combined: (system.equation_count() > system.dimension())
+                .then(|| (system.equation_count(), system.dimension())),
             degrees,
         })
     }
@@ -95,6 +102,18 @@ impl Starts {
 
     /// The cheaper one, and why, in words.
     pub fn choose(&self) -> Result<(StartKind, String), PlanError> {
+        let (kind, why) = self.cheaper()?;
+        let why = match self.combined {
+            Some((equations, unknowns)) => {
+                let s = if unknowns == 1 { "" } else { "s" };
+                format!("{why}, of {unknowns} combination{s} of the {equations} equations")
+            }
+            None => why,
+        };
+        Ok((kind, why))
+    }
+
+    fn cheaper(&self) -> Result<(StartKind, String), PlanError> {
         match (&self.total_degree, &self.multihomogeneous) {
             (Ok((_, _, total)), Ok((_, multi))) if multi < total => Ok((
                 StartKind::Multihomogeneous,
@@ -135,7 +154,8 @@ impl StartCosts {
         for name in ["linear_product", "mixed_volume"] {
             notes.insert(name.to_string(), "not in this version".to_string());
         }
-        let starts = Starts::of(system);
+        // Degrees of combinations are the same for almost every seed.
+        let starts = Starts::of(system, 0);
         let mut number = |name: &str, number: Result<u64, PlanError>| match number {
             Ok(number) => Some(number),
             // A number is a number, even where it is too large or too small to be used.
@@ -187,25 +207,30 @@ impl StartCosts {
 
 /// Degrees of a system that is polynomial, and homogeneous where it says so.
 pub(crate) fn checked_degrees(system: &System) -> Result<Degrees, PlanError> {
-    let degrees = degrees(system)?;
+    let degrees = polynomial::degrees(system)?;
     check_homogeneous(system, &degrees)?;
     Ok(degrees)
 }
 
-/// As many equations as there are unknowns.
-pub(crate) fn check_square(system: &System) -> Result<(), PlanError> {
+/// At least as many equations as there are unknowns.
+pub(crate) fn check_equations(system: &System) -> Result<(), PlanError> {
     let (equations, unknowns) = (system.equation_count(), system.dimension());
-    match equations.cmp(&unknowns) {
-        std::cmp::Ordering::Equal => Ok(()),
-        std::cmp::Ordering::Greater => Err(PlanError::MoreEquations {
+    if equations < unknowns {
+        return Err(PlanError::FewerEquations {
             equations,
             unknowns,
-        }),
-        std::cmp::Ordering::Less => Err(PlanError::FewerEquations {
-            equations,
-            unknowns,
-        }),
+        });
     }
+    Ok(())
+}
+
+/// Degrees of the equations that are tracked: the system's own, or those of combinations of them
+/// where they are more than the unknowns.
+fn tracked_degrees(system: &System, degrees: Degrees, seed: u64) -> Result<Degrees, PlanError> {
+    if system.equation_count() == system.dimension() {
+        return Ok(degrees);
+    }
+    Ok(polynomial::degrees(&randomize(system, &degrees, seed))?)
 }
 
 fn total_degree(

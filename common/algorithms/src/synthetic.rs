@@ -77,6 +77,7 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                 infinity_turns: Vec::new(),
                 precision_bits: 53,
                 counts: Counts::default(),
+                asked: None,
             }
         })
         .collect()

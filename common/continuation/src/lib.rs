@@ -3,10 +3,12 @@
 //! In the order of a path's life: [`work`] says what is asked, [`stage`] prepares
 //! it, [`chart`] and [`homotopies`] make the program, [`start_systems`] and
 //! [`start_points`] the beginning; [`predictor`], [`step_control`] and [`tracker`]
-//! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left.
+//! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left;
+//! [`asked_system`] holds it against more equations than could be tracked.
 //! `examples/two_conics.rs` is a whole solve in thirty lines.
 #![forbid(unsafe_code)]
 
+pub mod asked_system;
 pub mod chart;
 pub mod endgames;
 pub mod homotopies;

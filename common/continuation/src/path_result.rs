@@ -48,6 +48,17 @@ pub struct Counts {
     pub turns: u32,
 }
 
+/// How well an endpoint solves the system that is asked, where combinations of its equations
+/// were tracked (see `transform::randomize`).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AskedFit {
+    /// Largest |F_i| over all equations that are asked, each equation and each group scaled to 1.
+    pub residual: f64,
+    /// How far a least-squares Newton step on all of them would move the endpoint, relative to
+    /// its largest coordinate. At a solution it is about the endpoint's error.
+    pub correction: f64,
+}
+
 /// All that is known about one path when it ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathResult {
@@ -79,4 +90,7 @@ pub struct PathResult {
     pub precision_bits: u32,
     /// How much was done.
     pub counts: Counts,
+    /// How well the endpoint solves the system that is asked; `None` where that is the one that
+    /// was tracked, and for a failed path.
+    pub asked: Option<AskedFit>,
 }

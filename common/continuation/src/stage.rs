@@ -1,5 +1,6 @@
 //! PreparedStage: all that a worker makes of a stage before it tracks its items.
 
+use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
 use crate::homotopies::prepare::StartSystem;
 use crate::homotopies::{Homotopy, HomotopyKind};
@@ -14,8 +15,9 @@ use crate::work::Stage;
 use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on};
 use cognate_numeric::scalar::{DoubleDouble, Real};
-use cognate_systems::polynomial::{check_homogeneous, degrees};
+use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees};
 use cognate_systems::system::{System, SystemError};
+use cognate_systems::transform::randomize;
 use num_complex::Complex64;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -27,11 +29,11 @@ pub enum PrepareError {
     /// The system is not one.
     #[error(transparent)]
     System(#[from] SystemError),
-    /// Equations and unknowns differ in number.
+    /// Fewer equations than unknowns.
     #[error(
-        "the system has {equations} equations for {dimension} unknowns; tracking needs as many equations as unknowns"
+        "the system has {equations} equations for {dimension} unknowns; tracking needs at least as many equations as unknowns"
     )]
-    NotSquare {
+    Underdetermined {
         /// Number of equations.
         equations: usize,
         /// Unknowns, up to the scaling of homogeneous groups.
@@ -74,6 +76,8 @@ enum Points {
 #[derive(Debug)]
 pub struct PreparedStage {
     homotopy: Homotopy,
+    /// The equations that are asked, where combinations of them are tracked.
+    asked: Option<AskedSystem>,
     points: Points,
     stage: Stage,
     /// Number of start points of the stage that first started the paths.
@@ -95,8 +99,8 @@ impl PreparedStage {
             return Err(PrepareError::Precision(stage.settings.precision_bits));
         }
         let dimension = system.dimension();
-        if system.equation_count() != dimension || dimension == 0 {
-            return Err(PrepareError::NotSquare {
+        if system.equation_count() < dimension || dimension == 0 {
+            return Err(PrepareError::Underdetermined {
                 equations: system.equation_count(),
                 dimension,
             });
@@ -136,11 +140,23 @@ impl PreparedStage {
                 }
             }
         }
-        let of_system =
-            degrees(system).map_err(|error| PrepareError::Degrees(error.to_string()))?;
-        check_homogeneous(system, &of_system)
-            .map_err(|error| PrepareError::Degrees(error.to_string()))?;
+        let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
+        let of_asked = degrees(system).map_err(wrong)?;
+        check_homogeneous(system, &of_asked).map_err(wrong)?;
         let chart = Chart::new(system, stage.seed);
+        // What is tracked: where there are more equations than unknowns, combinations of them.
+        let overdetermined = system.equation_count() > dimension;
+        let (asked, combined, of_system);
+        let system = if overdetermined {
+            let (kind, chart) = (&stage.homotopy, chart.clone());
+            asked = Some(AskedSystem::new(system, &of_asked, kind, chart, stage.seed));
+            combined = randomize(system, &of_asked, stage.seed);
+            of_system = degrees(&combined).map_err(wrong)?;
+            &combined
+        } else {
+            (asked, of_system) = (None, of_asked);
+            system
+        };
         let base = match &stage.start_points {
             StartPoints::Selected { base, .. } => base,
             other => other,
@@ -234,6 +250,7 @@ impl PreparedStage {
         );
         Ok(Self {
             homotopy,
+            asked,
             points,
             stage: stage.clone(),
             starts,
@@ -301,7 +318,8 @@ impl PreparedStage {
     ) -> Vec<PathResult> {
         assert!(items.end <= self.items, "a chunk lies within its stage");
         let wide = matches!(self.settings().precision_bits, 106);
-        match (width, wide) {
+        let first = items.start;
+        let mut results = match (width, wide) {
             (1, false) => dispatch_on(set, Track::<f64>::new(self, items, None)),
             (8, false) => dispatch_on(set, Track::<Lanes<8>>::new(self, items, None)),
             (16, false) => dispatch_on(set, Track::<Lanes<16>>::new(self, items, None)),
@@ -311,6 +329,17 @@ impl PreparedStage {
                 dispatch_on(set, Track::<DoubleDouble<f64>>::new(self, items, None))
             }
             _ => panic!("there are lanes of width 1, 8 and 16, not {width}"),
+        };
+        self.hold_against_asked(first, &mut results);
+        results
+    }
+
+    /// Says of results, from item `first` on, how well they solve all equations that are asked.
+    fn hold_against_asked(&self, first: u64, results: &mut [PathResult]) {
+        if let Some(asked) = &self.asked {
+            for (item, result) in (first..).zip(results) {
+                result.asked = asked.fit(result, self.item(item).1);
+            }
         }
     }
 
@@ -327,6 +356,7 @@ impl PreparedStage {
         } else {
             dispatch_on(set, Track::<f64>::new(self, items, Some(&mut recorder)))
         };
+        self.hold_against_asked(item, &mut results);
         (results.remove(0), recorder.0)
     }
 }
@@ -513,6 +543,31 @@ mod tests {
         }
     }
 
+    /// Survey, system (35): three conics through (0,0), (1,0), (0,-1); two combinations of them
+    /// meet in a fourth point, which solves only those.
+    #[test]
+    fn an_endpoint_is_held_against_all_equations_that_are_asked() {
+        let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f1, f2, f3; \
+                    f1 = x*y; f2 = x*(x - y - 1); f3 = y*(x - y - 1);\nEND;\n";
+        let system = cognate_systems::formats::read("35", text.as_bytes()).unwrap();
+        let prepared = PreparedStage::new(&system.system, &stage(&[2, 2]), &|_| None).unwrap();
+        let results = prepared.track(0..4, 8);
+        let mut solutions = 0;
+        for result in &results {
+            assert_eq!(result.outcome, PathOutcome::Regular);
+            let y = result.endpoint.to_double();
+            let (x, y) = (y[1] / y[0], y[2] / y[0]);
+            let near = |a: f64, b: f64| (x - a).norm_sqr() + (y - b).norm_sqr() < 1e-20;
+            let solves = near(0.0, 0.0) || near(1.0, 0.0) || near(0.0, -1.0);
+            let fit = result.asked.unwrap();
+            assert_eq!(fit.residual < 1e-12, solves, "{fit:?} at ({x}, {y})");
+            assert_eq!(fit.correction < 1e-12, solves, "{fit:?} at ({x}, {y})");
+            solutions += u64::from(solves);
+        }
+        assert_eq!(solutions, 3);
+        assert_eq!(prepared.trace(2).0, results[2]);
+    }
+
     #[test]
     fn what_does_not_fit_is_refused() {
         let system = katsura(3).system;
@@ -533,9 +588,9 @@ mod tests {
                 ..
             }
         ));
-        let mut more = system.clone();
-        more.equations.push(more.equations[0]);
-        let error = PreparedStage::new(&more, &stage(&[1]), &|_| None).unwrap_err();
-        assert!(matches!(error, PrepareError::NotSquare { .. }));
+        let mut fewer = system.clone();
+        fewer.equations.pop();
+        let error = PreparedStage::new(&fewer, &stage(&[1]), &|_| None).unwrap_err();
+        assert!(matches!(error, PrepareError::Underdetermined { .. }));
     }
 }

@@ -25,6 +25,8 @@ pub enum Purpose {
     Test = 6,
     /// Loops in parameter space.
     Loop = 7,
+    /// Combinations of the equations of an overdetermined system.
+    Randomization = 12,
 }
 
 /// A stream of random numbers.

@@ -2,16 +2,22 @@
 //!
 //! One layout, written by hand so that it is the same for ever: magic with the
 //! version, number of records, then each record with its length before it; all
-//! numbers little endian. A NaN is written as the one NaN, so that two machines
+//! numbers little endian. A record ends with the facts that only some results
+//! have, each behind its tag, ascending. A NaN is written as the one NaN, so that two machines
 //! agree. The hash is over these bytes before any compression; neither time nor
 //! worker is in them.
 
-use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use num_complex::Complex64;
 
 const MAGIC: &[u8; 8] = b"CGNRES01";
+
+/// Tags of the facts that only some results have. Tags only grow.
+mod tag {
+    pub const ASKED: u8 = 1;
+}
 
 /// Bytes that hold no records.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -64,7 +70,7 @@ pub fn decode(records: &[u8]) -> Result<Vec<PathResult>, DamagedRecords> {
         if end > records.len() {
             return Err(r.damaged("a record is longer than what is there"));
         }
-        results.push(r.record()?);
+        results.push(r.record(end)?);
         if r.at != end {
             return Err(r.damaged("a record has another length than it says"));
         }
@@ -118,6 +124,7 @@ impl Writer {
             infinity_turns,
             precision_bits,
             counts,
+            asked,
         } = result;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -155,6 +162,15 @@ impl Writer {
         } = counts;
         for count in [steps, rejections, evaluations, exchanges, turns] {
             self.u32(*count);
+        }
+        if let Some(AskedFit {
+            residual,
+            correction,
+        }) = asked
+        {
+            self.0.push(tag::ASKED);
+            self.f64(*residual);
+            self.f64(*correction);
         }
     }
 }
@@ -209,7 +225,8 @@ impl<'a> Reader<'a> {
         Ok(length)
     }
 
-    fn record(&mut self) -> Result<PathResult, DamagedRecords> {
+    /// One record, which ends there.
+    fn record(&mut self, end: usize) -> Result<PathResult, DamagedRecords> {
         let origin = PathIndex(self.u64()?);
         let attempt = self.array().map(u16::from_le_bytes)?;
         let outcome = match self.array::<1>()?[0] {
@@ -236,7 +253,7 @@ impl<'a> Reader<'a> {
         let infinity_turns = (0..groups)
             .map(|_| self.array().map(i32::from_le_bytes))
             .collect::<Result<_, _>>()?;
-        Ok(PathResult {
+        let mut result = PathResult {
             origin,
             attempt,
             outcome,
@@ -255,6 +272,25 @@ impl<'a> Reader<'a> {
                 exchanges: self.u32()?,
                 turns: self.u32()?,
             },
-        })
+            asked: None,
+        };
+        let mut last = 0;
+        while self.at < end {
+            let [next] = self.array()?;
+            if next <= last {
+                return Err(self.damaged("facts that do not ascend"));
+            }
+            last = next;
+            match next {
+                tag::ASKED => {
+                    result.asked = Some(AskedFit {
+                        residual: self.f64()?,
+                        correction: self.f64()?,
+                    });
+                }
+                _ => return Err(self.damaged("a fact that this version does not know")),
+            }
+        }
+        Ok(result)
     }
 }

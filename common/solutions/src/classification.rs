@@ -4,7 +4,7 @@
 //! stored results. The first class that holds is the path's class.
 
 use crate::point_shape::{PointShape, largest, modulus};
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::path_result::{AskedFit, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +28,13 @@ pub struct Tolerances {
     pub residual_factor: f64,
     /// ... or within this, all equations scaled to 1: what an endgame may call settled.
     pub residual_floor: f64,
+    /// A regular endpoint of a randomised system is a solution of the system that is asked when a
+    /// least-squares Newton step on all its equations would move it by at most this many times
+    /// its estimated error,
+    pub excess_factor: f64,
+    /// ... or by this. Points that solve only the combinations are generic: on system (35) the
+    /// step is 1e-2 and more.
+    pub excess_floor: f64,
     /// Two endpoints coincide within this many times the sum of their estimated errors.
     pub coincidence_factor: f64,
     /// ... or within this. Two regular solutions this near have condition numbers
@@ -53,6 +60,8 @@ impl Default for Tolerances {
             infinity_band: 10.0,
             residual_factor: 100.0,
             residual_floor: 1e-9,
+            excess_factor: 1e3,
+            excess_floor: 1e-6,
             coincidence_factor: 10.0,
             coincidence_floor: 1e-10,
             singular_coincidence_factor: 50.0,
@@ -65,16 +74,16 @@ impl Default for Tolerances {
 
 /// What a path's end is, in the order in which the classes are asked.
 ///
-/// Two classes of the contract have no rule yet. No path is `excess`: systems
-/// are tracked as they are given, none is randomised. Whether a singular
-/// endpoint lies on a positive-dimensional set is not decided; such paths stand
-/// in `Singular`.
+/// One class of the contract has no rule yet: whether a singular endpoint lies
+/// on a positive-dimensional set is not decided; such paths stand in `Singular`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Verdict {
     /// Not tracked to the end.
     Failed,
     /// The homogenising coordinate of an affine group is 0.
     AtInfinity,
+    /// Finite, but a solution only of the combinations of equations that were tracked.
+    Excess,
     /// Finite, with a singular Jacobian.
     Singular,
     /// Finite, nonsingular and so isolated.
@@ -132,10 +141,11 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
             }
         }
     }
-    let verdict = match (at_infinity, singular) {
-        (true, _) => Verdict::AtInfinity,
-        (false, true) => Verdict::Singular,
-        (false, false) => Verdict::Finite,
+    let verdict = match singular {
+        _ if at_infinity => Verdict::AtInfinity,
+        _ if !solves_what_is_asked(result, tolerances) => Verdict::Excess,
+        true => Verdict::Singular,
+        false => Verdict::Finite,
     };
     Decision {
         verdict,
@@ -151,6 +161,29 @@ pub fn solves(result: &PathResult, tolerances: &Tolerances) -> bool {
             tolerances.residual_factor,
             tolerances.residual_floor,
         )
+}
+
+/// Whether a finite endpoint solves all equations that are asked, where combinations of them were
+/// tracked. At a singular endpoint only the residual is asked: a Newton step means little there.
+fn solves_what_is_asked(result: &PathResult, tolerances: &Tolerances) -> bool {
+    let Some(AskedFit {
+        residual,
+        correction,
+    }) = result.asked
+    else {
+        return true;
+    };
+    let within = |value: f64, factor, floor| value <= error_bound(result.accuracy, factor, floor);
+    let near = within(
+        correction,
+        tolerances.excess_factor,
+        tolerances.excess_floor,
+    );
+    within(
+        residual,
+        tolerances.residual_factor,
+        tolerances.residual_floor,
+    ) && (near || result.outcome == PathOutcome::Singular)
 }
 
 /// How far a coordinate of size 1 may be off, from an estimated error.
@@ -242,6 +275,36 @@ mod tests {
             };
             assert_eq!(verdict(&result), (expected, false), "{residual}");
         }
+    }
+
+    #[test]
+    fn what_solves_only_the_combinations_is_excess() {
+        let with = |base: PathResult, residual, correction| PathResult {
+            asked: Some(AskedFit {
+                residual,
+                correction,
+            }),
+            ..base
+        };
+        let point = [(1.0, 0.0), (0.5, 0.0)];
+        let expect = |result: PathResult, expected| assert_eq!(verdict(&result).0, expected);
+        expect(with(regular(0, &point), 1e-16, 1e-15), Verdict::Finite);
+        expect(with(regular(0, &point), 0.3, 0.2), Verdict::Excess);
+        expect(with(regular(0, &point), 1e-10, 1e-3), Verdict::Excess);
+        expect(
+            with(regular(0, &point), f64::INFINITY, 0.0),
+            Verdict::Excess,
+        );
+        expect(
+            with(singular(0, &point, 2, &[0]), 1e-9, 0.1),
+            Verdict::Singular,
+        );
+        expect(
+            with(singular(0, &point, 2, &[0]), 1e-3, 0.1),
+            Verdict::Excess,
+        );
+        let far = [(1e-17, 0.0), (1.0, 0.0)];
+        expect(with(regular(0, &far), 0.3, 0.2), Verdict::AtInfinity);
     }
 
     #[test]

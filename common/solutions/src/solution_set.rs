@@ -198,7 +198,7 @@ impl<'a> Draft<'a> {
             singular,
             // A point of a positive-dimensional set has a singular Jacobian.
             positive_dimensional: (singular == 0).then_some(0),
-            excess: Some(0),
+            excess: Some(count(Verdict::Excess)),
             at_infinity: count(Verdict::AtInfinity),
             failed: count(Verdict::Failed),
             retracked: history.retracked,

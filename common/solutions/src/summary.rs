@@ -17,7 +17,8 @@ pub struct PathCounts {
     pub singular: u64,
     /// On a positive-dimensional set; null until that can be decided.
     pub positive_dimensional: Option<u64>,
-    /// No solutions of the system before randomisation; none where nothing is randomised.
+    /// Solutions only of the combinations of equations that were tracked; 0 where nothing is
+    /// randomised.
     pub excess: Option<u64>,
     /// The homogenising coordinate of an affine group is 0.
     pub at_infinity: u64,

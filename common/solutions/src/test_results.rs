@@ -38,6 +38,7 @@ pub fn regular(path: u64, point: &[(f64, f64)]) -> PathResult {
         infinity_turns: Vec::new(),
         precision_bits: 53,
         counts: Counts::default(),
+        asked: None,
     }
 }
 

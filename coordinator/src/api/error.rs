@@ -61,8 +61,7 @@ impl ApiError {
 fn code(error: &CoordinatorError) -> Code {
     match error {
         CoordinatorError::Planning(PlanningError::Plan(
-            PlanError::MoreEquations { .. }
-            | PlanError::FewerEquations { .. }
+            PlanError::FewerEquations { .. }
             | PlanError::ConstrainedParameters(_)
             | PlanError::TooManyPaths { .. }
             | PlanError::TooManyGroups { .. },

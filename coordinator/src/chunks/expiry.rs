@@ -66,6 +66,7 @@ pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
         infinity_turns: Vec::new(),
         precision_bits: 53,
         counts: Counts::default(),
+        asked: None,
     }
 }
 

@@ -245,10 +245,11 @@ impl Coordinator {
         if let Some(summary) = &summary {
             let paths = &summary.paths;
             lines.push(format!(
-                "paths: {} finite, {} singular, {} at infinity, {} failed; {} tracked again; \
-                 {} crossings seen, {} came apart",
+                "paths: {} finite, {} singular, {} excess (no solutions before randomisation), \
+                 {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
                 paths.finite,
                 paths.singular,
+                paths.excess.unwrap_or(0),
                 paths.at_infinity,
                 paths.failed,
                 paths.retracked,

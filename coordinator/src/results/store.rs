@@ -360,6 +360,7 @@ mod tests {
             infinity_turns: vec![],
             precision_bits: 53,
             counts: Counts::default(),
+            asked: None,
         };
         (0..count).map(result).collect()
     }

@@ -55,7 +55,7 @@ fn power_of_two_scale(size: f64) -> i32 {
 }
 
 /// Scales each equation by a power of two, so that its values at points of the patch are about 1.
-fn normalize(
+pub(crate) fn normalize(
     out: &mut Expressions,
     equations: &mut [NodeId],
     dimension: usize,

@@ -8,3 +8,4 @@ pub mod condition;
 pub mod inverse;
 pub mod lu;
 pub mod matrix;
+pub mod svd;

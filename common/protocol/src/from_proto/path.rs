@@ -6,7 +6,7 @@ use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::v1;
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
@@ -228,6 +228,22 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             exchanges: counts.exchanges,
             turns: counts.turns,
         },
+        asked: m.asked.as_ref().map(asked_fit).transpose()?,
+    })
+}
+
+fn asked_fit(m: &v1::AskedFit) -> Result<AskedFit, ProtocolError> {
+    for (field, value) in [
+        ("asked.residual", m.residual),
+        ("asked.correction", m.correction),
+    ] {
+        if value.is_nan() || value < 0.0 {
+            return Err(ProtocolError::invalid(field, value, "at least 0"));
+        }
+    }
+    Ok(AskedFit {
+        residual: m.residual,
+        correction: m.correction,
     })
 }
 

@@ -102,6 +102,10 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             exchanges: r.counts.exchanges,
             turns: r.counts.turns,
         }),
+        asked: r.asked.map(|fit| v1::AskedFit {
+            residual: fit.residual,
+            correction: fit.correction,
+        }),
     }
 }
 

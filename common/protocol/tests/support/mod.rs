@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::{Preset, Settings};
@@ -326,6 +326,10 @@ impl Draw {
                 exchanges: self.index(9),
                 turns: self.index(9),
             },
+            asked: self.some(|draw| AskedFit {
+                residual: draw.number().abs(),
+                correction: draw.number().abs(),
+            }),
         }
     }
 }

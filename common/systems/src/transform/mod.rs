@@ -2,6 +2,8 @@
 
 mod fix_parameters;
 mod homogenize;
+mod randomize;
 
 pub use fix_parameters::{FixError, fix_parameters};
 pub use homogenize::homogenize;
+pub use randomize::randomize;

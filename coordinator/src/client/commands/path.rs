@@ -143,6 +143,7 @@ fn verdict_name(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Failed => "failed",
         Verdict::AtInfinity => "at infinity",
+        Verdict::Excess => "excess: no solution before randomisation",
         Verdict::Singular => "singular",
         Verdict::Finite => "finite",
     }

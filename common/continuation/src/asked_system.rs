@@ -1,0 +1,156 @@
+//! AskedSystem: the equations that are asked, all of them, at the end of the paths.
+//!
+//! Where a system has more equations than unknowns, combinations of them are
+//! tracked; here an endpoint is held against the equations themselves. The
+//! coordinates are those of the chart that the paths are tracked in.
+
+use crate::chart::{Chart, exact, norm};
+use crate::homotopies::HomotopyKind;
+use crate::homotopies::prepare::normalize;
+use crate::path_result::{AskedFit, PathResult};
+use crate::tracker::outcome::PathOutcome;
+use cognate_numeric::lanes::dispatch::{Job, dispatch};
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::scalar::Complex;
+use cognate_systems::evaluation::{Evaluate, Interpreter};
+use cognate_systems::expression::{Expressions, NodeId};
+use cognate_systems::polynomial::Degrees;
+use cognate_systems::system::System;
+use cognate_systems::transform::homogenize;
+use num_complex::Complex64;
+
+/// The equations in the chart, each scaled to about 1.
+#[derive(Debug)]
+pub struct AskedSystem {
+    program: Interpreter,
+    chart: Chart,
+    /// Values of the program's parameters at each target.
+    targets: Vec<Vec<Complex64>>,
+}
+
+/// Values and derivatives at one point.
+#[derive(Clone, Debug)]
+pub struct Linearization {
+    /// F.
+    pub values: Vec<Complex64>,
+    /// Columns of the Jacobian.
+    pub columns: Vec<Vec<Complex64>>,
+}
+
+/// One evaluation, compiled for the instruction set.
+struct Linearize<'a> {
+    program: &'a Interpreter,
+    x: &'a [Complex<f64>],
+    p: &'a [Complex<f64>],
+    matrix: &'a mut Matrix<f64>,
+}
+
+impl Job for Linearize<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let mut scratch = Evaluate::<f64>::scratch(self.program, ());
+        let dp = vec![Complex { re: 0.0, im: 0.0 }; self.p.len()];
+        self.program
+            .linearize(self.x, self.p, &dp, self.matrix, &mut scratch);
+    }
+}
+
+impl AskedSystem {
+    /// The equations of a checked system at the end of this homotopy. `degrees` are the system's
+    /// own; the lengths of all parameter values fit it.
+    pub(crate) fn new(
+        system: &System,
+        degrees: &Degrees,
+        kind: &HomotopyKind,
+        chart: Chart,
+        seed: u64,
+    ) -> Self {
+        let mut out = Expressions::new();
+        let coordinates = chart.nodes(&mut out);
+        let zero = Complex64::default();
+        let (parameters, targets): (Vec<NodeId>, _) = match kind {
+            HomotopyKind::StraightLine { parameters } => {
+                let values = parameters.iter().map(|&z| exact(&mut out, z)).collect();
+                (values, vec![Vec::new()])
+            }
+            HomotopyKind::Parameter { targets, .. } => {
+                let count = system.parameters.len() as u32;
+                (
+                    (0..count).map(|k| out.parameter(k)).collect(),
+                    targets.clone(),
+                )
+            }
+            HomotopyKind::PathVariable { parameters } => {
+                let value = |k: usize| match system.path_variable == Some(k) {
+                    true => zero,
+                    false => parameters[k],
+                };
+                let all = 0..parameters.len();
+                (
+                    all.map(|k| exact(&mut out, value(k))).collect(),
+                    vec![Vec::new()],
+                )
+            }
+        };
+        let mut equations = homogenize(system, degrees, &mut out, &coordinates, &parameters);
+        let mut probe = RandomStream::new(seed, Purpose::Probe, 1);
+        let dimension = chart.dimension();
+        normalize(&mut out, &mut equations, dimension, &targets[0], &mut probe);
+        Self {
+            program: Interpreter::compile(&out, &equations, dimension, targets[0].len()),
+            chart,
+            targets,
+        }
+    }
+
+    /// F and its Jacobian at a point of the chart.
+    pub fn linearize(&self, point: &[Complex64], target: u64) -> Linearization {
+        let native = |z: &Complex64| Complex { re: z.re, im: z.im };
+        let x: Vec<_> = point.iter().map(native).collect();
+        let p: Vec<_> = self.targets[target as usize].iter().map(native).collect();
+        let (rows, n) = (self.program.shape().equations, point.len());
+        let mut matrix = Matrix::zeros((), rows, n + 2);
+        dispatch(Linearize {
+            program: &self.program,
+            x: &x,
+            p: &p,
+            matrix: &mut matrix,
+        });
+        let column = |j: usize| -> Vec<Complex64> {
+            let entry = |i: usize| Complex64::new(matrix.at(i, j).re, matrix.at(i, j).im);
+            (0..rows).map(entry).collect()
+        };
+        Linearization {
+            values: column(n),
+            columns: (0..n).map(column).collect(),
+        }
+    }
+
+    /// How well the endpoint of a path solves all equations; `None` for a failed path.
+    pub fn fit(&self, result: &PathResult, target: u64) -> Option<AskedFit> {
+        if matches!(result.outcome, PathOutcome::Failed(_)) {
+            return None;
+        }
+        let point = self.chart.point(result.endpoint.to_double())?;
+        let Linearization { values, columns } = self.linearize(&point, target);
+        let svd = Svd::of(columns);
+        // A direction in which nothing changes says nothing about how far the solution is.
+        let largest = svd.values.first().copied().unwrap_or(0.0);
+        let rank = svd.values.iter().filter(|&&s| s > 1e-14 * largest).count();
+        let step = svd.least_squares(&values, rank);
+        // What is not a number is as large as can be.
+        let size = |z: &[Complex64]| {
+            let largest = z.iter().map(|z| z.norm_sqr()).fold(0.0, |m: f64, s| {
+                if s.is_nan() { f64::INFINITY } else { m.max(s) }
+            });
+            largest.sqrt()
+        };
+        Some(AskedFit {
+            residual: size(&values),
+            correction: size(&step) / norm(&point),
+        })
+    }
+}
