@@ -10,3 +10,4 @@ mod mechanisms;
 mod overdetermined;
 mod parameter_homotopies;
 mod singular_endpoints;
+mod start_costs;

@@ -28,7 +28,7 @@ pub enum StartChoice {
     Auto,
     /// All affine groups as one.
     TotalDegree,
-    /// By the groups of the system.
+    /// By the groups of the system, or by the best groups where it has one.
     Multihomogeneous,
     /// The start solutions that are given.
     Given,
@@ -84,7 +84,8 @@ impl Default for PlanOptions {
 /// How a system will be solved.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The system as it is tracked: a total-degree start makes one group of all.
+    /// The system as it is tracked: a total-degree start makes one group of all,
+    /// another may make several of one.
     /// Workers, results and solution sets all go by this one.
     pub system: System,
     /// What solves it.
@@ -189,7 +190,10 @@ fn plan_start_system(
             let (tracked, start, _) = starts.total_degree?;
             (tracked, start)
         }
-        _ => (system.clone(), starts.multihomogeneous?.0),
+        _ => {
+            let (tracked, start, _) = starts.multihomogeneous?;
+            (tracked, start)
+        }
     };
     let homotopy = HomotopyKind::StraightLine { parameters };
     Ok(finish(tracked, homotopy, start_points, kind, why, options))
@@ -367,6 +371,14 @@ mod tests {
         );
         let one = bertini("variable_group x, y; function f, g; f = x*y - 1; g = x^3 + y;");
         let chosen = plan(&one, &PlanOptions::default()).unwrap();
+        assert_eq!(
+            (chosen.start, chosen.paths),
+            (StartKind::Multihomogeneous, 4)
+        );
+        assert_eq!(chosen.system.groups.len(), 2, "groups were found");
+        let dense =
+            bertini("variable_group x, y; function f, g; f = x^2 + y^2 - 1; g = x^3 + y^3;");
+        let chosen = plan(&dense, &PlanOptions::default()).unwrap();
         assert_eq!((chosen.start, chosen.paths), (StartKind::TotalDegree, 6));
     }
 
@@ -377,10 +389,9 @@ mod tests {
             serde_json::to_string(&costs).unwrap(),
             "{\"variables\":2,\"equations\":2,\"degrees\":[2,2],\"total_degree\":4,\
              \"multihomogeneous\":{\"groups\":[[\"x\"],[\"y\"]],\"number\":2},\
-             \"linear_product\":null,\"mixed_volume\":null,\"choice\":\"multihomogeneous\",\
+             \"linear_product\":null,\"mixed_volume\":2,\"choice\":\"multihomogeneous\",\
              \"why\":\"2 paths by the variable groups, 4 by total degree\",\
-             \"notes\":{\"linear_product\":\"not in this version\",\
-             \"mixed_volume\":\"not in this version\"}}"
+             \"notes\":{\"linear_product\":\"not in this version\"}}"
         );
         let more = bertini("variable_group x; function f, g; f = x - 1; g = x^2 - 1;");
         let costs = StartCosts::of(&more).unwrap();

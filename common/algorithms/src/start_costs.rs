@@ -2,7 +2,10 @@
 
 use crate::plan_error::PlanError;
 use cognate_continuation::start_points::StartPoints;
-use cognate_systems::polynomial::{self, Degrees, check_homogeneous};
+use cognate_continuation::start_systems::grouping::best_grouping;
+use cognate_continuation::start_systems::polyhedral::affine_supports;
+use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
+use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
 use cognate_systems::transform::randomize;
 use serde::{Deserialize, Serialize};
@@ -50,11 +53,13 @@ pub struct StartCosts {
     pub degrees: Vec<u32>,
     /// Paths of a total-degree start.
     pub total_degree: Option<u64>,
-    /// Paths of a start by the groups of the file.
+    /// Paths of a start by the groups of the file; where it has one group only,
+    /// by the best groups that were found.
     pub multihomogeneous: MultihomogeneousCost,
     /// Paths of a linear-product start.
     pub linear_product: Option<u64>,
-    /// Paths of a polyhedral start.
+    /// Paths of a polyhedral start: the mixed volume, of the supports with the
+    /// origin where a solution can have a coordinate 0.
     pub mixed_volume: Option<u64>,
     /// The cheapest that can be used; null where the system cannot be solved.
     pub choice: Option<StartKind>,
@@ -67,6 +72,9 @@ pub struct StartCosts {
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
 
+/// Most operations that `cognate info` spends on a mixed volume: a few seconds.
+const COUNTING_OPERATIONS: u64 = 2_000_000_000;
+
 /// The start systems of a system, each with the system as it is tracked by it.
 #[derive(Clone, Debug)]
 pub struct Starts {
@@ -76,8 +84,17 @@ pub struct Starts {
     pub combined: Option<(usize, usize)>,
     /// Total degree: all affine groups are one.
     pub total_degree: Result<(System, StartPoints, u64), PlanError>,
-    /// By the groups of the file.
-    pub multihomogeneous: Result<(StartPoints, u64), PlanError>,
+    /// By the groups of the file, or by better ones where it has one affine group.
+    pub multihomogeneous: Result<(System, StartPoints, u64), PlanError>,
+    /// Whether the groups are not the file's.
+    pub found: Option<FoundGroups>,
+}
+
+/// What is known of groups that were found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FoundGroups {
+    /// No other partition of the variables has a smaller number.
+    pub exact: bool,
 }
 
 impl Starts {
@@ -87,9 +104,20 @@ impl Starts {
         let degrees = checked_degrees(system)?;
         check_equations(system)?;
         let degrees = tracked_degrees(system, degrees, seed)?;
+        let given = |system: &System, degrees: &Degrees| {
+            multihomogeneous(system, degrees).map(|(start, count)| (system.clone(), start, count))
+        };
+        let (multihomogeneous, found) = match grouped(system) {
+            Some((grouped, exact)) => {
+                let degrees = checked_degrees(&grouped)?;
+                (given(&grouped, &degrees), Some(FoundGroups { exact }))
+            }
+            None => (given(system, &degrees), None),
+        };
         Ok(Self {
             total_degree: total_degree(system, &degrees),
-            multihomogeneous: multihomogeneous(system, &degrees),
+            multihomogeneous,
+            found,
             combined: (system.equation_count() > system.dimension())
                 .then(|| (system.equation_count(), system.dimension())),
             degrees,
@@ -114,18 +142,41 @@ impl Starts {
     }
 
     fn cheaper(&self) -> Result<(StartKind, String), PlanError> {
+        if let (Some(found), Ok((grouped, _, multi))) = (self.found, &self.multihomogeneous) {
+            // One group of all was among those that were tried.
+            let total = match &self.total_degree {
+                Ok((_, _, total)) => total.to_string(),
+                Err(_) => "too many".to_string(),
+            };
+            let groups: Vec<String> = group_names(grouped)
+                .iter()
+                .map(|names| format!("{{{}}}", names.join(", ")))
+                .collect();
+            return Ok((
+                StartKind::Multihomogeneous,
+                format!(
+                    "{multi} paths by the groups {}, {}; {total} by total degree",
+                    groups.join(" "),
+                    if found.exact {
+                        "the best of all"
+                    } else {
+                        "the best that were found"
+                    },
+                ),
+            ));
+        }
         match (&self.total_degree, &self.multihomogeneous) {
-            (Ok((_, _, total)), Ok((_, multi))) if multi < total => Ok((
+            (Ok((_, _, total)), Ok((_, _, multi))) if multi < total => Ok((
                 StartKind::Multihomogeneous,
                 format!("{multi} paths by the variable groups, {total} by total degree"),
             )),
-            (Ok((_, _, total)), Ok((_, multi))) if multi > total => Ok((
+            (Ok((_, _, total)), Ok((_, _, multi))) if multi > total => Ok((
                 StartKind::TotalDegree,
                 format!("{total} paths by total degree, {multi} by the variable groups"),
             )),
             // Where both cost the same, the groups are the better coordinates: a
             // solution that is large in one of them is not large in all.
-            (Ok(_), Ok((_, multi))) if self.groups() > 1 => Ok((
+            (Ok(_), Ok((_, _, multi))) if self.groups() > 1 => Ok((
                 StartKind::Multihomogeneous,
                 format!("{multi} paths, by the variable groups as by total degree"),
             )),
@@ -137,7 +188,7 @@ impl Starts {
                 StartKind::TotalDegree,
                 format!("{total} paths by total degree"),
             )),
-            (Err(_), Ok((_, multi))) => Ok((
+            (Err(_), Ok((_, _, multi))) => Ok((
                 StartKind::Multihomogeneous,
                 format!("{multi} paths by the variable groups"),
             )),
@@ -151,9 +202,14 @@ impl StartCosts {
     pub fn of(system: &System) -> Result<Self, PlanError> {
         let degrees = checked_degrees(system)?;
         let mut notes = BTreeMap::new();
-        for name in ["linear_product", "mixed_volume"] {
-            notes.insert(name.to_string(), "not in this version".to_string());
-        }
+        notes.insert("linear_product".into(), "not in this version".into());
+        let mixed_volume = match mixed_volume(system, COUNTING_OPERATIONS) {
+            Ok(number) => Some(number),
+            Err(why) => {
+                notes.insert("mixed_volume".into(), why);
+                None
+            }
+        };
         // Degrees of combinations are the same for almost every seed.
         let starts = Starts::of(system, 0);
         let mut number = |name: &str, number: Result<u64, PlanError>| match number {
@@ -172,37 +228,99 @@ impl StartCosts {
         let (total, multi) = match &starts {
             Ok(starts) => (
                 starts.total_degree.as_ref().map(|t| t.2),
-                starts.multihomogeneous.as_ref().map(|m| m.1),
+                starts.multihomogeneous.as_ref().map(|m| m.2),
             ),
             Err(error) => (Err(error), Err(error)),
         };
         let total_degree = number("total_degree", total.map_err(Clone::clone));
         let multihomogeneous = number("multihomogeneous", multi.map_err(Clone::clone));
+        let tracked = match &starts {
+            Ok(Starts {
+                multihomogeneous: Ok((tracked, _, _)),
+                ..
+            }) => tracked,
+            _ => system,
+        };
+        let groups = group_names(tracked);
+        if let Ok(Starts {
+            found: Some(found), ..
+        }) = &starts
+        {
+            let how = match found.exact {
+                true => "groups found: the best partition of the variables",
+                false => "groups found by a search that is not exhaustive",
+            };
+            notes.insert("groups".into(), how.into());
+        }
         let (choice, why) = match starts.and_then(|starts| starts.choose()) {
             Ok((choice, why)) => (Some(choice), why),
             Err(error) => (None, error.to_string()),
         };
-        let name = |&v: &usize| system.variables[v].clone();
         Ok(Self {
             variables: system.variables.len(),
             equations: system.equations.len(),
             degrees: degrees.total,
             total_degree,
             multihomogeneous: MultihomogeneousCost {
-                groups: system
-                    .groups
-                    .iter()
-                    .map(|group| group.variables.iter().map(name).collect())
-                    .collect(),
+                groups,
                 number: multihomogeneous,
             },
             linear_product: None,
-            mixed_volume: None,
+            mixed_volume,
             choice,
             why,
             notes,
         })
     }
+}
+
+/// The mixed volume that bounds the isolated solutions in C^n, or why it is not known.
+fn mixed_volume(system: &System, operations: u64) -> Result<u64, String> {
+    if system.groups.iter().any(|group| group.homogeneous) {
+        return Err("not counted for homogeneous groups".into());
+    }
+    if system.equation_count() > system.dimension() {
+        return Err("not counted for combinations of equations".into());
+    }
+    let supports = supports(system).ok_or("multiplying the equations out takes too long")?;
+    mixed_cells(&affine_supports(&supports), 0, operations)
+        .map(|found| found.mixed_volume)
+        .map_err(|error| error.to_string())
+}
+
+/// Names of the variables, group by group.
+fn group_names(system: &System) -> Vec<Vec<String>> {
+    let name = |&v: &usize| system.variables[v].clone();
+    system
+        .groups
+        .iter()
+        .map(|group| group.variables.iter().map(name).collect())
+        .collect()
+}
+
+/// The system in the groups that cost least, and whether none cost less, where
+/// the file has one affine group and others cost less than it.
+fn grouped(system: &System) -> Option<(System, bool)> {
+    let [all] = system.groups.as_slice() else {
+        return None;
+    };
+    if all.homogeneous {
+        return None;
+    }
+    let best = best_grouping(&supports(system)?, system.variable_count())?;
+    if best.groups.len() < 2 {
+        return None;
+    }
+    let mut grouped = system.clone();
+    grouped.groups = best
+        .groups
+        .into_iter()
+        .map(|variables| VariableGroup {
+            variables,
+            homogeneous: false,
+        })
+        .collect();
+    Some((grouped, best.exact))
 }
 
 /// Degrees of a system that is polynomial, and homogeneous where it says so.

@@ -55,6 +55,9 @@ pub struct ProblemBlock {
     pub equations: u64,
     /// How the paths began.
     pub start: String,
+    /// Why they began so: which groups, for instance, and whose.
+    #[serde(default)]
+    pub why: String,
     /// Seed of everything random.
     pub seed: u64,
 }
@@ -138,6 +141,7 @@ impl Summary {
                 variables: planned.variables,
                 equations: planned.equations,
                 start: planned.start.clone(),
+                why: planned.why.clone(),
                 seed: planned.seed,
             },
             paths: sum.paths,

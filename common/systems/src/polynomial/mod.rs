@@ -100,6 +100,20 @@ pub fn degrees(system: &System) -> Result<Degrees, PolynomialError> {
     Ok(result)
 }
 
+/// The exponents that occur in each equation once its terms are collected, with
+/// generic parameters. `None` where an equation is no polynomial or takes too
+/// much to be multiplied out.
+pub fn supports(system: &System) -> Option<Vec<Vec<Vec<u32>>>> {
+    system
+        .equations
+        .iter()
+        .map(|&equation| {
+            let (n, p) = (system.variable_count(), system.parameters.len());
+            Polynomial::expand(&system.expressions, equation, n, p).map(|f| f.support())
+        })
+        .collect()
+}
+
 /// Checks that every equation is homogeneous in every homogeneous group.
 pub fn check_homogeneous(system: &System, degrees: &Degrees) -> Result<(), PolynomialError> {
     for (i, &equation) in system.equations.iter().enumerate() {

@@ -87,10 +87,17 @@ pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> Stri
         "\n  {}",
         look.bold(&format!("{:<LABEL$}paths", "start"))
     );
-    let groups = if system.groups.len() == 1 {
-        "one group".to_string()
-    } else {
-        format!("{} groups", system.groups.len())
+    let groups = match (
+        costs.multihomogeneous.groups.len(),
+        costs.notes.get("groups"),
+    ) {
+        (1, _) => "one group".to_string(),
+        (n, None) => format!("{n} groups"),
+        (_, Some(how)) => {
+            let names = costs.multihomogeneous.groups.iter();
+            let names: Vec<String> = names.map(|g| format!("{{{}}}", g.join(", "))).collect();
+            format!("{}; {how}", names.join(" "))
+        }
     };
     let starts = [
         ("total-degree", costs.total_degree, "total_degree", ""),

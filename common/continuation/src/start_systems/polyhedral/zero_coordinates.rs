@@ -1,0 +1,76 @@
+//! Whether a solution can have a coordinate 0, by the supports alone.
+
+/// Most looks at terms; past them a coordinate 0 counts as possible.
+const MOST_LOOKS: u64 = 5_000_000;
+
+/// Whether some coordinates can be 0 at a solution and the others not: no
+/// equation may be left with exactly one term, which would not vanish. Where
+/// the answer is no, every solution in C^n lies in the torus, whatever the
+/// coefficients; where it is yes, there may be none all the same.
+pub fn zeros_are_possible(supports: &[Vec<Vec<u32>>]) -> bool {
+    let n = supports.iter().flatten().map(Vec::len).max().unwrap_or(0);
+    let mut looks = MOST_LOOKS;
+    let mut zero = Vec::with_capacity(n);
+    search(supports, n, &mut zero, &mut looks)
+}
+
+/// Decides the next variable; true where all are decided, one of them is 0 and
+/// no equation speaks against it.
+fn search(supports: &[Vec<Vec<u32>>], n: usize, zero: &mut Vec<bool>, looks: &mut u64) -> bool {
+    for support in supports {
+        let (mut alive, mut open) = (0, 0);
+        for term in support {
+            let Some(left) = looks.checked_sub(1) else {
+                return true;
+            };
+            *looks = left;
+            let vanishes = term
+                .iter()
+                .zip(zero.iter())
+                .any(|(&e, &zero)| e > 0 && zero);
+            if vanishes {
+                continue;
+            }
+            match term.iter().skip(zero.len()).all(|&e| e == 0) {
+                true => alive += 1,
+                false => open += 1,
+            }
+        }
+        if open == 0 && alive == 1 {
+            return false;
+        }
+    }
+    if zero.len() == n {
+        return zero.contains(&true);
+    }
+    for value in [true, false] {
+        zero.push(value);
+        let found = search(supports, n, zero, looks);
+        zero.pop();
+        if found {
+            return true;
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_term_decides() {
+        // x*y - 1, x + y: no coordinate can be 0.
+        let torus = [vec![vec![0, 0], vec![1, 1]], vec![vec![1, 0], vec![0, 1]]];
+        assert!(!zeros_are_possible(&torus));
+        // x*y + x, x + y - 1: (0, 1) is a solution.
+        let affine = [
+            vec![vec![1, 1], vec![1, 0]],
+            vec![vec![0, 0], vec![1, 0], vec![0, 1]],
+        ];
+        assert!(zeros_are_possible(&affine));
+        // x + y, x^2: the second says x = 0, then the first y = 0.
+        let origin = [vec![vec![1, 0], vec![0, 1]], vec![vec![2, 0]]];
+        assert!(zeros_are_possible(&origin));
+    }
+}
