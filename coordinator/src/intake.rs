@@ -149,6 +149,14 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
             "options.start_solutions: they go with start kind \"given\" or \"auto\" only"
                 .to_owned(),
         )),
+        (StartKind::Monodromy, _) => Ok(()),
+        _ if options.idle_loops.is_some() || options.expected_solutions.is_some() => {
+            Err(ApiError::Problem(
+                "options.idle_loops, options.expected_solutions: they go with start kind \
+                 \"monodromy\" only"
+                    .to_owned(),
+            ))
+        }
         _ => Ok(()),
     }
 }

@@ -7,6 +7,7 @@ mod check;
 mod classical_systems;
 mod hard_paths;
 mod mechanisms;
+mod nine_point;
 mod overdetermined;
 mod parameter_homotopies;
 mod singular_endpoints;

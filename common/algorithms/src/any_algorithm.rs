@@ -1,5 +1,7 @@
 //! AnyAlgorithm: one type for every algorithm, which can be written down and read back.
 
+use crate::monodromy::MonodromySolve;
+use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Next, PathAlgorithm, Progress};
@@ -19,6 +21,8 @@ pub enum AnyAlgorithm {
     ZeroDimensional(ZeroDimensionalSolve),
     /// From solved parameters to others.
     Parameter(ParameterSolve),
+    /// From one solution of a family to all.
+    Monodromy(Box<MonodromySolve>),
 }
 
 /// Why a snapshot cannot be read.
@@ -58,6 +62,9 @@ impl AnyAlgorithm {
                 Self::ZeroDimensional(solve.with_max_retries(max_retries))
             }
             Self::Parameter(solve) => Self::Parameter(solve.with_max_retries(max_retries)),
+            Self::Monodromy(solve) => {
+                Self::Monodromy(Box::new(solve.with_max_retries(max_retries)))
+            }
         }
     }
 
@@ -65,6 +72,23 @@ impl AnyAlgorithm {
         match self {
             Self::ZeroDimensional(solve) => solve,
             Self::Parameter(solve) => solve,
+            Self::Monodromy(solve) => &**solve,
+        }
+    }
+
+    /// How loops have come along, in a solve by monodromy.
+    pub fn loops(&self) -> Option<&LoopCounts> {
+        match self {
+            Self::Monodromy(solve) => Some(solve.counts()),
+            Self::ZeroDimensional(_) | Self::Parameter(_) => None,
+        }
+    }
+
+    /// The stage whose paths the answer counts; stages before it only prepared it.
+    pub fn counted_stage(&self) -> StageId {
+        match self {
+            Self::Monodromy(solve) => solve.counted_stage(),
+            Self::ZeroDimensional(_) | Self::Parameter(_) => StageId(0),
         }
     }
 
@@ -72,6 +96,7 @@ impl AnyAlgorithm {
         match self {
             Self::ZeroDimensional(solve) => solve,
             Self::Parameter(solve) => solve,
+            Self::Monodromy(solve) => &mut **solve,
         }
     }
 }

@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod any_algorithm;
+pub mod monodromy;
 pub mod opening;
 pub mod parameter_solve;
 pub mod plan;
@@ -16,6 +17,7 @@ pub mod progress;
 pub mod retried_stage;
 pub mod run_locally;
 pub mod start_costs;
+pub mod start_pair;
 pub mod zero_dimensional_solve;
 
 pub use any_algorithm::{AnyAlgorithm, RestoreError};

@@ -7,6 +7,7 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::Tolerances;
+use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
@@ -24,12 +25,20 @@ impl ParameterSolve {
     /// # Panics
     /// When it is no parameter homotopy, or has no target.
     pub fn new(first: Stage, system: &System, tolerances: Tolerances) -> Self {
+        Self::with_shape(first, &PointShape::of(system), tolerances)
+    }
+
+    /// The same, where only the shape of the system's points is at hand.
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn with_shape(first: Stage, shape: &PointShape, tolerances: Tolerances) -> Self {
         let HomotopyKind::Parameter { targets, .. } = &first.homotopy else {
             panic!("a parameter solve has a parameter homotopy");
         };
         let count = targets.len() as u64;
         Self {
-            paths: RetriedStage::new(first, system, tolerances, count),
+            paths: RetriedStage::with_shape(first, shape.clone(), tolerances, count),
         }
     }
 

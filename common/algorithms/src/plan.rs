@@ -1,13 +1,15 @@
 //! From a system and options to an algorithm that solves it, or to a clear reason why not.
 
 use crate::any_algorithm::AnyAlgorithm;
+use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
 use crate::retried_stage::MAX_RETRIES;
 use crate::start_costs::{StartKind, Starts, check_equations, checked_degrees};
+use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::start_points::{Digest, StartPoints};
+use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Tolerances;
@@ -32,6 +34,8 @@ pub enum StartChoice {
     Multihomogeneous,
     /// The start solutions that are given.
     Given,
+    /// Loops in the space of parameters, from given start solutions or one that is found.
+    Monodromy,
 }
 
 /// Start solutions that are stored as an object.
@@ -64,6 +68,8 @@ pub struct PlanOptions {
     pub tolerances: Tolerances,
     /// How often a path is tracked again at most.
     pub max_retries: u16,
+    /// When the loops of a monodromy solve end.
+    pub loops: LoopLimits,
 }
 
 impl Default for PlanOptions {
@@ -77,6 +83,7 @@ impl Default for PlanOptions {
             settings: Settings::default(),
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,
+            loops: LoopLimits::default(),
         }
     }
 }
@@ -108,6 +115,9 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         return Err(PlanError::ConstrainedParameters(
             name.unwrap_or_else(|| format!("equation {}", index + 1)),
         ));
+    }
+    if options.start == StartChoice::Monodromy {
+        return plan_monodromy(system, options);
     }
     let given = options.start == StartChoice::Given || options.start_points.is_some();
     match (given, options.start) {
@@ -183,7 +193,7 @@ fn plan_start_system(
     let (kind, why) = match choice {
         StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
         StartChoice::Multihomogeneous => (StartKind::Multihomogeneous, "asked for".to_string()),
-        StartChoice::Auto | StartChoice::Given => starts.choose()?,
+        StartChoice::Auto | StartChoice::Given | StartChoice::Monodromy => starts.choose()?,
     };
     let (tracked, start_points) = match kind {
         StartKind::TotalDegree => {
@@ -199,10 +209,15 @@ fn plan_start_system(
     Ok(finish(tracked, homotopy, start_points, kind, why, options))
 }
 
-fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
-    let start = options.start_points.ok_or(PlanError::NoStartPoints)?;
+fn check_given(system: &System, start: &GivenStart) -> Result<(), PlanError> {
     if start.count == 0 {
         return Err(PlanError::EmptyStart);
+    }
+    if start.count > MAX_PATHS {
+        return Err(PlanError::TooManyPaths {
+            start: StartKind::Given,
+            number: Some(start.count),
+        });
     }
     if start.dimension != system.variables.len() {
         return Err(PlanError::StartDimension {
@@ -210,6 +225,12 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
             expected: system.variables.len(),
         });
     }
+    Ok(())
+}
+
+fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+    let start = options.start_points.ok_or(PlanError::NoStartPoints)?;
+    check_given(system, &start)?;
     checked_degrees(system)?;
     check_equations(system)?;
     let homotopy = if system.path_variable.is_some() {
@@ -256,6 +277,76 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
         why,
         options,
     ))
+}
+
+fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+    if system.path_variable.is_some() {
+        return Err(PlanError::MonodromyOfHomotopy);
+    }
+    if system.parameters.is_empty() {
+        return Err(PlanError::MonodromyWithoutParameters);
+    }
+    checked_degrees(system)?;
+    check_equations(system)?;
+    let (start, why) = match (options.start_points, &options.start_parameters) {
+        (Some(given), Some(parameters)) => {
+            check_given(system, &given)?;
+            let start = LoopStart {
+                parameters: parameters.clone(),
+                points: StartPoints::Stored {
+                    object: given.object,
+                    count: given.count,
+                },
+                count: given.count,
+                found: None,
+            };
+            let s = if given.count == 1 { "" } else { "s" };
+            (
+                start,
+                format!("asked for; from {} given solution{s}", given.count),
+            )
+        }
+        (Some(_), None) => return Err(PlanError::NoStartParameters),
+        (None, Some(_)) => return Err(PlanError::StartParametersAlone),
+        (None, None) => {
+            let (point, parameters) = start_pair(system, options.seed)?;
+            let points = StoredPoints {
+                dimension: point.len(),
+                coordinates: point.clone(),
+            };
+            let start = LoopStart {
+                parameters,
+                points: points.as_start(),
+                count: 1,
+                found: Some(point),
+            };
+            let why = "asked for; the system is linear in its parameters, so that a random point \
+                       solves it for some of them";
+            (start, why.to_string())
+        }
+    };
+    let targets = if options.target_parameters.is_empty() {
+        vec![start.parameters.clone()]
+    } else {
+        options.target_parameters.clone()
+    };
+    let paths = start.count;
+    let solve = MonodromySolve::new(
+        system,
+        start,
+        targets,
+        options.loops,
+        options.settings.clone(),
+        options.tolerances.clone(),
+        options.seed,
+    )?;
+    Ok(Plan {
+        system: system.clone(),
+        algorithm: AnyAlgorithm::Monodromy(Box::new(solve.with_max_retries(options.max_retries))),
+        start: StartKind::Monodromy,
+        paths,
+        why,
+    })
 }
 
 fn finish(

@@ -2,6 +2,8 @@
 
 use crate::plan::MAX_PATHS;
 use crate::start_costs::StartKind;
+use crate::start_pair::StartPairError;
+use cognate_solutions::symmetry::SymmetryError;
 use cognate_systems::polynomial::PolynomialError;
 
 /// Why there is no plan.
@@ -87,6 +89,26 @@ pub enum PlanError {
     /// Start parameters without solutions there.
     #[error("start parameters need start solutions")]
     StartParametersAlone,
+    /// Nothing to make loops in.
+    #[error(
+        "the start `monodromy` makes loops in the space of parameters; this system has no \
+         parameters (a start system, such as total degree, serves)"
+    )]
+    MonodromyWithoutParameters,
+    /// A homotopy is one path, no family.
+    #[error(
+        "the start `monodromy` is for families with parameters, not for a homotopy with a path variable"
+    )]
+    MonodromyOfHomotopy,
+    /// No start pair is given, and none was found.
+    #[error(
+        "the start `monodromy` needs one solution and its parameters (start solutions and start \
+         parameters), since {0}"
+    )]
+    NoStartPair(#[from] StartPairError),
+    /// Generators that cannot be followed.
+    #[error(transparent)]
+    Symmetry(#[from] SymmetryError),
     /// A homotopy of the user's own has no start system of ours.
     #[error("a system with a path variable is a homotopy: it needs its start solutions")]
     HomotopyWithoutStart,

@@ -50,6 +50,16 @@ pub struct RetriedStage {
 impl RetriedStage {
     /// A stage that is not open yet, with its number of targets.
     pub fn new(first: Stage, system: &System, tolerances: Tolerances, targets: u64) -> Self {
+        Self::with_shape(first, PointShape::of(system), tolerances, targets)
+    }
+
+    /// The same, where only the shape of the system's points is at hand.
+    pub fn with_shape(
+        first: Stage,
+        shape: PointShape,
+        tolerances: Tolerances,
+        targets: u64,
+    ) -> Self {
         let items = first
             .items()
             .expect("a plan has only stages whose paths can be counted");
@@ -59,7 +69,7 @@ impl RetriedStage {
         );
         Self {
             first,
-            shape: PointShape::of(system),
+            shape,
             tolerances,
             max_retries: MAX_RETRIES,
             paths_per_target: items / targets,
@@ -261,7 +271,7 @@ impl RetriedStage {
 }
 
 /// Whether tracking a failed path more carefully can make it succeed.
-fn can_be_helped(outcome: PathOutcome) -> bool {
+pub(crate) fn can_be_helped(outcome: PathOutcome) -> bool {
     match outcome {
         PathOutcome::Failed(failure) => match failure {
             Failure::StepTooSmall | Failure::TooManySteps | Failure::EndgameUnsettled => true,

@@ -21,6 +21,8 @@ pub enum StartKind {
     Multihomogeneous,
     /// Given start solutions.
     Given,
+    /// Loops in the space of parameters.
+    Monodromy,
 }
 
 impl std::fmt::Display for StartKind {
@@ -29,6 +31,7 @@ impl std::fmt::Display for StartKind {
             Self::TotalDegree => "total-degree",
             Self::Multihomogeneous => "multihomogeneous",
             Self::Given => "given",
+            Self::Monodromy => "monodromy",
         })
     }
 }

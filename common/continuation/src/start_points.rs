@@ -92,12 +92,26 @@ impl StoredPoints {
     /// The bytes of the object: magic, dimension, then coordinates, little endian.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(16 + 16 * self.coordinates.len());
-        bytes.extend_from_slice(MAGIC);
-        bytes.extend_from_slice(&(self.dimension as u64).to_le_bytes());
-        for z in &self.coordinates {
-            bytes.extend_from_slice(&z.re.to_le_bytes());
-            bytes.extend_from_slice(&z.im.to_le_bytes());
+        bytes.extend_from_slice(&Self::head(self.dimension));
+        for &z in &self.coordinates {
+            bytes.extend_from_slice(&Self::coordinate_bytes(z));
         }
+        bytes
+    }
+
+    /// The first bytes of an object, for whoever writes it piece by piece: magic and dimension.
+    pub fn head(dimension: usize) -> [u8; 16] {
+        let mut head = [0; 16];
+        head[..8].copy_from_slice(MAGIC);
+        head[8..].copy_from_slice(&(dimension as u64).to_le_bytes());
+        head
+    }
+
+    /// The bytes of one coordinate: real part, imaginary part.
+    pub fn coordinate_bytes(z: Complex64) -> [u8; 16] {
+        let mut bytes = [0; 16];
+        bytes[..8].copy_from_slice(&z.re.to_le_bytes());
+        bytes[8..].copy_from_slice(&z.im.to_le_bytes());
         bytes
     }
 

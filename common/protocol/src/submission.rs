@@ -51,6 +51,10 @@ pub struct Options {
     pub start_solutions: Option<StartSolutions>,
     /// A name for people; may be empty.
     pub name: String,
+    /// For [`StartKind::Monodromy`]: loops in a row without anything new after which it ends.
+    pub idle_loops: Option<u32>,
+    /// For [`StartKind::Monodromy`]: how many solutions there are, where that is known.
+    pub expected_solutions: Option<u64>,
 }
 
 /// Which start system.
@@ -65,6 +69,8 @@ pub enum StartKind {
     Multihomogeneous,
     /// Start solutions are given.
     Given,
+    /// Loops in the space of parameters.
+    Monodromy,
 }
 
 /// The arithmetic asked for.

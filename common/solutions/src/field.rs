@@ -6,6 +6,7 @@
 
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::{Expressions, Function, Node, NodeId};
+use num_complex::Complex64;
 use rug::ops::{NegAssign, Pow};
 use rug::{Complex, Float, Integer};
 
@@ -56,23 +57,35 @@ pub fn evaluate<F: Field>(
         if !needed[id] {
             continue;
         }
-        let of = |n: &NodeId| values[n.0 as usize].as_ref();
-        let value = match expressions.node(NodeId(id as u32)) {
-            Node::Constant(c) => field.constant(c)?,
-            Node::Variable(v) => variables.get(*v as usize)?.clone(),
-            Node::Parameter(p) => parameters.get(*p as usize)?.clone(),
-            Node::Add(a, b) => field.add(of(a)?, of(b)?),
-            Node::Subtract(a, b) => field.add(of(a)?, &field.negate(of(b)?)),
-            Node::Multiply(a, b) => field.multiply(of(a)?, of(b)?),
-            Node::Divide(a, b) => field.divide(of(a)?, of(b)?)?,
-            Node::Negate(a) => field.negate(of(a)?),
-            Node::Power(a, exponent) => power(field, of(a)?, *exponent)?,
-            Node::Root(a, exponent) => field.root(of(a)?, exponent)?,
-            Node::Function(f, a) => field.function(*f, of(a)?)?,
-        };
+        let node = expressions.node(NodeId(id as u32));
+        let value = of_node(field, node, &values, variables, parameters)?;
         values[id] = Some(value);
     }
     roots.iter().map(|r| values[r.0 as usize].clone()).collect()
+}
+
+/// The value of one node, whose children have theirs in `values`.
+pub(crate) fn of_node<F: Field>(
+    field: &F,
+    node: &Node,
+    values: &[Option<F::Value>],
+    variables: &[F::Value],
+    parameters: &[F::Value],
+) -> Option<F::Value> {
+    let of = |n: &NodeId| values[n.0 as usize].as_ref();
+    Some(match node {
+        Node::Constant(c) => field.constant(c)?,
+        Node::Variable(v) => variables.get(*v as usize)?.clone(),
+        Node::Parameter(p) => parameters.get(*p as usize)?.clone(),
+        Node::Add(a, b) => field.add(of(a)?, of(b)?),
+        Node::Subtract(a, b) => field.add(of(a)?, &field.negate(of(b)?)),
+        Node::Multiply(a, b) => field.multiply(of(a)?, of(b)?),
+        Node::Divide(a, b) => field.divide(of(a)?, of(b)?)?,
+        Node::Negate(a) => field.negate(of(a)?),
+        Node::Power(a, exponent) => power(field, of(a)?, *exponent)?,
+        Node::Root(a, exponent) => field.root(of(a)?, exponent)?,
+        Node::Function(f, a) => field.function(*f, of(a)?)?,
+    })
 }
 
 /// By repeated squaring.
@@ -178,6 +191,38 @@ impl Field for PrimeField {
         None
     }
     fn function(&self, _: Function, _: &u64) -> Option<u64> {
+        None
+    }
+}
+
+/// Complex doubles: for symmetries, whose images are compared with a margin. No roots and no
+/// functions, which would need libm.
+#[derive(Clone, Copy, Debug)]
+pub struct Doubles;
+
+impl Field for Doubles {
+    type Value = Complex64;
+
+    fn constant(&self, value: &ComplexRational) -> Option<Complex64> {
+        Some(Complex64::new(value.re.to_f64(), value.im.to_f64()))
+    }
+    fn add(&self, a: &Complex64, b: &Complex64) -> Complex64 {
+        a + b
+    }
+    fn negate(&self, a: &Complex64) -> Complex64 {
+        -a
+    }
+    fn multiply(&self, a: &Complex64, b: &Complex64) -> Complex64 {
+        a * b
+    }
+    fn divide(&self, a: &Complex64, b: &Complex64) -> Option<Complex64> {
+        let quotient = a / b;
+        (quotient.re.is_finite() && quotient.im.is_finite()).then_some(quotient)
+    }
+    fn root(&self, _: &Complex64, _: &Rational) -> Option<Complex64> {
+        None
+    }
+    fn function(&self, _: Function, _: &Complex64) -> Option<Complex64> {
         None
     }
 }

@@ -4,7 +4,7 @@
 //! [`classification`] gives each path a verdict by rules on its own facts;
 //! [`unique_points`] finds the endpoints that are one point; [`path_crossing`]
 //! names the paths that must be tracked again; [`real`] decides whether a
-//! solution can be called real; [`solution_set`] puts it together, with counts
+//! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
 //! that add up. Nothing here tracks a path: everything can be decided again
 //! from stored results, with other tolerances.
 #![forbid(unsafe_code)]
@@ -19,6 +19,7 @@ pub mod real;
 pub mod solution;
 pub mod solution_set;
 pub mod summary;
+pub mod symmetry;
 pub mod unique_points;
 
 #[cfg(test)]

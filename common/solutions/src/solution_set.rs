@@ -11,6 +11,7 @@ use crate::point_shape::PointShape;
 use crate::real::is_real;
 use crate::solution::{NamedValues, Solution};
 use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
+use crate::symmetry::classes;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_systems::system::System;
@@ -149,6 +150,7 @@ impl<'a> Draft<'a> {
         let representatives = self.merge();
         self.decide_reality(&representatives);
         self.count_solutions(history, &representatives);
+        self.find_classes();
         self.warn();
         self.set
     }
@@ -351,6 +353,15 @@ impl<'a> Draft<'a> {
             set.paths.finite + set.paths.singular,
             "each path to a finite point is counted in one multiplicity"
         );
+    }
+
+    fn find_classes(&mut self) {
+        let set = &mut self.set;
+        let solutions = &mut set.solutions;
+        match classes::assign(solutions, self.system, self.tolerances, self.seed) {
+            Ok(counts) => set.classes = counts,
+            Err(reason) => set.warnings.push(reason),
+        }
     }
 
     fn warn(&mut self) {

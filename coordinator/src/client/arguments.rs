@@ -115,8 +115,7 @@ pub enum Start {
     /// Not in this version
     #[value(hide = true)]
     Regeneration,
-    /// Not in this version
-    #[value(hide = true)]
+    /// All solutions of a family with parameters from one of them, by loops
     Monodromy,
 }
 
@@ -158,7 +157,7 @@ pub struct ProblemArguments {
         value_enum,
         default_value_t,
         hide_possible_values = true,
-        value_name = "auto|total-degree|multihomogeneous|given"
+        value_name = "auto|total-degree|multihomogeneous|given|monodromy"
     )]
     pub start: Start,
     /// Known solutions to start from: our solutions.jsonl, Bertini's start format or PHCpack's list
@@ -188,9 +187,16 @@ pub struct ProblemArguments {
     /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
     #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
     pub precision: PrecisionChoice,
-    /// Generators of a symmetry group of the solutions (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
+    /// Generators of a symmetry group of the solutions (JSON): classes are counted, and
+    /// --start monodromy tracks one solution of each
+    #[arg(long, value_name = "FILE")]
     pub symmetry: Option<PathBuf>,
+    /// Loops in a row without anything new after which --start monodromy ends [default: 5]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub idle_loops: Option<u32>,
+    /// How many solutions there are at generic parameters, where --start monodromy should know
+    #[arg(long, value_name = "N")]
+    pub expect: Option<u64>,
     /// Proofs that there is one solution in each box (not in this version)
     #[arg(long, hide = true)]
     pub certify: bool,

@@ -31,14 +31,13 @@ fn problem(a: &ProblemArguments) -> Option<String> {
         Start::LinearProduct => Some("--start linear-product"),
         Start::Polyhedral => Some("--start polyhedral"),
         Start::Regeneration => Some("--start regeneration"),
-        Start::Monodromy => Some("--start monodromy"),
-        Start::Auto | Start::TotalDegree | Start::Multihomogeneous | Start::Given => None,
+        Start::Auto
+        | Start::TotalDegree
+        | Start::Multihomogeneous
+        | Start::Given
+        | Start::Monodromy => None,
     };
     let flags = [
-        (
-            a.symmetry.is_some(),
-            "--symmetry (symmetry groups of the solutions)",
-        ),
         (a.certify, "--certify (certified solutions)"),
         (a.deflate, "--deflate (deflation of singular solutions)"),
         (

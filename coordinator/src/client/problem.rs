@@ -80,6 +80,18 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         let (name, content) = read_file(path)?;
         formats::degenerate::read(&name, &content, &mut system).map_err(|e| described(&e))?;
     }
+    if let Some(path) = &a.symmetry {
+        let (name, content) = read_file(path)?;
+        formats::symmetry::read(&name, &content, &mut system).map_err(|e| described(&e))?;
+    }
+    for (given, option) in [
+        (a.idle_loops.is_some(), "--idle-loops"),
+        (a.expect.is_some(), "--expect"),
+    ] {
+        if given && a.start != Start::Monodromy {
+            return Err(wrong(option, "only goes with --start monodromy"));
+        }
+    }
     warnings.extend(intake::precision_warning(&file));
     let start_solutions = match &a.start_solutions {
         None => None,
@@ -92,11 +104,12 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (Start::TotalDegree | Start::Multihomogeneous, Some(_)) => {
             return Err(wrong(
                 "--start-solutions",
-                "only go with --start given or auto",
+                "only go with --start given, monodromy or auto",
             ));
         }
         (Start::TotalDegree, None) => StartKind::TotalDegree,
         (Start::Multihomogeneous, None) => StartKind::Multihomogeneous,
+        (Start::Monodromy, _) => StartKind::Monodromy,
         (_, Some(_)) => StartKind::Given,
         // What is not in this version was refused before.
         (_, None) => StartKind::Auto,
@@ -130,6 +143,8 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         target_parameters: parameters(a.target_parameters.as_deref(), &system)?,
         start_solutions,
         name: short_name(&a.file).chars().take(60).collect(),
+        idle_loops: a.idle_loops,
+        expected_solutions: a.expect,
     };
     Ok(Prepared {
         submission: Submission {
@@ -143,6 +158,21 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
 
 fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientError> {
     let (name, content) = read_file(path)?;
+    // Our own objects, all bits of them: families that are kept.
+    if let Ok(points) = StoredPoints::from_bytes(&content) {
+        if points.dimension != system.variables.len() {
+            let message = format!(
+                "holds points of {} coordinates; the system has {} variables",
+                points.dimension,
+                system.variables.len()
+            );
+            return Err(wrong(&name, &message));
+        }
+        if points.is_empty() {
+            return Err(wrong(&name, "holds no start solution"));
+        }
+        return Ok(StartSolutions::Points(points));
+    }
     let points = formats::points::read_solutions(&name, &content, &system.variables)
         .map_err(|e| described(&e))?;
     if points.is_empty() {

@@ -1,13 +1,14 @@
 //! What clients ask: progress, results, lists, explanations.
 
 use super::{Coordinator, CoordinatorError, job_row};
-use crate::jobs::planning::Planned;
+use crate::jobs::planning::{Planned, STATE};
 use crate::jobs::progress::JobProgress;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
 use crate::results::summary::{SOLUTIONS, Summary};
+use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::Stage;
+use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
@@ -177,7 +178,20 @@ impl Coordinator {
         let sets = self.solutions(job).await?;
         let system = self.problem(row.asked.problem).await?;
         let mut results = Vec::new();
-        for stage in self.ledger.stages(job).await? {
+        let counted = match row.snapshot {
+            None => StageId(0),
+            Some(state) => {
+                let state: Vec<u8> = self.store.record(&STATE, state).await?;
+                let algorithm = AnyAlgorithm::restore(&state).map_err(|error| {
+                    CoordinatorError::Problem(format!(
+                        "the state of job {job} cannot be read: {error}"
+                    ))
+                })?;
+                algorithm.counted_stage()
+            }
+        };
+        let stages = self.ledger.stages(job).await?.into_iter();
+        for stage in stages.filter(|stage| stage.stage >= counted) {
             let (mut from, first) = (0, results.is_empty());
             loop {
                 let rows = self
@@ -256,6 +270,22 @@ impl Coordinator {
                 paths.crossings_found,
                 paths.crossings_resolved
             ));
+            if let Some(block) = &summary.monodromy {
+                let loops = &block.loops;
+                lines.push(format!(
+                    "monodromy: {} solutions in {} classes by {} loops, the last {} without \
+                     anything new; {} paths tracked for them, {} lost; {} crossings seen, {} came \
+                     apart",
+                    loops.solutions,
+                    loops.classes,
+                    loops.loops,
+                    loops.idle_loops,
+                    loops.tracked,
+                    loops.lost,
+                    loops.crossings_found,
+                    loops.crossings_resolved
+                ));
+            }
             for (reason, count) in &summary.failures {
                 lines.push(format!("failed: {count} because {reason}"));
             }

@@ -9,6 +9,7 @@ use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::{ChunkState, JobRow};
 use crate::ledger::sqlite::SqliteLedger;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_protocol::submission::StartKind;
 use cognate_solutions::solution_set::FailureReason;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
@@ -33,12 +34,12 @@ fn cluster(most_items: u64, seed: u64) -> Cluster {
 }
 
 /// The reference: one coordinator, one worker, nothing happens.
-async fn quiet() -> (JobRow, Vec<SolutionSet>) {
+async fn quiet(problem: &NewProblem) -> (JobRow, Vec<SolutionSet>) {
     let mut cluster = cluster(1000, 1);
     cluster.start_coordinator();
     cluster.start_worker();
-    cluster.submit(&problem()).await;
-    for _ in 0..50 {
+    cluster.submit(problem).await;
+    for _ in 0..200 {
         cluster.drive(0).await;
         cluster.pull(0, 0).await;
         cluster.report(0, 0).await;
@@ -51,7 +52,7 @@ async fn quiet() -> (JobRow, Vec<SolutionSet>) {
 
 #[tokio::test]
 async fn the_reference_is_right() {
-    let (_, sets) = quiet().await;
+    let (_, sets) = quiet(&problem()).await;
     assert_eq!(sets.len(), 1);
     assert_eq!((sets[0].paths.total, sets[0].paths.finite), (16, 16));
     assert_eq!(sets[0].counts.distinct, 16);
@@ -60,7 +61,7 @@ async fn the_reference_is_right() {
 
 #[tokio::test]
 async fn any_cluster_finds_the_same() {
-    let (reference, _) = quiet().await;
+    let (reference, _) = quiet(&problem()).await;
     for seed in 0..40 {
         let mut cluster = cluster([1, 3, 5, 16][seed as usize % 4], seed);
         // Here workers die by chance, and no path is at fault.
@@ -80,7 +81,47 @@ async fn any_cluster_finds_the_same() {
 
 #[tokio::test]
 async fn a_coordinator_killed_at_any_write_loses_nothing() {
-    let (reference, _) = quiet().await;
+    survives_a_kill_at_any_write(&problem()).await;
+}
+
+/// Its stages start at points that the job itself found: objects that the steward writes before
+/// the row of the stage.
+fn monodromy() -> NewProblem {
+    let mut problem = problem_of(
+        "variable_group x; parameter p; function f; f = x^3 - p;",
+        None,
+    );
+    problem.options.start = StartKind::Monodromy;
+    problem.options.expected_solutions = Some(3);
+    problem
+}
+
+#[tokio::test]
+async fn a_kill_between_start_points_and_their_stage_does_no_harm() {
+    let (_, sets) = quiet(&monodromy()).await;
+    assert_eq!(sets[0].counts.distinct, 3);
+    survives_a_kill_at_any_write(&monodromy()).await;
+}
+
+#[tokio::test]
+async fn any_cluster_makes_the_same_loops() {
+    let (reference, _) = quiet(&monodromy()).await;
+    for seed in 0..10 {
+        let mut cluster = cluster([1, 2][seed as usize % 2], seed);
+        cluster.policy.suspicion_limit = 1000;
+        for _ in 0..=seed % 2 {
+            cluster.start_coordinator();
+            cluster.start_worker();
+        }
+        cluster.submit(&monodromy()).await;
+        let row = cluster.run().await;
+        assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+    }
+}
+
+async fn survives_a_kill_at_any_write(problem: &NewProblem) {
+    let (reference, _) = quiet(problem).await;
     for side in [Side::Before, Side::After] {
         for fail_at in 0.. {
             let clock = Arc::new(ManualClock::default());
@@ -91,8 +132,8 @@ async fn a_coordinator_killed_at_any_write_loses_nothing() {
                 Cluster::new(faulty.clone(), store, clock.clone(), policy(6), fail_at);
             cluster.start_coordinator();
             cluster.start_worker();
-            cluster.submit(&problem()).await;
-            for _ in 0..200 {
+            cluster.submit(problem).await;
+            for _ in 0..400 {
                 cluster.drive(0).await;
                 cluster.pull(0, 0).await;
                 cluster.report(0, 0).await;
@@ -129,7 +170,7 @@ async fn a_coordinator_killed_at_any_write_loses_nothing() {
 
 #[tokio::test]
 async fn a_ledger_and_store_on_disk_are_all_that_a_restart_needs() {
-    let (reference, _) = quiet().await;
+    let (reference, _) = quiet(&problem()).await;
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(ManualClock::default());
     let mut tracked = 0;
@@ -295,7 +336,7 @@ async fn a_report_of_other_paths_is_refused() {
 /// The shell: real clock, its own tasks, two workers that poll.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_running_coordinator_needs_nobody_to_drive_it() {
-    let (reference, _) = quiet().await;
+    let (reference, _) = quiet(&problem()).await;
     let clock = Arc::new(crate::ledger::clock::SystemClock::default());
     let ledger = Arc::new(MemoryLedger::new(clock));
     let who = CoordinatorId::new("c").unwrap();

@@ -286,7 +286,8 @@ impl Drive {
         let stages = ledger.stages(self.job).await?;
         let workers = ledger.contributions(self.job).await?;
         let now = ledger.now().await?;
-        let summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
+        let mut summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
+        summary.monodromy = self.steward().monodromy();
         let solutions = store.put_record(&summary::SOLUTIONS, sets).await?;
         let summary = store.put(summary.to_json().into()).await?;
         let end = JobEnd::Solved { solutions, summary };

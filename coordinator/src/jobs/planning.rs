@@ -5,6 +5,7 @@
 
 use crate::ledger::identity::ItemRange;
 use crate::results::store::RecordKind;
+use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::{Next, PathAlgorithm, PlanError};
@@ -106,10 +107,17 @@ pub fn plan_options(
             StartKind::TotalDegree => StartChoice::TotalDegree,
             StartKind::Multihomogeneous => StartChoice::Multihomogeneous,
             StartKind::Given => StartChoice::Given,
+            StartKind::Monodromy => StartChoice::Monodromy,
         },
         start_points,
         start_parameters,
         target_parameters: options.target_parameters.clone(),
+        loops: LoopLimits {
+            idle_loops: options
+                .idle_loops
+                .unwrap_or(LoopLimits::default().idle_loops),
+            count: options.expected_solutions,
+        },
         seed: options.seed.unwrap_or_default(),
         settings: options.settings.resolve(),
         max_retries: match options.precision {

@@ -5,6 +5,7 @@
 //! state that lived through it.
 
 use crate::ledger::rows::StageRow;
+use crate::results::summary::MonodromyBlock;
 use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
@@ -82,6 +83,22 @@ impl Steward {
     /// What was found, one set for each target.
     pub fn solution_sets(&self) -> Vec<SolutionSet> {
         self.algorithm.solution_sets(&self.system)
+    }
+
+    /// How the solutions were found, in a solve by monodromy.
+    pub fn monodromy(&self) -> Option<MonodromyBlock> {
+        let AnyAlgorithm::Monodromy(solve) = &self.algorithm else {
+            return None;
+        };
+        let values = match solve.targets() {
+            [one] => one.as_slice(),
+            _ => &[],
+        };
+        let names = self.system.parameters.iter().cloned();
+        Some(MonodromyBlock {
+            loops: solve.counts().clone(),
+            parameters: names.zip(values.iter().copied()).collect(),
+        })
     }
 
     /// What is done at the moment, in a few words.

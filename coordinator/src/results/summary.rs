@@ -6,8 +6,10 @@ use super::store::RecordKind;
 use crate::jobs::planning::Planned;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{Contribution, JobRow, StageRow};
+use cognate_algorithms::monodromy::counts::LoopCounts;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::{ClassCounts, PathCounts, SolutionCounts};
+use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -27,6 +29,9 @@ pub struct Summary {
     pub solutions: SolutionCounts,
     /// Symmetry classes, counted.
     pub classes: ClassCounts,
+    /// How the solutions were found, in a solve by monodromy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub monodromy: Option<MonodromyBlock>,
     /// How long it took.
     pub time: TimeBlock,
     /// Who tracked how much.
@@ -60,6 +65,16 @@ pub struct ProblemBlock {
     pub why: String,
     /// Seed of everything random.
     pub seed: u64,
+}
+
+/// A solve by monodromy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MonodromyBlock {
+    /// Loops and paths.
+    pub loops: LoopCounts,
+    /// The parameters of the solutions, by name: what a later solve takes as start parameters.
+    /// Empty where there are several targets.
+    pub parameters: BTreeMap<String, Complex64>,
 }
 
 /// How long it took.
@@ -147,6 +162,7 @@ impl Summary {
             paths: sum.paths,
             solutions: sum.solutions,
             classes: sum.classes,
+            monodromy: None,
             time: TimeBlock {
                 wall_seconds,
                 cpu_seconds: tracking_cpu_seconds,

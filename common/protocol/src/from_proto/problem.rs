@@ -87,6 +87,7 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             Ok(v1::StartKind::TotalDegree) => StartKind::TotalDegree,
             Ok(v1::StartKind::Multihomogeneous) => StartKind::Multihomogeneous,
             Ok(v1::StartKind::Given) => StartKind::Given,
+            Ok(v1::StartKind::Monodromy) => StartKind::Monodromy,
             Err(_) => {
                 return Err(ProtocolError::invalid(
                     "start",
@@ -122,6 +123,8 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
         target_parameters,
         start_solutions,
         name: m.name,
+        idle_loops: m.idle_loops,
+        expected_solutions: m.expected_solutions,
     })
 }
 

@@ -33,6 +33,7 @@ pub fn options(options: &Options) -> v1::Options {
             StartKind::TotalDegree => v1::StartKind::TotalDegree,
             StartKind::Multihomogeneous => v1::StartKind::Multihomogeneous,
             StartKind::Given => v1::StartKind::Given,
+            StartKind::Monodromy => v1::StartKind::Monodromy,
         }
         .into(),
         groups: options
@@ -80,6 +81,8 @@ pub fn options(options: &Options) -> v1::Options {
                 }),
             }),
         name: options.name.clone(),
+        idle_loops: options.idle_loops,
+        expected_solutions: options.expected_solutions,
     }
 }
 

@@ -230,6 +230,9 @@ impl Draw {
                 }
             }),
             name: "a name".to_owned(),
+            // Drawn from nothing, so that the other draws stay what they were.
+            idle_loops: Some(count as u32).filter(|&n| n > 1),
+            expected_solutions: Some(length as u64).filter(|&n| n > 0),
         }
     }
 

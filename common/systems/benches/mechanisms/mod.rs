@@ -16,50 +16,14 @@ pub struct Plain {
     pub parameters: usize,
 }
 
-/// The nine-point path synthesis of four-bars (Roth and Freudenstein; Wampler,
-/// Morgan, Sommese 1992): 8 equations of degree 7 in x, X, a, A, y, Y, b, B,
-/// the 16 parameters d_j, D_j.
+/// The nine-point path synthesis of four-bars: see `named::nine_point`.
 pub fn nine_points() -> Plain {
-    let mut e = Expressions::new();
-    let v: Vec<NodeId> = (0..8).map(|i| e.variable(i)).collect();
-    let [x, xx, a, aa, y, yy, b, bb] = v[..] else {
-        unreachable!("eight variables")
-    };
-    let (n, nn) = (e.multiply(a, xx), e.multiply(aa, x));
-    let (m, mm) = (e.multiply(b, yy), e.multiply(bb, y));
-    let differences = [(x, a), (xx, aa), (y, b), (yy, bb)].map(|(p, q)| e.subtract(p, q));
-    let equations = (0..8)
-        .map(|j| {
-            let (d, dd) = (e.parameter(2 * j), e.parameter(2 * j + 1));
-            let ddd = e.multiply(d, dd);
-            let mut dyad = |x: NodeId, xx: NodeId, n: NodeId, nn: NodeId, u: NodeId, uu: NodeId| {
-                let p = e.multiply(dd, x);
-                let alpha = e.subtract(p, nn);
-                let p = e.multiply(d, xx);
-                let beta = e.subtract(p, n);
-                let (p, q) = (e.multiply(dd, u), e.multiply(d, uu));
-                let p = e.add(p, q);
-                (alpha, beta, e.add(p, ddd))
-            };
-            let (alpha, beta, kappa) = dyad(x, xx, n, nn, differences[0], differences[1]);
-            let (alpha2, beta2, kappa2) = dyad(y, yy, m, mm, differences[2], differences[3]);
-            let mut determinant = |p: NodeId, q: NodeId, r: NodeId, s: NodeId| {
-                let (pq, rs) = (e.multiply(p, q), e.multiply(r, s));
-                e.subtract(pq, rs)
-            };
-            let g = determinant(beta, kappa2, beta2, kappa);
-            let h = determinant(alpha2, kappa, alpha, kappa2);
-            let k = determinant(alpha, beta2, alpha2, beta);
-            let (gh, sum) = (e.multiply(g, h), e.add(g, h));
-            let rest = e.multiply(sum, k);
-            e.add(gh, rest)
-        })
-        .collect();
+    let system = cognate_systems::named::nine_point().system;
     Plain {
-        expressions: e,
-        equations,
-        variables: 8,
-        parameters: 16,
+        variables: system.variables.len(),
+        parameters: system.parameters.len(),
+        expressions: system.expressions,
+        equations: system.equations,
     }
 }
 

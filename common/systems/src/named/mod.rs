@@ -1,9 +1,11 @@
 //! Classical test systems by name, each with its published root count and source.
 
 mod benchmarks;
+mod nine_point;
 mod singular;
 
 pub use benchmarks::{cyclic, eco, katsura, noon, reimer};
+pub use nine_point::{FourBar, NINE_POINT_SOLUTIONS, nine_point, random_four_bar};
 pub use singular::{caprasse, griewank_osborne};
 
 use crate::expression::{Expressions, NodeId};

@@ -47,6 +47,11 @@ pub async fn show(
     };
     if let Some(path) = &output.output {
         let mut folder = Folder::create(path)?;
+        if let Some(block) = &summary.monodromy
+            && !block.parameters.is_empty()
+        {
+            folder.family(&block.parameters)?;
+        }
         connection
             .solutions(job, |solution| {
                 folder.solution(&solution)?;

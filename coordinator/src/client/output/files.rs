@@ -5,7 +5,10 @@
 
 use super::json;
 use crate::client::error::ClientError;
+use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::solution::Solution;
+use num_complex::Complex64;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -18,6 +21,8 @@ pub struct Folder {
     real_finite: BertiniFile,
     nonsingular: BertiniFile,
     singular: BertiniFile,
+    /// Nonsingular solutions as an object of points, where a later solve may start from them.
+    points: Option<Written>,
 }
 
 /// A file with its name, for messages.
@@ -37,9 +42,12 @@ impl Written {
     }
 
     fn write(&mut self, text: &str) -> Result<(), ClientError> {
+        self.write_bytes(text.as_bytes())
+    }
+
+    fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), ClientError> {
         let Self { path, file } = self;
-        file.write_all(text.as_bytes())
-            .map_err(|e| cannot_write(path, e))
+        file.write_all(bytes).map_err(|e| cannot_write(path, e))
     }
 
     fn finish(mut self) -> Result<(), ClientError> {
@@ -122,6 +130,7 @@ impl Folder {
             real_finite: BertiniFile::create(path, "real_finite_solutions")?,
             nonsingular: BertiniFile::create(path, "nonsingular_solutions")?,
             singular: BertiniFile::create(path, "singular_solutions")?,
+            points: None,
         })
     }
 
@@ -134,15 +143,35 @@ impl Folder {
             self.real_finite.point(solution)?;
         }
         if solution.singular {
-            self.singular.point(solution)
-        } else {
-            self.nonsingular.point(solution)
+            return self.singular.point(solution);
         }
+        if let Some(points) = &mut self.points {
+            if self.nonsingular.count == 0 {
+                points.write_bytes(&StoredPoints::head(solution.variables.0.len()))?;
+            }
+            for (_, z) in &solution.variables.0 {
+                points.write_bytes(&StoredPoints::coordinate_bytes(*z))?;
+            }
+        }
+        self.nonsingular.point(solution)
+    }
+
+    /// The solutions that follow are a family: with these parameters of theirs they are what later
+    /// solves start from. `solutions.points` has every bit of them in little space.
+    pub fn family(&mut self, values: &BTreeMap<String, Complex64>) -> Result<(), ClientError> {
+        self.points = Some(Written::create(&self.path, "solutions.points")?);
+        let mut out = Written::create(&self.path, "parameters.json")?;
+        let text = serde_json::to_string_pretty(values).expect("names and numbers are JSON");
+        out.write(&format!("{text}\n"))?;
+        out.finish()
     }
 
     /// Writes the summary and completes all files.
     pub fn finish(self, summary: &str) -> Result<(), ClientError> {
         self.lines.finish()?;
+        if let Some(points) = self.points {
+            points.finish()?;
+        }
         for file in [
             self.finite,
             self.real_finite,
@@ -161,7 +190,6 @@ impl Folder {
 mod tests {
     use super::*;
     use cognate_solutions::solution::NamedValues;
-    use num_complex::Complex64;
 
     fn solution(re: f64, real: bool, singular: bool) -> Solution {
         let values = [
@@ -183,6 +211,30 @@ mod tests {
             paths: vec![0],
             certificate: None,
         }
+    }
+
+    #[test]
+    fn a_family_is_read_back_with_every_bit() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let mut files = Folder::create(folder.path()).expect("files");
+        let value = Complex64::new(0.1, -1e-300);
+        files
+            .family(&[("p".to_string(), value)].into())
+            .expect("files");
+        for (re, singular) in [(0.1, false), (5.0, true), (-0.0, false)] {
+            let solution = solution(re, false, singular);
+            files.solution(&solution).expect("a line");
+        }
+        files.finish("{}").expect("files");
+        let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it is there");
+        let points = StoredPoints::from_bytes(&read("solutions.points")).expect("points");
+        assert_eq!((points.len(), points.dimension), (2, 2));
+        assert_eq!(points.point(0)[0].re.to_bits(), 0.1f64.to_bits());
+        assert_eq!(points.point(1)[0].re.to_bits(), (-0.0f64).to_bits());
+        let names = ["p".to_string()];
+        let text = read("parameters.json");
+        let parameters = cognate_systems::formats::points::read_parameters("p", &text, &names);
+        assert_eq!(parameters.expect("parameters"), [[value]]);
     }
 
     #[test]

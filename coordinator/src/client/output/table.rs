@@ -3,6 +3,7 @@
 use super::summary::open_questions;
 use super::text::{Look, complex, count, counted, cut, magnitude, rate, seconds, wrapped};
 use crate::results::summary::Summary;
+use cognate_algorithms::monodromy::counts::LoopCounts;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::fmt::Write as _;
@@ -83,6 +84,10 @@ pub fn summary(
     lines.blank();
     solutions_block(&mut lines, summary);
     lines.blank();
+    if let Some(block) = &summary.monodromy {
+        loops_block(&mut lines, &block.loops);
+        lines.blank();
+    }
     time_block(&mut lines, summary);
     lines.text.push_str(&warnings(summary, look));
     if !solutions.is_empty() {
@@ -270,6 +275,44 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
             .group_order
             .map(|order| format!("of a group of {}", counted(order, "element")));
         lines.line("classes", &count(n), note.as_deref().unwrap_or(""));
+    }
+}
+
+fn loops_block(lines: &mut Lines, loops: &LoopCounts) {
+    lines.heading("Monodromy", "", "at generic parameters");
+    let classes = match loops.group_order {
+        0 | 1 => String::new(),
+        order => {
+            let noun = if loops.classes == 1 {
+                "class"
+            } else {
+                "classes"
+            };
+            let group = counted(order, "element");
+            format!(
+                "in {} {noun} under a group of {group}",
+                count(loops.classes)
+            )
+        }
+    };
+    lines.line("solutions", &count(loops.solutions), &classes);
+    let idle = format!("the last {} without anything new", count(loops.idle_loops));
+    lines.line("loops", &count(loops.loops), &idle);
+    let crossings = match loops.crossings_found {
+        0 => String::new(),
+        found => format!(
+            "{} seen, {} resolved",
+            counted(found, "path crossing"),
+            count(loops.crossings_resolved)
+        ),
+    };
+    lines.line("paths for them", &count(loops.tracked), &crossings);
+    if loops.lost > 0 {
+        lines.line(
+            "lost on loops",
+            &count(loops.lost),
+            "found again or not: see warnings",
+        );
     }
 }
 

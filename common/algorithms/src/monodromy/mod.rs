@@ -1,0 +1,715 @@
+//! Monodromy: all solutions of a generic member of a family, from one of them.
+//!
+//! The start solutions are followed to random complex parameters, the base.
+//! From there loops are made, by fresh random parameters and back along other
+//! detours; every solution that turns up takes part in all of them. When some
+//! loops in a row bring nothing new, all that is known at the base is followed
+//! to the parameters that are asked for. With a symmetry group one solution of
+//! each orbit is tracked. A jump of a path cannot make a false solution here,
+//! it only breaks the bijection of a leg, and that is seen ([`graph`]).
+
+pub mod counts;
+pub(crate) mod graph;
+
+use crate::any_algorithm::AnyAlgorithm;
+use crate::parameter_solve::ParameterSolve;
+use crate::plan::MAX_PATHS;
+use crate::progress::{Progress, StageProgress, VerdictCounts};
+use crate::retried_stage::{MAX_RETRIES, can_be_helped};
+use crate::{Next, Opening, PathAlgorithm};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::{Tolerances, Verdict, classify};
+use cognate_solutions::path_crossing::radius;
+use cognate_solutions::point_shape::PointShape;
+use cognate_solutions::solution_set::{History, SolutionSet};
+use cognate_solutions::symmetry::{SymmetryError, SymmetryGroup};
+use cognate_systems::system::System;
+use counts::{LoopCounts, Stop};
+use graph::{Arrival, Fate, Graph, Known};
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// When loops end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LoopLimits {
+    /// Loops in a row without anything new after which the set is taken for complete.
+    /// HomotopyContinuation.jl takes 5. Where solutions are few, loops cost nothing, and up to
+    /// [`MOST_IDLE`] are made: a random loop may well act trivially on three points.
+    pub idle_loops: u32,
+    /// Solutions at generic parameters, where that number is known: loops end when they are
+    /// found, and go on four times longer when they are not.
+    pub count: Option<u64>,
+}
+
+impl Default for LoopLimits {
+    fn default() -> Self {
+        Self {
+            idle_loops: 5,
+            count: None,
+        }
+    }
+}
+
+/// Most idle loops that a small set is asked for.
+pub const MOST_IDLE: u64 = 32;
+/// Paths that idle loops may always cost.
+const IDLE_PATHS: u64 = 512;
+/// Legs that lead from the base to a fresh vertex, and as many back: 2 * 2 - 1 = 3 loops for 4
+/// paths a solution. With one there and one back it would be 1 for 2; with more, loops depend on
+/// the same two places.
+const LEGS: usize = 2;
+
+/// Where the start solutions solve the system; nothing leads back there.
+const START: usize = 0;
+/// Where the loops begin and end.
+const BASE: usize = 1;
+/// The edge from one to the other.
+const FIRST: usize = 0;
+
+/// What an open stage is for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Batch {
+    edge: usize,
+    attempt: u16,
+    sources: Vec<u32>,
+    /// Its stage, once it is open.
+    stage: Option<StageId>,
+    results: Option<Vec<PathResult>>,
+}
+
+/// What is being done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    /// Paths between vertices, round by round: each round has one stage for each edge with open
+    /// sources, and is taken in when all are back, in the order of edges.
+    Loops(Vec<Batch>),
+    /// The images of one solution under the group are tracked on the spot: are they solutions?
+    Check(Option<StageId>),
+    /// From the base to the wanted parameters.
+    Arrive(Box<ParameterSolve>),
+    /// There is nothing to go on from.
+    Stuck,
+}
+
+/// Where the start solutions are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoopStart {
+    /// Parameters at which they solve the system.
+    pub parameters: Vec<Complex64>,
+    /// The object that holds them.
+    pub points: StartPoints,
+    /// How many they are.
+    pub count: u64,
+    /// Coordinates of one that the plan found itself: then the object is made of it.
+    pub found: Option<Vec<Complex64>>,
+}
+
+/// The solve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MonodromySolve {
+    shape: PointShape,
+    tolerances: Tolerances,
+    settings: Settings,
+    seed: u64,
+    max_retries: u16,
+    limits: LoopLimits,
+    start: LoopStart,
+    targets: Vec<Vec<Complex64>>,
+    group: SymmetryGroup,
+    /// The group is closed and was checked.
+    group_known: bool,
+    graph: Graph,
+    phase: Phase,
+    /// Distinct images of the base's points, as far as they were counted, and of how many points.
+    counted: (u64, usize),
+    /// Points of the base when everything was last exhausted.
+    exhausted_at: usize,
+    counts: LoopCounts,
+    stages: Vec<StageProgress>,
+    /// Last results of the start solutions, for when none of them leads anywhere.
+    first_results: Vec<PathResult>,
+    warnings: Vec<String>,
+}
+
+impl MonodromySolve {
+    /// The solve of a checked system, whose parameters are free to move.
+    pub fn new(
+        system: &System,
+        start: LoopStart,
+        targets: Vec<Vec<Complex64>>,
+        limits: LoopLimits,
+        settings: Settings,
+        tolerances: Tolerances,
+        seed: u64,
+    ) -> Result<Self, SymmetryError> {
+        let group = SymmetryGroup::of(system)?;
+        let mut graph = Graph::default();
+        graph.add_vertex(start.parameters.clone());
+        let base = generic_parameters(&start.parameters, seed, BASE);
+        graph.add_vertex(base);
+        graph.add_edge(START, BASE, edge_seed(seed, FIRST), false);
+        let count = usize::try_from(start.count).expect("a plan has no more paths than its limit");
+        graph.edges[FIRST].fates = vec![Fate::Open { attempt: 0 }; count];
+        Ok(Self {
+            shape: PointShape::of(system),
+            tolerances,
+            settings,
+            seed,
+            max_retries: MAX_RETRIES,
+            limits,
+            start,
+            targets,
+            group_known: group.is_trivial(),
+            group,
+            graph,
+            phase: Phase::Loops(Vec::new()),
+            counted: (0, 0),
+            exhausted_at: 0,
+            counts: LoopCounts {
+                group_order: 1,
+                ..LoopCounts::default()
+            },
+            stages: Vec::new(),
+            first_results: Vec::new(),
+            warnings: Vec::new(),
+        })
+    }
+
+    /// The same with another limit of repetitions.
+    #[must_use]
+    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
+        self.max_retries = max_retries;
+        self
+    }
+
+    /// How far the loops have come.
+    pub fn counts(&self) -> &LoopCounts {
+        &self.counts
+    }
+
+    /// Parameters at which solutions are wanted, one set or several.
+    pub fn targets(&self) -> &[Vec<Complex64>] {
+        &self.targets
+    }
+
+    /// The stage whose paths the answer counts: the first to the wanted parameters.
+    pub fn counted_stage(&self) -> StageId {
+        match &self.phase {
+            Phase::Arrive(solve) => solve.paths().first().id,
+            _ => StageId(0),
+        }
+    }
+
+    fn next_id(&self) -> StageId {
+        StageId(self.stages.len() as u32)
+    }
+
+    /// A stage along a path of parameters.
+    fn stage(&self, from: &[Complex64], to: &[Complex64], seed: u64, points: StartPoints) -> Stage {
+        Stage {
+            id: self.next_id(),
+            work: Work::Track,
+            homotopy: HomotopyKind::Parameter {
+                start: from.to_vec(),
+                targets: vec![to.to_vec()],
+            },
+            start_points: points,
+            settings: self.settings.clone(),
+            seed,
+            attempt: 0,
+        }
+    }
+
+    fn open(&mut self, opening: Opening) -> Next {
+        let items = opening.stage.items();
+        self.stages.push(StageProgress {
+            id: opening.stage.id,
+            attempt: opening.stage.attempt,
+            items: items.expect("stored points can be counted"),
+            absorbed: false,
+        });
+        Next::Open(Box::new(opening))
+    }
+
+    /// The stage of a batch of the present round.
+    fn opening(&self, edge: usize, attempt: u16, sources: &[u32]) -> Opening {
+        let e = &self.graph.edges[edge];
+        let (points, objects) = if edge == FIRST {
+            let all = sources.len() as u64 == self.start.count;
+            let points = if all {
+                self.start.points.clone()
+            } else {
+                StartPoints::Selected {
+                    base: Box::new(self.start.points.clone()),
+                    indices: sources.iter().map(|&k| u64::from(k)).collect(),
+                }
+            };
+            let found = self.start.found.iter().map(|values| {
+                Arc::new(StoredPoints {
+                    dimension: values.len(),
+                    coordinates: values.clone(),
+                })
+            });
+            (points, found.collect())
+        } else {
+            let points = Arc::new(self.graph.stored(e.from, sources));
+            (points.as_start(), vec![points])
+        };
+        let (from, to) = (&self.graph.vertices[e.from], &self.graph.vertices[e.to]);
+        let stage = self.stage(&from.parameters, &to.parameters, e.seed, points);
+        Opening {
+            stage: Stage {
+                settings: self.settings.tightened(attempt),
+                attempt,
+                ..stage
+            },
+            objects,
+        }
+    }
+
+    /// Solutions at the base, all members of the orbits counted.
+    fn count_solutions(&mut self) -> u64 {
+        let (mut sum, from) = self.counted;
+        let points = &self.graph.vertices[BASE].points;
+        for point in &points[from..] {
+            sum += self.orbit(point).len() as u64;
+        }
+        self.counted = (sum, points.len());
+        sum
+    }
+
+    /// The different images of a point, itself first.
+    fn orbit(&self, point: &Known) -> Vec<Vec<Complex64>> {
+        self.group.orbit(&point.values, &self.shape)
+    }
+
+    /// What comes after a round, or at the beginning. The phase is `Loops` without batches.
+    fn plan_round(&mut self) {
+        let open = self.graph.open();
+        let started = open.iter().all(|(edge, ..)| *edge != FIRST);
+        if started && self.graph.vertices[BASE].points.is_empty() {
+            self.counts.stop = Some(Stop::NoStart);
+            self.phase = Phase::Stuck;
+            return;
+        }
+        if started && !self.group_known {
+            self.close_group();
+            return;
+        }
+        if started {
+            self.counts.classes = self.graph.vertices[BASE].points.len() as u64;
+            self.counts.solutions = self.count_solutions();
+            let enough = self
+                .limits
+                .count
+                .is_some_and(|n| self.counts.solutions >= n);
+            let too_many = self.counts.tracked > MAX_PATHS;
+            let stop = if enough {
+                Some(Stop::Count)
+            } else if too_many {
+                Some(Stop::PathLimit)
+            } else if open.is_empty() && self.is_exhausted() {
+                Some(Stop::IdleLoops)
+            } else {
+                None
+            };
+            if stop.is_some() {
+                self.counts.stop = stop;
+                self.arrive();
+                return;
+            }
+        }
+        let open = if open.is_empty() {
+            self.add_loops();
+            self.graph.open()
+        } else {
+            open
+        };
+        let batches = open.into_iter().map(|(edge, attempt, sources)| Batch {
+            edge,
+            attempt,
+            sources,
+            stage: None,
+            results: None,
+        });
+        self.phase = Phase::Loops(batches.collect());
+    }
+
+    /// All legs are tracked: counts idle loops; true when they are enough.
+    fn is_exhausted(&mut self) -> bool {
+        let known = self.graph.vertices[BASE].points.len();
+        if self.counts.loops > 0 {
+            if known > self.exhausted_at {
+                self.counts.idle_loops = 0;
+            } else {
+                self.counts.idle_loops += (2 * LEGS - 1) as u64;
+            }
+        }
+        self.exhausted_at = known;
+        let cheap = (IDLE_PATHS / known as u64).min(MOST_IDLE);
+        let wanted = u64::from(self.limits.idle_loops).max(cheap);
+        let patience = if self.limits.count.is_some() { 4 } else { 1 };
+        self.counts.idle_loops >= wanted.saturating_mul(patience).max(1)
+    }
+
+    /// A fresh vertex with legs there and back.
+    fn add_loops(&mut self) {
+        let number = self.graph.vertices.len();
+        let parameters = generic_parameters(&self.start.parameters, self.seed, number);
+        let vertex = self.graph.add_vertex(parameters);
+        for (from, to) in [(BASE, vertex), (vertex, BASE)] {
+            for _ in 0..LEGS {
+                let seed = edge_seed(self.seed, self.graph.edges.len());
+                self.graph.add_edge(from, to, seed, true);
+            }
+        }
+        self.counts.loops += (2 * LEGS - 1) as u64;
+    }
+
+    /// Finds the group at the first solution that is known at generic parameters.
+    fn close_group(&mut self) {
+        let point = self.graph.vertices[BASE].points[0].values.clone();
+        match self.group.close(&point, &self.shape) {
+            Ok(()) => self.phase = Phase::Check(None),
+            Err(error) => self.drop_group(&error.to_string()),
+        }
+    }
+
+    fn drop_group(&mut self, why: &str) {
+        self.warnings
+            .push(format!("the symmetry group is not used: {why}"));
+        self.group = SymmetryGroup::trivial();
+        self.group_known = true;
+        self.phase = Phase::Loops(Vec::new());
+    }
+
+    /// The images of the first solution, and the path that stays where it is.
+    fn check(&self) -> Opening {
+        let base = &self.graph.vertices[BASE];
+        let images = self.orbit(&base.points[0]);
+        let points = Arc::new(StoredPoints {
+            dimension: base.points[0].values.len(),
+            coordinates: images.into_iter().flatten().collect(),
+        });
+        let here = &base.parameters;
+        let stage = self.stage(here, here, edge_seed(self.seed, FIRST), points.as_start());
+        Opening {
+            stage,
+            objects: vec![points],
+        }
+    }
+
+    fn absorb_check(&mut self, results: &[PathResult]) {
+        let order = self.group.order();
+        let good = |result: &&PathResult| self.arrival_of(result).is_some();
+        let solved = results.iter().filter(good).count();
+        if solved < order {
+            self.drop_group(&format!(
+                "of the {order} images of a solution only {solved} are solutions"
+            ));
+            return;
+        }
+        self.group_known = true;
+        self.counts.group_order = order as u64;
+        self.graph.merge(BASE, &self.group, &self.shape, self.seed);
+        self.phase = Phase::Loops(Vec::new());
+    }
+
+    /// Where a path arrived, if that is a regular finite solution.
+    fn arrival_of(&self, result: &PathResult) -> Option<Known> {
+        let decision = classify(result, &self.shape, &self.tolerances);
+        (decision.verdict == Verdict::Finite).then(|| Known {
+            values: self.shape.to_variables(result.endpoint.to_double()),
+            radius: radius(result, &self.tolerances),
+        })
+    }
+
+    /// All batches of a round are back.
+    fn settle(&mut self, batches: Vec<Batch>) {
+        let mut arrivals = Vec::new();
+        for batch in batches {
+            let results = batch.results.expect("the round is complete");
+            for (&source, result) in batch.sources.iter().zip(&results) {
+                let end = self.arrival_of(result);
+                // What nothing can help is not tried again.
+                let attempt = if end.is_some() || can_be_helped(result.outcome) {
+                    batch.attempt
+                } else {
+                    self.max_retries
+                };
+                arrivals.push(Arrival {
+                    edge: batch.edge,
+                    source,
+                    attempt,
+                    end,
+                });
+            }
+            if batch.edge == FIRST {
+                for (&source, result) in batch.sources.iter().zip(results) {
+                    let place = source as usize;
+                    if place < self.first_results.len() {
+                        self.first_results[place] = result;
+                    } else {
+                        self.first_results.push(result);
+                    }
+                }
+            }
+        }
+        let settled = self.graph.settle(
+            &arrivals,
+            &self.group,
+            &self.shape,
+            self.seed,
+            self.max_retries,
+        );
+        self.counts.lost += settled.lost;
+        self.counts.crossings_found += settled.crossings;
+        // A meeting is resolved until it is given up.
+        self.counts.crossings_resolved += settled.crossings;
+        self.counts.crossings_resolved = self
+            .counts
+            .crossings_resolved
+            .saturating_sub(settled.crossings_left);
+        self.phase = Phase::Loops(Vec::new());
+    }
+
+    /// From everything that is known at the base to the wanted parameters.
+    fn arrive(&mut self) {
+        let base = &self.graph.vertices[BASE];
+        let points = self.arriving_points();
+        let mut stage = self.stage(
+            &base.parameters,
+            &[],
+            edge_seed(self.seed, usize::MAX),
+            points.as_start(),
+        );
+        stage.homotopy = HomotopyKind::Parameter {
+            start: base.parameters.clone(),
+            targets: self.targets.clone(),
+        };
+        let solve = ParameterSolve::with_shape(stage, &self.shape, self.tolerances.clone());
+        self.warn_of_the_end();
+        self.phase = Phase::Arrive(Box::new(solve.with_max_retries(self.max_retries)));
+    }
+
+    /// All that is known at the base, orbit by orbit.
+    fn arriving_points(&self) -> StoredPoints {
+        let points = &self.graph.vertices[BASE].points;
+        let all = points.iter().flat_map(|point| self.orbit(point)).flatten();
+        StoredPoints {
+            dimension: points[0].values.len(),
+            coordinates: all.collect(),
+        }
+    }
+
+    fn warn_of_the_end(&mut self) {
+        let counts = &self.counts;
+        let mut warnings = Vec::new();
+        match counts.stop {
+            Some(Stop::IdleLoops) => warnings.push(match self.limits.count {
+                Some(wanted) => format!(
+                    "{wanted} solutions were asked for; monodromy found {}, and {} loops more \
+                     brought nothing new",
+                    counts.solutions, counts.idle_loops
+                ),
+                None => format!(
+                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
+                     nothing new: strong evidence that none is missing, but no proof",
+                    counts.solutions, counts.idle_loops
+                ),
+            }),
+            Some(Stop::PathLimit) => warnings.push(format!(
+                "loops ended at the limit of {MAX_PATHS} paths: solutions may be missing"
+            )),
+            _ => {}
+        }
+        let known = self.graph.vertices[BASE].points.len();
+        let more = self.graph.vertices[BASE + 1..].iter();
+        let most = more.map(|vertex| vertex.points.len()).max().unwrap_or(0);
+        if most > known && counts.stop != Some(Stop::Count) {
+            warnings.push(format!(
+                "other generic parameters have {most} classes of solutions, the base {known}: \
+                 solutions are missing"
+            ));
+        }
+        self.warnings.extend(warnings);
+    }
+
+    fn description(&self) -> String {
+        let counts = &self.counts;
+        let known = if counts.group_order > 1 {
+            format!(
+                "{} solutions in {} classes",
+                counts.solutions, counts.classes
+            )
+        } else {
+            format!("{} solutions", counts.solutions)
+        };
+        let open = self.stages.iter().filter(|stage| !stage.absorbed);
+        let paths: u64 = open.map(|stage| stage.items).sum();
+        format!(
+            "monodromy: {known}, {} loops ({} idle), tracking {paths} paths",
+            counts.loops, counts.idle_loops
+        )
+    }
+}
+
+/// Random parameters of the size of the given ones, for one vertex.
+fn generic_parameters(like: &[Complex64], seed: u64, vertex: usize) -> Vec<Complex64> {
+    let mut random = RandomStream::new(seed, Purpose::Loop, (1 << 32) + vertex as u64);
+    let size = |z: &Complex64| z.norm_sqr().sqrt();
+    let largest = like.iter().map(size).fold(0.0, f64::max);
+    like.iter()
+        .map(|z| {
+            // A parameter that is 0 where it begins is as large as the others.
+            let scale = if size(z) > 0.0 { size(z) } else { largest };
+            let scale = if scale > 0.0 { scale } else { 1.0 };
+            random.disc() * (1.5 * scale)
+        })
+        .collect()
+}
+
+fn edge_seed(seed: u64, edge: usize) -> u64 {
+    RandomStream::new(seed, Purpose::Loop, edge as u64).bits()
+}
+
+impl PathAlgorithm for MonodromySolve {
+    fn next(&mut self) -> Next {
+        loop {
+            match &mut self.phase {
+                Phase::Arrive(solve) => {
+                    let next = solve.next();
+                    return match next {
+                        // The object of the first stage; repetitions name it again.
+                        Next::Open(opening) if opening.stage.attempt == 0 => {
+                            let points = self.arriving_points();
+                            Next::Open(Box::new(Opening {
+                                objects: vec![Arc::new(points)],
+                                ..*opening
+                            }))
+                        }
+                        next => next,
+                    };
+                }
+                Phase::Stuck => return Next::Done,
+                Phase::Check(Some(_)) => return Next::Wait,
+                Phase::Check(None) => {
+                    let opening = self.check();
+                    self.phase = Phase::Check(Some(opening.stage.id));
+                    return self.open(opening);
+                }
+                Phase::Loops(batches) => {
+                    let planned = batches.iter().position(|batch| batch.stage.is_none());
+                    if let Some(place) = planned {
+                        let batch = batches[place].clone();
+                        let opening = self.opening(batch.edge, batch.attempt, &batch.sources);
+                        if let Phase::Loops(batches) = &mut self.phase {
+                            batches[place].stage = Some(opening.stage.id);
+                        }
+                        return self.open(opening);
+                    }
+                    if !batches.is_empty() {
+                        return Next::Wait;
+                    }
+                    self.plan_round();
+                }
+            }
+        }
+    }
+
+    fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        if let Phase::Arrive(solve) = &mut self.phase {
+            solve.absorb(id, results);
+            return;
+        }
+        let stage = self
+            .stages
+            .iter_mut()
+            .find(|stage| stage.id == id && !stage.absorbed)
+            .expect("only an open stage is absorbed");
+        stage.absorbed = true;
+        let results: Vec<PathResult> = results.collect();
+        assert_eq!(
+            results.len() as u64,
+            stage.items,
+            "a stage is absorbed as a whole"
+        );
+        self.counts.tracked += stage.items;
+        match std::mem::replace(&mut self.phase, Phase::Stuck) {
+            Phase::Check(_) => self.absorb_check(&results),
+            Phase::Loops(mut batches) => {
+                let batch = batches.iter_mut().find(|batch| batch.stage == Some(id));
+                batch.expect("a stage belongs to a batch").results = Some(results);
+                if batches.iter().all(|batch| batch.results.is_some()) {
+                    self.settle(batches);
+                } else {
+                    self.phase = Phase::Loops(batches);
+                }
+            }
+            Phase::Arrive(_) | Phase::Stuck => unreachable!("no stage is open then"),
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        let mut progress = match &self.phase {
+            Phase::Arrive(solve) => {
+                let mut progress = solve.progress();
+                let known = self.counts.solutions;
+                progress.description = format!(
+                    "monodromy found {known} solutions; {}",
+                    progress.description
+                );
+                progress
+            }
+            phase => Progress {
+                description: match phase {
+                    Phase::Stuck => "monodromy: no start solution could be tracked".to_string(),
+                    _ => self.description(),
+                },
+                stages: Vec::new(),
+                paths: VerdictCounts {
+                    finite: self.counts.tracked - self.counts.lost,
+                    failed: self.counts.lost,
+                    ..VerdictCounts::default()
+                },
+                done: *phase == Phase::Stuck,
+            },
+        };
+        progress.stages.splice(0..0, self.stages.iter().copied());
+        progress
+    }
+
+    fn snapshot(&self) -> Vec<u8> {
+        AnyAlgorithm::Monodromy(Box::new(self.clone())).to_bytes()
+    }
+
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+        let mut sets = match &self.phase {
+            Phase::Arrive(solve) => solve.solution_sets(system),
+            _ => {
+                let set = SolutionSet::new(
+                    system,
+                    &self.graph.vertices[BASE].parameters,
+                    &self.first_results,
+                    &History::default(),
+                    &self.tolerances,
+                    self.seed,
+                );
+                vec![set; self.targets.len()]
+            }
+        };
+        for set in &mut sets {
+            set.warnings.extend(self.warnings.iter().cloned());
+        }
+        sets
+    }
+}
+
+#[cfg(test)]
+mod tests;

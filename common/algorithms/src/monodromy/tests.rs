@@ -1,0 +1,290 @@
+//! Families whose numbers of solutions are known.
+
+use super::*;
+use crate::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
+use crate::run_locally::{drive, run_locally};
+use cognate_continuation::stage::PreparedStage;
+use cognate_continuation::start_points::Digest;
+use std::collections::HashMap;
+
+fn written(text: &str) -> System {
+    match cognate_systems::formats::read("test", text.as_bytes()) {
+        Ok(problem) => problem.system,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Two general cubics: 9 solutions.
+const CUBICS: &str = "CONFIG END; INPUT variable_group x, y;
+    parameter a0, a1, a2, a3, a4, a5, b0, b1, b2, b3, b4, b5; function f, g;
+    f = a0*x^3 + a1*x^2*y + a2*y^3 + a3*x*y + a4*y + a5;
+    g = b0*x^3 + b1*x*y^2 + b2*y^3 + b3*x^2 + b4*x + b5; END;";
+
+/// x^4 + p x^2 y^2 + y^4 = q, x y = r: 8 solutions, under signs and exchange 2 classes of 4.
+fn symmetric(symmetry: &str) -> System {
+    written(&format!(
+        r#"{{"variables": ["x", "y"], "parameters": ["p", "q", "r"],
+            "equations": ["x^4 + p*x^2*y^2 + y^4 - q", "x*y - r"], "symmetry": {symmetry}}}"#
+    ))
+}
+
+const TRUE_SYMMETRY: &str =
+    r#"[{"permutation": {"x": "y", "y": "x"}}, {"map": {"x": "-x", "y": "-y"}}]"#;
+
+fn monodromy(system: &System, seed: u64) -> Plan {
+    let options = PlanOptions {
+        start: StartChoice::Monodromy,
+        seed,
+        ..PlanOptions::default()
+    };
+    match plan(system, &options) {
+        Ok(plan) => plan,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn solve(plan: &mut Plan) -> (SolutionSet, LoopCounts) {
+    let sets = match run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8) {
+        Ok(sets) => sets,
+        Err(error) => panic!("{error}"),
+    };
+    assert_eq!(sets.len(), 1);
+    let counts = plan
+        .algorithm
+        .loops()
+        .expect("it is a monodromy solve")
+        .clone();
+    (sets.into_iter().next().expect("there is one"), counts)
+}
+
+#[test]
+fn everything_is_found_from_one_point_that_is_found_too() {
+    let system = written(CUBICS);
+    for seed in 0..10 {
+        let (set, counts) = solve(&mut monodromy(&system, seed));
+        assert_eq!((set.paths.total, set.paths.finite), (9, 9), "seed {seed}");
+        assert_eq!((set.counts.distinct, counts.solutions), (9, 9));
+        assert_eq!(counts.stop, Some(Stop::IdleLoops));
+        assert!(set.settled() && counts.idle_loops >= 5 && counts.lost == 0);
+        assert!(set.warnings.iter().any(|w| w.contains("no proof")));
+    }
+}
+
+/// The case in which others stop too early: loops of three points are often trivial.
+#[test]
+fn few_solutions_get_many_loops() {
+    let text = "CONFIG END; INPUT variable_group x; parameter p; function f; f = x^3 - p; END;";
+    for seed in 0..10 {
+        let (set, counts) = solve(&mut monodromy(&written(text), seed));
+        assert_eq!(set.counts.distinct, 3, "seed {seed}: {counts:?}");
+        assert!(counts.idle_loops >= MOST_IDLE);
+    }
+}
+
+#[test]
+fn a_known_count_ends_the_loops() {
+    let mut options = PlanOptions {
+        start: StartChoice::Monodromy,
+        loops: LoopLimits {
+            count: Some(9),
+            ..LoopLimits::default()
+        },
+        ..PlanOptions::default()
+    };
+    let system = written(CUBICS);
+    let (set, counts) = solve(&mut plan(&system, &options).unwrap());
+    assert_eq!((set.counts.distinct, counts.stop), (9, Some(Stop::Count)));
+    assert_eq!(set.warnings, Vec::<String>::new());
+    options.loops.count = Some(10);
+    let (set, counts) = solve(&mut plan(&system, &options).unwrap());
+    assert_eq!(
+        (set.counts.distinct, counts.stop),
+        (9, Some(Stop::IdleLoops))
+    );
+    assert!(set.warnings[0].starts_with("10 solutions were asked for"));
+}
+
+#[test]
+fn one_of_each_orbit_is_tracked() {
+    let system = symmetric(TRUE_SYMMETRY);
+    let (set, counts) = solve(&mut monodromy(&system, 4));
+    assert_eq!((set.counts.distinct, counts.solutions), (8, 8));
+    assert_eq!((counts.group_order, counts.classes), (4, 2));
+    let classes = &set.classes;
+    assert_eq!((classes.count, classes.group_order), (Some(2), Some(4)));
+    assert_eq!(classes.complete, Some(2));
+    let of = |class| {
+        set.solutions
+            .iter()
+            .filter(|s| s.class == Some(class))
+            .count()
+    };
+    assert_eq!((of(0), of(1)), (4, 4));
+    let (plain, all) = solve(&mut monodromy(&symmetric("[]"), 4));
+    assert_eq!((plain.counts.distinct, all.classes), (8, 8));
+}
+
+#[test]
+fn what_is_no_symmetry_is_not_believed() {
+    let wrong = r#"[{"map": {"x": "-x"}}]"#;
+    let (set, counts) = solve(&mut monodromy(&symmetric(wrong), 4));
+    assert_eq!((set.counts.distinct, counts.group_order), (8, 1));
+    let said = "the symmetry group is not used: of the 2 images of a solution only 1 are solutions";
+    assert!(set.warnings.iter().any(|w| w == said), "{:?}", set.warnings);
+}
+
+/// A given start pair, other wanted parameters: x^4 = p from (2, 16) to p = 81 and p = 0.
+#[test]
+fn given_solutions_lead_to_given_parameters() {
+    let system = crate::synthetic::system();
+    let number = |re: f64| vec![Complex64::new(re, 0.0)];
+    let solve_from = |x: f64| {
+        let points = Arc::new(StoredPoints {
+            dimension: 1,
+            coordinates: number(x),
+        });
+        let options = PlanOptions {
+            start: StartChoice::Monodromy,
+            start_points: Some(GivenStart {
+                object: points.digest(),
+                count: 1,
+                dimension: 1,
+            }),
+            start_parameters: Some(number(16.0)),
+            target_parameters: vec![number(81.0), number(0.0)],
+            ..PlanOptions::default()
+        };
+        let mut plan = plan(&system, &options).unwrap();
+        let find = |_: Digest| Some(Arc::clone(&points));
+        let sets = run_locally(&plan.system, &mut plan.algorithm, &find, 8).unwrap();
+        (sets, plan.algorithm.loops().unwrap().stop)
+    };
+    let (sets, _) = solve_from(2.0);
+    assert_eq!((sets[0].counts.distinct, sets[0].counts.real), (4, Some(2)));
+    assert_eq!(
+        (sets[1].counts.singular, sets[1].counts.with_multiplicity),
+        (1, 4)
+    );
+    let (sets, stop) = solve_from(3.0);
+    assert_eq!((sets.len(), stop), (2, Some(Stop::NoStart)));
+    assert_eq!((sets[0].paths.total, sets[0].paths.failed), (1, 1));
+    assert!(!sets[0].settled());
+}
+
+#[test]
+fn a_restored_solve_goes_on_to_the_same_answer() {
+    let system = symmetric(TRUE_SYMMETRY);
+    let expected = solve(&mut monodromy(&system, 9));
+    // A new process before every step; stages are absorbed in the order of their numbers.
+    let mut plan = monodromy(&system, 9);
+    let mut objects = HashMap::new();
+    let mut open = Vec::new();
+    loop {
+        let restored = AnyAlgorithm::restore(&plan.algorithm.snapshot()).unwrap();
+        assert_eq!(restored, plan.algorithm);
+        plan.algorithm = restored;
+        match plan.algorithm.next() {
+            Next::Open(opening) => {
+                for points in &opening.objects {
+                    objects.insert(points.digest(), Arc::clone(points));
+                }
+                open.push(opening.stage);
+            }
+            Next::Wait => {
+                let stage = open.remove(0);
+                let find = |digest: Digest| objects.get(&digest).cloned();
+                let prepared = PreparedStage::new(&system, &stage, &find).unwrap();
+                let results = prepared.track(0..prepared.items(), 1);
+                plan.algorithm.absorb(stage.id, &mut results.into_iter());
+            }
+            Next::Done => break,
+        }
+    }
+    let sets = plan.algorithm.solution_sets(&system);
+    assert_eq!(
+        (sets[0].clone(), plan.algorithm.loops().unwrap().clone()),
+        expected
+    );
+}
+
+/// Whatever order the stages of a round come back in, the solve goes on the same way.
+#[test]
+fn the_order_of_stages_does_not_matter() {
+    let system = written(CUBICS);
+    let expected = solve(&mut monodromy(&system, 2));
+    let mut plan = monodromy(&system, 2);
+    let mut objects = HashMap::new();
+    let mut open = Vec::new();
+    loop {
+        match plan.algorithm.next() {
+            Next::Open(opening) => {
+                for points in &opening.objects {
+                    objects.insert(points.digest(), Arc::clone(points));
+                }
+                open.push(opening.stage);
+            }
+            Next::Wait => {
+                // The last first.
+                let stage = open.pop().unwrap();
+                let find = |digest: Digest| objects.get(&digest).cloned();
+                let prepared = PreparedStage::new(&system, &stage, &find).unwrap();
+                let results = prepared.track(0..prepared.items(), 8);
+                plan.algorithm.absorb(stage.id, &mut results.into_iter());
+            }
+            Next::Done => break,
+        }
+    }
+    let sets = plan.algorithm.solution_sets(&system);
+    assert_eq!(
+        (sets[0].clone(), plan.algorithm.loops().unwrap().clone()),
+        expected
+    );
+}
+
+/// A tracker that jumps now and then: every path of a leg's first attempt ends where the first
+/// one does. Nothing is lost, and it is counted.
+#[test]
+fn jumps_are_seen_and_repaired() {
+    let system = written(CUBICS);
+    let mut plan = monodromy(&system, 1);
+    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+    let done: Result<(), std::convert::Infallible> =
+        drive(&mut plan.algorithm, &mut |opening: &Opening| {
+            for points in &opening.objects {
+                objects.insert(points.digest(), Arc::clone(points));
+            }
+            let find = |digest: Digest| objects.get(&digest).cloned();
+            let stage = &opening.stage;
+            let prepared = PreparedStage::new(&system, stage, &find).unwrap();
+            let mut results = prepared.track(0..prepared.items(), 8);
+            // The last stage, to the wanted parameters, is known by its nine paths at once.
+            if stage.attempt == 0 && results.len() < 9 {
+                let first = results[0].endpoint.clone();
+                for result in &mut results {
+                    result.endpoint = first.clone();
+                }
+            }
+            Ok(results)
+        });
+    assert_eq!(done, Ok(()));
+    let counts = plan.algorithm.loops().unwrap();
+    let sets = plan.algorithm.solution_sets(&system);
+    assert_eq!((sets[0].counts.distinct, counts.lost), (9, 0));
+    assert!(counts.crossings_found > 0);
+    assert_eq!(counts.crossings_found, counts.crossings_resolved);
+}
+
+#[test]
+fn what_has_no_family_is_refused() {
+    let refused = |text: &str| {
+        let options = PlanOptions {
+            start: StartChoice::Monodromy,
+            ..PlanOptions::default()
+        };
+        plan(&written(text), &options).unwrap_err().to_string()
+    };
+    let plain = "CONFIG END; INPUT variable_group x; function f; f = x^3 - 2; END;";
+    assert!(refused(plain).contains("no parameters"));
+    let square = "CONFIG END; INPUT variable_group x; parameter p; function f; f = x^3 - p^2; END;";
+    assert!(refused(square).contains("not linear in its parameters"));
+}

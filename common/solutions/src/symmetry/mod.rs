@@ -1,0 +1,306 @@
+//! Symmetry: a finite group that acts on the solutions, and its orbits.
+//!
+//! Generators come from the user, permutations of the variables or rational
+//! maps. The group itself is found at one generic solution: the shortest words
+//! in the generators that lead to different points.
+
+pub mod action;
+pub mod classes;
+
+use crate::point_shape::PointShape;
+use crate::unique_points::{Neighbourhood, clusters};
+use action::Action;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// Largest group that is followed. The groups of mechanisms have 2 to 48 elements.
+pub const MAX_ORDER: usize = 1000;
+/// Images of one point under different words are one when they are this near, relative to their
+/// size. Rounding moves them by some 1e-15 a letter; different solutions are farther apart.
+const SAME: f64 = 1e-8;
+/// How far a point is moved to see by how much a word magnifies errors.
+const NUDGE: f64 = 1e-7;
+/// Images whose errors are magnified by more than this are not used for comparison: a map near
+/// one of its poles says nothing.
+const MOST_MAGNIFIED: f64 = 1e5;
+
+/// Why a group cannot be followed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SymmetryError {
+    /// A generator that is no rational map over the rationals.
+    #[error(
+        "not in this version: symmetry generator {0} contains a parameter, a root or an \
+         elementary function"
+    )]
+    NotRational(usize),
+    /// More elements than are followed.
+    #[error("the symmetry group has more than {MAX_ORDER} elements, or is no finite group")]
+    TooLarge,
+    /// A map that does not exist at the solution where the group was looked for.
+    #[error("symmetry generator {0} has no finite value at a solution of generic parameters")]
+    Pole(usize),
+}
+
+/// A group by its generators and, once it was closed, its words.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SymmetryGroup {
+    generators: Vec<Action>,
+    /// Letters are applied from first to last; the first word is empty.
+    words: Vec<Vec<u16>>,
+}
+
+/// An image of a point under one element of the group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Values of the variables.
+    pub values: Vec<Complex64>,
+    /// By how much errors of the point are larger in it, at least 1.
+    pub magnification: f64,
+}
+
+impl SymmetryGroup {
+    /// The generators of a checked system. Its words are found by [`Self::close`]; until then the
+    /// group is trivial.
+    pub fn of(system: &System) -> Result<Self, SymmetryError> {
+        let generators = system.symmetry.iter().enumerate();
+        let generators = generators
+            .map(|(k, g)| Action::of(g, system).ok_or(SymmetryError::NotRational(k + 1)))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            generators,
+            words: vec![Vec::new()],
+        })
+    }
+
+    /// The group of nothing but the identity.
+    pub fn trivial() -> Self {
+        Self {
+            generators: Vec::new(),
+            words: vec![Vec::new()],
+        }
+    }
+
+    /// How many elements it has.
+    pub fn order(&self) -> usize {
+        self.words.len()
+    }
+
+    /// True where there is nothing but the identity.
+    pub fn is_trivial(&self) -> bool {
+        self.generators.is_empty()
+    }
+
+    /// Finds the elements, as words that lead from this point to different ones.
+    pub fn close(&mut self, point: &[Complex64], shape: &PointShape) -> Result<(), SymmetryError> {
+        let mut words: Vec<Vec<u16>> = vec![Vec::new()];
+        let mut points = vec![(point.to_vec(), shape.to_coordinates(point))];
+        let mut next = 0;
+        while next < words.len() {
+            for (letter, generator) in self.generators.iter().enumerate() {
+                let image = generator.image(&points[next].0);
+                let image = image.ok_or(SymmetryError::Pole(letter + 1))?;
+                let coordinates = shape.to_coordinates(&image);
+                let known = |p: &(_, Vec<Complex64>)| shape.distance(&p.1, &coordinates) <= SAME;
+                if points.iter().any(known) {
+                    continue;
+                }
+                if words.len() == MAX_ORDER {
+                    return Err(SymmetryError::TooLarge);
+                }
+                let mut word = words[next].clone();
+                word.push(letter as u16);
+                words.push(word);
+                points.push((image, coordinates));
+            }
+            next += 1;
+        }
+        self.words = words;
+        Ok(())
+    }
+
+    fn apply(&self, word: &[u16], values: &[Complex64]) -> Option<Vec<Complex64>> {
+        word.iter().try_fold(values.to_vec(), |values, &letter| {
+            self.generators[usize::from(letter)].image(&values)
+        })
+    }
+
+    /// The images of a point under all elements, the point itself first; `None` where a map does
+    /// not exist there.
+    pub fn images(&self, values: &[Complex64], shape: &PointShape) -> Vec<Option<Image>> {
+        let mut random = RandomStream::new(0, Purpose::Probe, 1);
+        let mut nudged = shape.to_coordinates(values);
+        for z in &mut nudged {
+            *z += random.unit() * NUDGE;
+        }
+        let nudged = shape.to_variables(&nudged);
+        self.words
+            .iter()
+            .map(|word| {
+                let image = self.apply(word, values)?;
+                if word.is_empty() {
+                    return Some(Image {
+                        values: image,
+                        magnification: 1.0,
+                    });
+                }
+                let moved = self.apply(word, &nudged)?;
+                let (at, moved) = (shape.to_coordinates(&image), shape.to_coordinates(&moved));
+                if !shape.holds(&at) || !shape.holds(&moved) {
+                    return None;
+                }
+                let magnification = (shape.distance(&at, &moved) / NUDGE).max(1.0);
+                Some(Image {
+                    values: image,
+                    magnification,
+                })
+            })
+            .collect()
+    }
+
+    /// The different images of a point, itself first. Images near a pole of their map are there
+    /// too, though with few digits.
+    pub fn orbit(&self, values: &[Complex64], shape: &PointShape) -> Vec<Vec<Complex64>> {
+        let mut members: Vec<(Vec<Complex64>, Vec<Complex64>)> = Vec::new();
+        for word in &self.words {
+            let Some(image) = self.apply(word, values) else {
+                continue;
+            };
+            let coordinates = shape.to_coordinates(&image);
+            let known = members
+                .iter()
+                .any(|(_, other)| shape.distance(other, &coordinates) <= SAME);
+            if !known {
+                members.push((image, coordinates));
+            }
+        }
+        members.into_iter().map(|(values, _)| values).collect()
+    }
+
+    /// Puts points whose orbits coincide together: members ascending, orbits by their first
+    /// members. A point comes with the radius within which another is the same (see
+    /// [`Neighbourhood`]). In n log n times the order of the group.
+    pub fn orbits(
+        &self,
+        points: &[(&[Complex64], f64)],
+        shape: &PointShape,
+        seed: u64,
+    ) -> Vec<Vec<usize>> {
+        let mut owners = Vec::new();
+        let mut images: Vec<(Vec<Complex64>, f64)> = Vec::new();
+        for (owner, (values, radius)) in points.iter().enumerate() {
+            let images_here = self.images(values, shape).into_iter().flatten();
+            for image in images_here.filter(|image| image.magnification <= MOST_MAGNIFIED) {
+                owners.push(owner);
+                images.push((
+                    shape.to_coordinates(&image.values),
+                    radius * 2.0 * image.magnification,
+                ));
+            }
+        }
+        let neighbourhoods: Vec<Neighbourhood<'_>> = images
+            .iter()
+            .map(|(point, radius)| Neighbourhood {
+                point,
+                radius: *radius,
+            })
+            .collect();
+        let mut root: Vec<usize> = (0..points.len()).collect();
+        let find = |root: &mut Vec<usize>, mut k: usize| {
+            while root[k] != k {
+                root[k] = root[root[k]];
+                k = root[k];
+            }
+            k
+        };
+        for cluster in clusters(&neighbourhoods, shape, seed) {
+            let first = find(&mut root, owners[cluster[0]]);
+            let mut least = first;
+            for &member in &cluster[1..] {
+                let other = find(&mut root, owners[member]);
+                let (small, large) = (least.min(other), least.max(other));
+                root[large] = small;
+                least = small;
+            }
+        }
+        let mut place = vec![usize::MAX; points.len()];
+        let mut orbits: Vec<Vec<usize>> = Vec::new();
+        for point in 0..points.len() {
+            let first = find(&mut root, point);
+            if place[first] == usize::MAX {
+                place[first] = orbits.len();
+                orbits.push(Vec::new());
+            }
+            orbits[place[first]].push(point);
+        }
+        orbits
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_systems::formats;
+
+    /// Variables x, y with the exchange of the two and the map to (1/x, 1/y): a group of four.
+    fn four() -> (System, PointShape) {
+        let text = r#"{"variables": ["x", "y"], "equations": ["x*y - 1", "x + y - 5"],
+            "symmetry": [{"permutation": {"x": "y", "y": "x"}}, {"map": {"x": "1/x", "y": "1/y"}}]}"#;
+        let system = formats::read("test", text.as_bytes()).unwrap().system;
+        let shape = PointShape::of(&system);
+        (system, shape)
+    }
+
+    fn point(seed: u64) -> Vec<Complex64> {
+        let mut random = RandomStream::new(seed, Purpose::Test, 4);
+        vec![random.disc(), random.disc() * 3.0]
+    }
+
+    #[test]
+    fn a_group_is_found_from_its_generators() {
+        let (system, shape) = four();
+        let mut group = SymmetryGroup::of(&system).unwrap();
+        assert_eq!(group.order(), 1);
+        group.close(&point(1), &shape).unwrap();
+        assert_eq!(group.order(), 4);
+        let images = group.images(&point(2), &shape);
+        assert!(images.iter().all(Option::is_some));
+        // 0 has no inverse: only the two images by exchange are left.
+        let on_axis = [Complex64::new(0.0, 0.0), Complex64::new(2.0, 1.0)];
+        let images = group.images(&on_axis, &shape);
+        assert_eq!(images.iter().flatten().count(), 2);
+    }
+
+    #[test]
+    fn points_of_one_orbit_come_together() {
+        let (system, shape) = four();
+        let mut group = SymmetryGroup::of(&system).unwrap();
+        group.close(&point(1), &shape).unwrap();
+        let mut all = Vec::new();
+        for seed in 0..5 {
+            let images = group.images(&point(10 + seed), &shape);
+            all.extend(images.into_iter().flatten().map(|image| image.values));
+        }
+        // Member k of every orbit in turn.
+        let order: Vec<usize> = (0..20).map(|i| (i % 5) * 4 + i / 5).collect();
+        let points: Vec<(&[Complex64], f64)> =
+            order.iter().map(|&k| (all[k].as_slice(), 1e-10)).collect();
+        let orbits = group.orbits(&points, &shape, 3);
+        let expected: Vec<Vec<usize>> = (0..5)
+            .map(|k| (0..4).map(|j| k + 5 * j).collect())
+            .collect();
+        assert_eq!(orbits, expected);
+    }
+
+    #[test]
+    fn an_infinite_group_is_refused() {
+        let text = r#"{"variables": ["x"], "equations": ["x^2 - 1"],
+            "symmetry": [{"map": {"x": "x + 1"}}]}"#;
+        let system = formats::read("test", text.as_bytes()).unwrap().system;
+        let shape = PointShape::of(&system);
+        let mut group = SymmetryGroup::of(&system).unwrap();
+        let start = [Complex64::new(0.5, 0.0)];
+        assert_eq!(group.close(&start, &shape), Err(SymmetryError::TooLarge));
+    }
+}
