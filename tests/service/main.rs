@@ -2,6 +2,7 @@
 
 mod any_split_same_answer;
 mod bad_input;
+mod certificates;
 mod coordinator_restarted;
 mod lease_expired;
 mod report_repeated;

@@ -277,6 +277,7 @@ pub(crate) mod tests {
             precision_bits: 53,
             counts: Counts::default(),
             asked: None,
+            certification: None,
         }
     }
 

@@ -6,7 +6,7 @@
 use crate::chunk_runner::ChunkTracker;
 use crate::transport::{Lease, Transport, TransportError};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::stage::PreparedStage;
+use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_systems::system::System;
 use std::ops::Range;
@@ -117,7 +117,7 @@ impl ProblemCache {
                 let found = points.as_ref().filter(|(object, _)| *object == wanted);
                 found.map(|(_, points)| Arc::clone(points))
             };
-            PreparedStage::new(&system, &stage, &find)
+            PreparedWork::new(&system, &stage, &find)
         };
         // What cannot be compiled is kept as such; what could not be fetched is asked for again.
         Ok(match tokio::task::spawn_blocking(compile).await {
@@ -136,20 +136,21 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 /// complex numbers of 16 bytes for the matrix alone are 31 KB at n = 10.
 const SIXTEEN_LANES_UP_TO: usize = 10;
 
-impl ChunkTracker for PreparedStage {
+impl ChunkTracker for PreparedWork {
     fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
-        PreparedStage::track(self, items, width)
+        self.run(items, width)
     }
 
     fn items(&self) -> u64 {
-        PreparedStage::items(self)
+        PreparedWork::items(self)
     }
 
     fn preferred_width(&self) -> usize {
-        if self.homotopy().dimension() <= SIXTEEN_LANES_UP_TO {
-            16
-        } else {
-            8
+        match self {
+            Self::Track(stage) if stage.homotopy().dimension() <= SIXTEEN_LANES_UP_TO => 16,
+            Self::Track(_) => 8,
+            // One point after the other.
+            Self::Certify(_) => 1,
         }
     }
 }

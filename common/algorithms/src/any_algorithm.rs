@@ -1,5 +1,6 @@
 //! AnyAlgorithm: one type for every algorithm, which can be written down and read back.
 
+use crate::certified_solve::{Certifiable, CertifiedSolve};
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
@@ -12,7 +13,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +24,8 @@ pub enum AnyAlgorithm {
     Parameter(ParameterSolve),
     /// From one solution of a family to all.
     Monodromy(Box<MonodromySolve>),
+    /// Any of them, and the proof of what it found.
+    Certified(Box<CertifiedSolve>),
 }
 
 /// Why a snapshot cannot be read.
@@ -65,6 +68,9 @@ impl AnyAlgorithm {
             Self::Monodromy(solve) => {
                 Self::Monodromy(Box::new(solve.with_max_retries(max_retries)))
             }
+            Self::Certified(solve) => {
+                Self::Certified(Box::new(solve.with_max_retries(max_retries)))
+            }
         }
     }
 
@@ -73,23 +79,28 @@ impl AnyAlgorithm {
             Self::ZeroDimensional(solve) => solve,
             Self::Parameter(solve) => solve,
             Self::Monodromy(solve) => &**solve,
+            Self::Certified(solve) => &**solve,
+        }
+    }
+
+    /// The solve by monodromy, if it is one, certified or not.
+    pub fn monodromy(&self) -> Option<&MonodromySolve> {
+        match self {
+            Self::Monodromy(solve) => Some(&**solve),
+            Self::Certified(solve) => solve.solve().monodromy(),
+            Self::ZeroDimensional(_) | Self::Parameter(_) => None,
         }
     }
 
     /// How loops have come along, in a solve by monodromy.
     pub fn loops(&self) -> Option<&LoopCounts> {
-        match self {
-            Self::Monodromy(solve) => Some(solve.counts()),
-            Self::ZeroDimensional(_) | Self::Parameter(_) => None,
-        }
+        self.monodromy().map(MonodromySolve::counts)
     }
 
     /// The stage whose paths the answer counts; stages before it only prepared it.
     pub fn counted_stage(&self) -> StageId {
-        match self {
-            Self::Monodromy(solve) => solve.counted_stage(),
-            Self::ZeroDimensional(_) | Self::Parameter(_) => StageId(0),
-        }
+        self.monodromy()
+            .map_or(StageId(0), MonodromySolve::counted_stage)
     }
 
     fn get_mut(&mut self) -> &mut dyn PathAlgorithm {
@@ -97,6 +108,7 @@ impl AnyAlgorithm {
             Self::ZeroDimensional(solve) => solve,
             Self::Parameter(solve) => solve,
             Self::Monodromy(solve) => &mut **solve,
+            Self::Certified(solve) => &mut **solve,
         }
     }
 }
@@ -116,5 +128,8 @@ impl PathAlgorithm for AnyAlgorithm {
     }
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
         self.get().solution_sets(system)
+    }
+    fn certifiable(&self) -> Option<Certifiable> {
+        self.get().certifiable()
     }
 }

@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod any_algorithm;
+pub mod certified_solve;
 pub mod monodromy;
 pub mod opening;
 pub mod parameter_solve;
@@ -21,6 +22,7 @@ pub mod start_pair;
 pub mod zero_dimensional_solve;
 
 pub use any_algorithm::{AnyAlgorithm, RestoreError};
+pub use certified_solve::{Certifiable, CertifiablePoint, CertifiedSolve};
 pub use opening::Opening;
 pub use plan::{Plan, PlanOptions, plan};
 pub use plan_error::PlanError;
@@ -56,6 +58,10 @@ pub trait PathAlgorithm: Send {
     /// What was found, one set for each target; meant for when `next` has said `Done`.
     /// `system` is the one that was planned for.
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
+    /// What can be certified of it when it is done; `None` where it does not say.
+    fn certifiable(&self) -> Option<Certifiable> {
+        None
+    }
 }
 
 #[cfg(test)]

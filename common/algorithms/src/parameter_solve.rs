@@ -2,7 +2,7 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::retried_stage::RetriedStage;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::{Certifiable, Next, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
@@ -70,6 +70,10 @@ impl PathAlgorithm for ParameterSolve {
 
     fn snapshot(&self) -> Vec<u8> {
         AnyAlgorithm::Parameter(self.clone()).to_bytes()
+    }
+
+    fn certifiable(&self) -> Option<Certifiable> {
+        Some(self.paths.certifiable())
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

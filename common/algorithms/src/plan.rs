@@ -1,6 +1,7 @@
 //! From a system and options to an algorithm that solves it, or to a clear reason why not.
 
 use crate::any_algorithm::AnyAlgorithm;
+use crate::certified_solve::CertifiedSolve;
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
@@ -70,6 +71,8 @@ pub struct PlanOptions {
     pub max_retries: u16,
     /// When the loops of a monodromy solve end.
     pub loops: LoopLimits,
+    /// Whether the solutions are certified.
+    pub certify: bool,
 }
 
 impl Default for PlanOptions {
@@ -84,6 +87,7 @@ impl Default for PlanOptions {
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,
             loops: LoopLimits::default(),
+            certify: false,
         }
     }
 }
@@ -116,16 +120,18 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
             name.unwrap_or_else(|| format!("equation {}", index + 1)),
         ));
     }
-    if options.start == StartChoice::Monodromy {
-        return plan_monodromy(system, options);
-    }
     let given = options.start == StartChoice::Given || options.start_points.is_some();
-    match (given, options.start) {
+    let mut plan = match (given, options.start) {
+        (_, StartChoice::Monodromy) => plan_monodromy(system, options),
         (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),
         _ if system.path_variable.is_some() => Err(PlanError::HomotopyWithoutStart),
         (true, _) => Err(PlanError::NothingToDeform),
         (false, choice) => plan_start_system(system, choice, options),
+    }?;
+    if options.certify {
+        plan.algorithm = AnyAlgorithm::Certified(Box::new(CertifiedSolve::new(plan.algorithm)));
     }
+    Ok(plan)
 }
 
 fn check_parameters(system: &System, options: &PlanOptions) -> Result<(), PlanError> {

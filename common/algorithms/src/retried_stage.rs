@@ -5,8 +5,8 @@
 //! another would change which start reaches which end) and tighten the
 //! settings; the verdict uses the last.
 
-use crate::Next;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
+use crate::{Certifiable, CertifiablePoint, Next};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -236,6 +236,30 @@ impl RetriedStage {
             stages: self.stages.clone(),
             paths,
             done,
+        }
+    }
+
+    /// The finite nonsingular endpoints of all targets.
+    pub fn certifiable(&self) -> Certifiable {
+        let size = self.paths_per_target.max(1) as usize;
+        let mut points = Vec::new();
+        for (target, results) in (0u64..).zip(self.results.chunks(size)) {
+            for result in results {
+                let decision = classify(result, &self.shape, &self.tolerances);
+                if decision.verdict == Verdict::Finite {
+                    points.push(CertifiablePoint {
+                        target,
+                        path: result.origin.0,
+                        values: self.shape.to_variables(result.endpoint.to_double()),
+                    });
+                }
+            }
+        }
+        Certifiable {
+            homotopy: self.first.homotopy.clone(),
+            seed: self.first.seed,
+            settings: self.first.settings.clone(),
+            points,
         }
     }
 

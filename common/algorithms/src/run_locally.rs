@@ -2,7 +2,8 @@
 
 use crate::{Next, Opening, PathAlgorithm};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::stage::{PrepareError, PreparedStage};
+use cognate_continuation::prepared_work::PreparedWork;
+use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -36,8 +37,8 @@ pub fn run_locally(
         let objects_of_stage = opening.objects.iter();
         made.extend(objects_of_stage.map(|points| (points.digest(), Arc::clone(points))));
         let find = |wanted: Digest| made.get(&wanted).cloned().or_else(|| objects(wanted));
-        let prepared = PreparedStage::new(system, &opening.stage, &find)?;
-        Ok(prepared.track(0..prepared.items(), width))
+        let prepared = PreparedWork::new(system, &opening.stage, &find)?;
+        Ok(prepared.run(0..prepared.items(), width))
     })?;
     Ok(algorithm.solution_sets(system))
 }

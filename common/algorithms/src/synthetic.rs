@@ -78,6 +78,7 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                 precision_bits: 53,
                 counts: Counts::default(),
                 asked: None,
+                certification: None,
             }
         })
         .collect()

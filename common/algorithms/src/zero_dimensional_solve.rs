@@ -2,7 +2,7 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::retried_stage::RetriedStage;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::{Certifiable, Next, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
@@ -76,6 +76,10 @@ impl PathAlgorithm for ZeroDimensionalSolve {
 
     fn snapshot(&self) -> Vec<u8> {
         AnyAlgorithm::ZeroDimensional(self.clone()).to_bytes()
+    }
+
+    fn certifiable(&self) -> Option<Certifiable> {
+        Some(self.paths.certifiable())
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

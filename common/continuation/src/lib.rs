@@ -5,15 +5,18 @@
 //! [`start_points`] the beginning; [`predictor`], [`step_control`] and [`tracker`]
 //! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left;
 //! [`asked_system`] holds it against more equations than could be tracked.
+//! [`certification`] proves what is there; [`prepared_work`] is any of it for a worker.
 //! `examples/two_conics.rs` is a whole solve in thirty lines.
 #![forbid(unsafe_code)]
 
 pub mod asked_system;
+pub mod certification;
 pub mod chart;
 pub mod endgames;
 pub mod homotopies;
 pub mod path_result;
 pub mod predictor;
+pub mod prepared_work;
 mod refine;
 pub mod stage;
 pub mod start_points;

@@ -4,6 +4,7 @@
 //! compared bit for bit. What needs all paths at once (multiplicity, duplicates,
 //! classes) is `solutions`' business.
 
+use crate::certification::Certification;
 use crate::tracker::outcome::PathOutcome;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -93,4 +94,7 @@ pub struct PathResult {
     /// How well the endpoint solves the system that is asked; `None` where that is the one that
     /// was tracked, and for a failed path.
     pub asked: Option<AskedFit>,
+    /// What was proved of the point, in a stage that certifies; its `endpoint` is the point that
+    /// was given, in the values of the variables.
+    pub certification: Option<Certification>,
 }

@@ -11,7 +11,7 @@ use crate::start_systems::total_degree::TotalDegree;
 use crate::tracker::lockstep::Lockstep;
 use crate::tracker::observer::{Observer, Recorder, StepEvent};
 use crate::tracker::settings::Settings;
-use crate::work::Stage;
+use crate::work::{Stage, Work};
 use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on};
 use cognate_numeric::scalar::{DoubleDouble, Real};
@@ -55,6 +55,9 @@ pub enum PrepareError {
         /// How many there should be.
         expected: usize,
     },
+    /// The stage has no paths.
+    #[error("the stage asks for other work than tracking")]
+    Work,
     /// An arithmetic that is not there.
     #[error("not in this version: arithmetic of {0} bits; there are 53 and 106")]
     Precision(u32),
@@ -95,6 +98,9 @@ impl PreparedStage {
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
         system.check()?;
+        if stage.work != Work::Track {
+            return Err(PrepareError::Work);
+        }
         if !matches!(stage.settings.precision_bits, 53 | 106) {
             return Err(PrepareError::Precision(stage.settings.precision_bits));
         }
@@ -392,7 +398,7 @@ mod tests {
     use super::*;
     use crate::path_result::PathIndex;
     use crate::tracker::outcome::PathOutcome;
-    use crate::work::{StageId, Work};
+    use crate::work::StageId;
     use cognate_systems::named::{cyclic, griewank_osborne, katsura};
 
     fn stage(degrees: &[u32]) -> Stage {

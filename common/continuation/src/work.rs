@@ -16,6 +16,8 @@ pub struct StageId(pub u32);
 pub enum Work {
     /// Track the path of each start point to its end.
     Track,
+    /// Prove that there is exactly one solution near each point.
+    Certify,
 }
 
 /// One kind of work over the start points of one homotopy.

@@ -19,6 +19,7 @@
 //! assert_eq!(square::<MultiplePrecision>(200), 4.0);
 //! ```
 
+pub mod exact_text;
 pub mod lanes;
 pub mod linear_algebra;
 pub mod precision;

@@ -7,9 +7,12 @@
 //! agree. The hash is over these bytes before any compression; neither time nor
 //! worker is in them.
 
+use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_numeric::exact_text::{exact_text, read_exact};
+use cognate_numeric::rational::{ComplexRational, Rational};
 use num_complex::Complex64;
 
 const MAGIC: &[u8; 8] = b"CGNRES01";
@@ -17,6 +20,8 @@ const MAGIC: &[u8; 8] = b"CGNRES01";
 /// Tags of the facts that only some results have. Tags only grow.
 mod tag {
     pub const ASKED: u8 = 1;
+    pub const CERTIFIED: u8 = 2;
+    pub const UNCERTIFIED: u8 = 3;
 }
 
 /// Bytes that hold no records.
@@ -125,6 +130,7 @@ impl Writer {
             precision_bits,
             counts,
             asked,
+            certification,
         } = result;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -172,6 +178,45 @@ impl Writer {
             self.f64(*residual);
             self.f64(*correction);
         }
+        match certification {
+            None => {}
+            Some(Certification::Certified(certificate)) => self.certificate(certificate),
+            Some(Certification::Uncertified(reason)) => {
+                self.0.push(tag::UNCERTIFIED);
+                self.0.push(match reason {
+                    Uncertified::DamagedPoint => 1,
+                    Uncertified::NoEnclosure => 2,
+                    Uncertified::NewtonLeaves => 3,
+                    Uncertified::Singular => 4,
+                    Uncertified::NoContraction => 5,
+                });
+            }
+        }
+    }
+}
+
+impl Writer {
+    fn certificate(&mut self, certificate: &Certificate) {
+        let Certificate {
+            centre,
+            radius,
+            error,
+            contraction,
+            precision_bits,
+        } = certificate;
+        self.0.push(tag::CERTIFIED);
+        self.length(centre.len());
+        for part in centre.iter().flat_map(|z| [&z.re, &z.im]) {
+            let text = exact_text(part).expect("the numbers of a certificate are dyadic");
+            self.length(text.len());
+            self.0.extend_from_slice(text.as_bytes());
+        }
+        for numbers in [radius, error] {
+            self.length(numbers.len());
+            numbers.iter().for_each(|&x| self.f64(x));
+        }
+        self.f64(*contraction);
+        self.u32(*precision_bits);
     }
 }
 
@@ -225,6 +270,37 @@ impl<'a> Reader<'a> {
         Ok(length)
     }
 
+    fn exact(&mut self) -> Result<Rational, DamagedRecords> {
+        let length = self.length(1)?;
+        let text = std::str::from_utf8(self.take(length)?).ok();
+        text.and_then(read_exact)
+            .ok_or_else(|| self.damaged("no exact number"))
+    }
+
+    fn certificate(&mut self) -> Result<Certificate, DamagedRecords> {
+        // Each coordinate has two numbers, each a length and at least `0x0p0`.
+        let count = self.length(18)?;
+        let centre = (0..count)
+            .map(|_| Ok(ComplexRational::new(self.exact()?, self.exact()?)))
+            .collect::<Result<_, _>>()?;
+        let mut numbers = || -> Result<Vec<f64>, DamagedRecords> {
+            let count = self.length(8)?;
+            (0..count).map(|_| self.f64()).collect()
+        };
+        let certificate = Certificate {
+            centre,
+            radius: numbers()?,
+            error: numbers()?,
+            contraction: self.f64()?,
+            precision_bits: self.u32()?,
+        };
+        if certificate.is_sound() {
+            Ok(certificate)
+        } else {
+            Err(self.damaged("the parts of a certificate do not belong together"))
+        }
+    }
+
     /// One record, which ends there.
     fn record(&mut self, end: usize) -> Result<PathResult, DamagedRecords> {
         let origin = PathIndex(self.u64()?);
@@ -273,6 +349,7 @@ impl<'a> Reader<'a> {
                 turns: self.u32()?,
             },
             asked: None,
+            certification: None,
         };
         let mut last = 0;
         while self.at < end {
@@ -287,6 +364,21 @@ impl<'a> Reader<'a> {
                         residual: self.f64()?,
                         correction: self.f64()?,
                     });
+                }
+                tag::CERTIFIED => {
+                    let certificate = Box::new(self.certificate()?);
+                    result.certification = Some(Certification::Certified(certificate));
+                }
+                tag::UNCERTIFIED => {
+                    let reason = match self.array::<1>()?[0] {
+                        1 => Uncertified::DamagedPoint,
+                        2 => Uncertified::NoEnclosure,
+                        3 => Uncertified::NewtonLeaves,
+                        4 => Uncertified::Singular,
+                        5 => Uncertified::NoContraction,
+                        _ => return Err(self.damaged("a reason that this version does not know")),
+                    };
+                    result.certification = Some(Certification::Uncertified(reason));
                 }
                 _ => return Err(self.damaged("a fact that this version does not know")),
             }

@@ -55,6 +55,8 @@ pub struct Options {
     pub idle_loops: Option<u32>,
     /// For [`StartKind::Monodromy`]: how many solutions there are, where that is known.
     pub expected_solutions: Option<u64>,
+    /// Whether the solutions are certified.
+    pub certify: bool,
 }
 
 /// Which start system.

@@ -5,10 +5,11 @@
 //! [`unique_points`] finds the endpoints that are one point; [`path_crossing`]
 //! names the paths that must be tracked again; [`real`] decides whether a
 //! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
-//! that add up. Nothing here tracks a path: everything can be decided again
+//! that add up; [`certificates`] adds what was proved. Nothing here tracks a path: everything can be decided again
 //! from stored results, with other tolerances.
 #![forbid(unsafe_code)]
 
+pub mod certificates;
 pub mod classification;
 pub mod degenerate;
 pub mod field;

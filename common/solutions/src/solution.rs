@@ -2,6 +2,7 @@
 //!
 //! Serialised it is a line of `solutions.jsonl`, field by field as the contract has it.
 
+use crate::certificates::SolutionCertificate;
 use num_complex::Complex64;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
@@ -39,8 +40,8 @@ pub struct Solution {
     pub class: Option<u64>,
     /// The paths that end here, ascending.
     pub paths: Vec<u64>,
-    /// A certificate, where one was made.
-    pub certificate: Option<String>,
+    /// What was proved of it, where that was asked for.
+    pub certificate: Option<SolutionCertificate>,
 }
 
 impl Serialize for NamedValues {

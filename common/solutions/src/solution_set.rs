@@ -3,6 +3,7 @@
 //! Made from the last results of all paths of one target. The same results
 //! give the same set, whoever tracked them in whatever chunks.
 
+use crate::certificates::CertifiedSystem;
 use crate::classification::{Decision, Tolerances, Verdict, classify, solves};
 use crate::degenerate;
 use crate::involution::Involution;
@@ -83,6 +84,8 @@ pub struct SolutionSet {
     pub failed: Vec<FailedPath>,
     /// What a reader should know.
     pub warnings: Vec<String>,
+    /// What the certificates are of, where there are some.
+    pub certified_system: Option<CertifiedSystem>,
 }
 
 impl SolutionSet {

@@ -65,8 +65,10 @@ pub struct SolutionCounts {
     pub real_reason: Option<String>,
     /// Sum of the multiplicities.
     pub with_multiplicity: u64,
-    /// With a certificate; null where none was asked for.
+    /// Proved to be there and to differ from each other; null where that was not asked for.
     pub certified: Option<u64>,
+    /// ... and proved to be real; null where that is not asked.
+    pub certified_real: Option<u64>,
     /// Whether there is a positive-dimensional solution set; null until that can be decided.
     pub positive_dimensional: Option<bool>,
     /// Solutions in each named set of endpoints that are no answers.
@@ -109,7 +111,7 @@ mod tests {
         assert_eq!(
             serde_json::to_string(&SolutionCounts::default()).unwrap(),
             "{\"distinct\":0,\"nonsingular\":0,\"singular\":0,\"real\":null,\"real_reason\":null,\
-             \"with_multiplicity\":0,\"certified\":null,\"positive_dimensional\":null,\
+             \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
              \"degenerate\":{}}"
         );
         assert_eq!(

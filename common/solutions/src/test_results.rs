@@ -39,6 +39,7 @@ pub fn regular(path: u64, point: &[(f64, f64)]) -> PathResult {
         precision_bits: 53,
         counts: Counts::default(),
         asked: None,
+        certification: None,
     }
 }
 

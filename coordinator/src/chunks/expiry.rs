@@ -67,6 +67,7 @@ pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
         precision_bits: 53,
         counts: Counts::default(),
         asked: None,
+        certification: None,
     }
 }
 

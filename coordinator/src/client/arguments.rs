@@ -197,8 +197,8 @@ pub struct ProblemArguments {
     /// How many solutions there are at generic parameters, where --start monodromy should know
     #[arg(long, value_name = "N")]
     pub expect: Option<u64>,
-    /// Proofs that there is one solution in each box (not in this version)
-    #[arg(long, hide = true)]
+    /// Proofs that there is exactly one solution in each box, that they differ, that they are real
+    #[arg(long)]
     pub certify: bool,
     /// Singular solutions made regular (not in this version)
     #[arg(long, hide = true)]

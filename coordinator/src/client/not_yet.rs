@@ -38,7 +38,6 @@ fn problem(a: &ProblemArguments) -> Option<String> {
         | Start::Monodromy => None,
     };
     let flags = [
-        (a.certify, "--certify (certified solutions)"),
         (a.deflate, "--deflate (deflation of singular solutions)"),
         (
             a.trace_test,

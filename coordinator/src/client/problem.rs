@@ -145,6 +145,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         name: short_name(&a.file).chars().take(60).collect(),
         idle_loops: a.idle_loops,
         expected_solutions: a.expect,
+        certify: a.certify,
     };
     Ok(Prepared {
         submission: Submission {

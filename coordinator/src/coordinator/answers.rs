@@ -8,7 +8,7 @@ use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
 use crate::results::summary::{SOLUTIONS, Summary};
 use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::{Stage, StageId};
+use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
@@ -47,6 +47,7 @@ pub struct Explanation {
 /// What a stage is for, in words.
 fn purpose(stage: &Stage) -> String {
     match stage.attempt {
+        _ if stage.work == Work::Certify => "certifying".to_owned(),
         0 => "tracking".to_owned(),
         attempt => format!("tracking again, more carefully ({attempt})"),
     }
@@ -192,6 +193,9 @@ impl Coordinator {
         };
         let stages = self.ledger.stages(job).await?.into_iter();
         for stage in stages.filter(|stage| stage.stage >= counted) {
+            if self.stage_of(stage.definition).await?.work != Work::Track {
+                continue; // its items are no paths
+            }
             let (mut from, first) = (0, results.is_empty());
             loop {
                 let rows = self
@@ -246,7 +250,7 @@ impl Coordinator {
         }
         for stage in &progress.stages {
             lines.push(format!(
-                "stage {} ({}): {} paths; {} done, {} given up, {} with workers, {} waiting",
+                "stage {} ({}): {} items; {} done, {} given up, {} with workers, {} waiting",
                 stage.stage.0,
                 stage.purpose,
                 stage.total,
@@ -284,6 +288,16 @@ impl Coordinator {
                     loops.lost,
                     loops.crossings_found,
                     loops.crossings_resolved
+                ));
+            }
+            if let Some(certified) = summary.solutions.certified {
+                lines.push(format!(
+                    "certified: {certified} of {} nonsingular solutions, {} of them proved real",
+                    summary.solutions.nonsingular,
+                    summary
+                        .solutions
+                        .certified_real
+                        .map_or("none".to_owned(), |n| n.to_string()),
                 ));
             }
             for (reason, count) in &summary.failures {

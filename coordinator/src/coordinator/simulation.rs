@@ -9,7 +9,7 @@ use crate::ledger::clock::ManualClock;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use crate::results::store::Store;
-use cognate_continuation::stage::PreparedStage;
+use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_protocol::submission::{Options, SettingsChoice};
 use cognate_systems::system::System;
@@ -88,7 +88,7 @@ pub struct Cluster {
     processes: Vec<Process>,
     workers: Vec<Worker>,
     born: u64,
-    prepared: Mutex<HashMap<Digest, Arc<PreparedStage>>>,
+    prepared: Mutex<HashMap<Digest, Arc<PreparedWork>>>,
 }
 
 impl Cluster {
@@ -276,7 +276,7 @@ impl Cluster {
         }
     }
 
-    async fn prepare(&self, lease: &Lease) -> Arc<PreparedStage> {
+    async fn prepare(&self, lease: &Lease) -> Arc<PreparedWork> {
         let known = {
             let prepared = self.prepared.lock().expect("nobody panics here");
             prepared.get(&lease.definition).cloned()
@@ -303,7 +303,7 @@ impl Cluster {
                 ))
             }
         };
-        let prepared = PreparedStage::new(&system, &stage, &|_| points.clone());
+        let prepared = PreparedWork::new(&system, &stage, &|_| points.clone());
         let prepared = prepared.expect("it can be prepared");
         let prepared = Arc::new(prepared);
         let mut known = self.prepared.lock().expect("nobody panics here");
@@ -335,7 +335,7 @@ impl Cluster {
         self.tracked += lease.items.len();
         let report = Report {
             lease: lease.lease,
-            results: prepared.track(items, self.workers[worker].width),
+            results: prepared.run(items, self.workers[worker].width),
             cpu_micros: 1000 * lease.items.len(),
         };
         self.workers[worker].said = Some(report);

@@ -125,6 +125,7 @@ pub fn plan_options(
             PrecisionChoice::Double => 1,
             PrecisionChoice::Adaptive | PrecisionChoice::Bits(_) => MAX_RETRIES,
         },
+        certify: options.certify,
         ..PlanOptions::default()
     })
 }

@@ -87,9 +87,7 @@ impl Steward {
 
     /// How the solutions were found, in a solve by monodromy.
     pub fn monodromy(&self) -> Option<MonodromyBlock> {
-        let AnyAlgorithm::Monodromy(solve) = &self.algorithm else {
-            return None;
-        };
+        let solve = self.algorithm.monodromy()?;
         let values = match solve.targets() {
             [one] => one.as_slice(),
             _ => &[],

@@ -183,7 +183,8 @@ impl Outcomes {
     /// Counts the outcomes of some results.
     pub fn of(results: &[PathResult]) -> Self {
         let mut outcomes = Self::default();
-        for result in results {
+        // What was certified is no path that ended.
+        for result in results.iter().filter(|r| r.certification.is_none()) {
             match result.outcome {
                 PathOutcome::Regular => outcomes.regular += 1,
                 PathOutcome::Singular => outcomes.singular += 1,

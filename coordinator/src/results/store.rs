@@ -361,6 +361,7 @@ mod tests {
             precision_bits: 53,
             counts: Counts::default(),
             asked: None,
+            certification: None,
         };
         (0..count).map(result).collect()
     }

@@ -7,6 +7,7 @@ use crate::jobs::planning::Planned;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{Contribution, JobRow, StageRow};
 use cognate_algorithms::monodromy::counts::LoopCounts;
+use cognate_solutions::certificates::CertifiedSystem;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::{ClassCounts, PathCounts, SolutionCounts};
 use num_complex::Complex64;
@@ -14,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Solution sets as objects.
-pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL01");
+pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL02");
 
 /// A finished job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,6 +42,9 @@ pub struct Summary {
     /// Each target's counts, where there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<TargetBlock>,
+    /// What the certificates are of, where there are some and one target.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certification: Option<CertifiedSystem>,
     /// True when every path is accounted for and every count is settled.
     pub settled: bool,
     /// What a reader should know.
@@ -110,6 +114,9 @@ pub struct TargetBlock {
     pub solutions: SolutionCounts,
     /// Its classes.
     pub classes: ClassCounts,
+    /// What its certificates are of, where there are some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certification: Option<CertifiedSystem>,
 }
 
 impl Summary {
@@ -143,6 +150,7 @@ impl Summary {
             paths: set.paths.clone(),
             solutions: set.counts.clone(),
             classes: set.classes.clone(),
+            certification: set.certified_system.clone(),
         };
         let sum = match sets {
             [one] => block(one),
@@ -163,6 +171,7 @@ impl Summary {
             solutions: sum.solutions,
             classes: sum.classes,
             monodromy: None,
+            certification: sum.certification,
             time: TimeBlock {
                 wall_seconds,
                 cpu_seconds: tracking_cpu_seconds,
@@ -207,6 +216,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
     let mut counts = SolutionCounts {
         real: Some(0),
         certified: Some(0),
+        certified_real: Some(0),
         positive_dimensional: Some(false),
         ..SolutionCounts::default()
     };
@@ -249,6 +259,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             real_reason,
             with_multiplicity,
             certified,
+            certified_real,
             positive_dimensional,
             degenerate,
         } = &set.counts;
@@ -259,6 +270,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         counts.real_reason = counts.real_reason.or_else(|| real_reason.clone());
         counts.with_multiplicity += with_multiplicity;
         add(&mut counts.certified, *certified);
+        add(&mut counts.certified_real, *certified_real);
         counts.positive_dimensional = counts
             .positive_dimensional
             .zip(*positive_dimensional)
@@ -271,6 +283,8 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         paths,
         solutions: counts,
         classes: ClassCounts::default(),
+        // Each target has its own.
+        certification: None,
     }
 }
 

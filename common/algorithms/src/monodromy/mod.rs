@@ -16,7 +16,7 @@ use crate::parameter_solve::ParameterSolve;
 use crate::plan::MAX_PATHS;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::{MAX_RETRIES, can_be_helped};
-use crate::{Next, Opening, PathAlgorithm};
+use crate::{Certifiable, Next, Opening, PathAlgorithm};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
@@ -580,6 +580,13 @@ fn edge_seed(seed: u64, edge: usize) -> u64 {
 }
 
 impl PathAlgorithm for MonodromySolve {
+    fn certifiable(&self) -> Option<Certifiable> {
+        match &self.phase {
+            Phase::Arrive(solve) => solve.certifiable(),
+            Phase::Check(_) | Phase::Loops(_) | Phase::Stuck => None,
+        }
+    }
+
     fn next(&mut self) -> Next {
         loop {
             match &mut self.phase {

@@ -674,6 +674,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 turns: path.cauchy.total_turns(),
             },
             asked: None,
+            certification: None,
         };
         let at = usize::try_from(path.item - self.items.start).expect("a chunk fits in memory");
         debug_assert!(self.results[at].is_none(), "an item ends once");

@@ -5,18 +5,22 @@ use super::{digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::v1;
+use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_numeric::exact_text::read_exact;
+use cognate_numeric::rational::ComplexRational;
 use cognate_systems::formats::limits as sizes;
 
 /// A stage.
 pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
     let work = match v1::Work::try_from(m.work) {
         Ok(v1::Work::Track) => Work::Track,
+        Ok(v1::Work::Certify) => Work::Certify,
         Ok(v1::Work::Unspecified) | Err(_) => {
             return Err(ProtocolError::invalid(
                 "work",
@@ -229,7 +233,76 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             turns: counts.turns,
         },
         asked: m.asked.as_ref().map(asked_fit).transpose()?,
+        certification: m
+            .certification
+            .as_ref()
+            .map(certification)
+            .transpose()
+            .map_err(|e| e.within("certification"))?,
     })
+}
+
+fn certification(m: &v1::Certification) -> Result<Certification, ProtocolError> {
+    use v1::certification::Outcome;
+    Ok(match required("outcome", m.outcome.as_ref())? {
+        Outcome::Certificate(m) => Certification::Certified(Box::new(
+            certificate(m).map_err(|e| e.within("certificate"))?,
+        )),
+        Outcome::Uncertified(reason) => {
+            Certification::Uncertified(match v1::Uncertified::try_from(*reason) {
+                Ok(v1::Uncertified::DamagedPoint) => Uncertified::DamagedPoint,
+                Ok(v1::Uncertified::NoEnclosure) => Uncertified::NoEnclosure,
+                Ok(v1::Uncertified::NewtonLeaves) => Uncertified::NewtonLeaves,
+                Ok(v1::Uncertified::Singular) => Uncertified::Singular,
+                Ok(v1::Uncertified::NoContraction) => Uncertified::NoContraction,
+                Ok(v1::Uncertified::Unspecified) | Err(_) => {
+                    return Err(ProtocolError::invalid(
+                        "uncertified",
+                        *reason,
+                        "a reason that this version knows",
+                    ));
+                }
+            })
+        }
+    })
+}
+
+fn certificate(m: &v1::Certificate) -> Result<Certificate, ProtocolError> {
+    within_limit("centre", m.centre.len() / 2, sizes::VARIABLES)?;
+    if !m.centre.len().is_multiple_of(2) {
+        return Err(ProtocolError::invalid(
+            "centre",
+            format!("{} numbers", m.centre.len()),
+            "real and imaginary part of every coordinate",
+        ));
+    }
+    let exact = |i: usize| {
+        read_exact(&m.centre[i]).ok_or_else(|| {
+            ProtocolError::invalid(
+                format!("centre[{i}]"),
+                &m.centre[i],
+                "an exact number such as -0x1fp-3",
+            )
+        })
+    };
+    let certificate = Certificate {
+        centre: (0..m.centre.len() / 2)
+            .map(|i| Ok(ComplexRational::new(exact(2 * i)?, exact(2 * i + 1)?)))
+            .collect::<Result<_, ProtocolError>>()?,
+        radius: m.radius.clone(),
+        error: m.error.clone(),
+        contraction: m.contraction,
+        precision_bits: m.precision_bits,
+    };
+    if certificate.is_sound() {
+        Ok(certificate)
+    } else {
+        Err(ProtocolError::invalid(
+            "radius",
+            format!("{:?}", m.radius),
+            "for each coordinate a radius and an error below it",
+        ))
+    }
 }
 
 fn asked_fit(m: &v1::AskedFit) -> Result<AskedFit, ProtocolError> {

@@ -125,6 +125,7 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
         name: m.name,
         idle_loops: m.idle_loops,
         expected_solutions: m.expected_solutions,
+        certify: m.certify,
     })
 }
 

@@ -41,6 +41,11 @@ pub fn solution(m: &v1::Solution) -> Result<Solution, ProtocolError> {
         precision_bits: m.precision_bits,
         class: m.class,
         paths: m.paths.clone(),
-        certificate: m.certificate.clone(),
+        certificate: m
+            .certificate
+            .as_deref()
+            .map(serde_json::from_str)
+            .transpose()
+            .map_err(|e| ProtocolError::invalid("certificate", e, "a certificate as JSON"))?,
     })
 }

@@ -3,11 +3,13 @@
 use super::{complex, complexes, digest, pairs};
 use crate::submission::SettingsChoice;
 use crate::v1;
+use cognate_continuation::certification::{Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, Work};
+use cognate_numeric::exact_text::exact_text;
 
 /// A stage.
 pub fn stage(stage: &Stage) -> v1::Stage {
@@ -15,6 +17,7 @@ pub fn stage(stage: &Stage) -> v1::Stage {
         id: stage.id.0,
         work: match stage.work {
             Work::Track => v1::Work::Track,
+            Work::Certify => v1::Work::Certify,
         }
         .into(),
         homotopy: Some(homotopy(&stage.homotopy)),
@@ -106,6 +109,38 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             residual: fit.residual,
             correction: fit.correction,
         }),
+        certification: r.certification.as_ref().map(certification),
+    }
+}
+
+fn certification(of: &Certification) -> v1::Certification {
+    use v1::certification::Outcome;
+    let outcome = match of {
+        Certification::Certified(certificate) => Outcome::Certificate(v1::Certificate {
+            centre: certificate
+                .centre
+                .iter()
+                .flat_map(|z| [&z.re, &z.im])
+                .map(|part| exact_text(part).expect("the numbers of a certificate are dyadic"))
+                .collect(),
+            radius: certificate.radius.clone(),
+            error: certificate.error.clone(),
+            contraction: certificate.contraction,
+            precision_bits: certificate.precision_bits,
+        }),
+        Certification::Uncertified(reason) => {
+            let reason = match reason {
+                Uncertified::DamagedPoint => v1::Uncertified::DamagedPoint,
+                Uncertified::NoEnclosure => v1::Uncertified::NoEnclosure,
+                Uncertified::NewtonLeaves => v1::Uncertified::NewtonLeaves,
+                Uncertified::Singular => v1::Uncertified::Singular,
+                Uncertified::NoContraction => v1::Uncertified::NoContraction,
+            };
+            Outcome::Uncertified(reason.into())
+        }
+    };
+    v1::Certification {
+        outcome: Some(outcome),
     }
 }
 

@@ -83,6 +83,7 @@ pub fn options(options: &Options) -> v1::Options {
         name: options.name.clone(),
         idle_loops: options.idle_loops,
         expected_solutions: options.expected_solutions,
+        certify: options.certify,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Random checked values, pure functions of a seed, for the tests of this folder.
 #![allow(dead_code)]
 
+use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
@@ -233,6 +234,7 @@ impl Draw {
             // Drawn from nothing, so that the other draws stay what they were.
             idle_loops: Some(count as u32).filter(|&n| n > 1),
             expected_solutions: Some(length as u64).filter(|&n| n > 0),
+            certify: length > 1,
         }
     }
 
@@ -301,6 +303,30 @@ impl Draw {
         }
     }
 
+    fn certification(&mut self) -> Certification {
+        if self.coin() {
+            let all = [
+                Uncertified::DamagedPoint,
+                Uncertified::NoEnclosure,
+                Uncertified::NewtonLeaves,
+                Uncertified::Singular,
+                Uncertified::NoContraction,
+            ];
+            return Certification::Uncertified(all[self.below(all.len())]);
+        }
+        let exact = |x: f64| Rational::from_f64(x).expect("a finite number");
+        let centre = self.many(3, |draw| {
+            ComplexRational::new(exact(draw.number()), exact(draw.number()))
+        });
+        Certification::Certified(Box::new(Certificate {
+            radius: centre.iter().map(|_| 1e-9).collect(),
+            error: centre.iter().map(|_| 1e-13).collect(),
+            centre,
+            contraction: 0.125,
+            precision_bits: 128,
+        }))
+    }
+
     /// A result; what is known of a failed path may be NaN.
     pub fn path_result(&mut self) -> PathResult {
         let outcome = match self.below(3) {
@@ -333,6 +359,7 @@ impl Draw {
                 residual: draw.number().abs(),
                 correction: draw.number().abs(),
             }),
+            certification: self.some(Self::certification),
         }
     }
 }

@@ -4,6 +4,7 @@ use super::watch::{ended, standing};
 use crate::client::arguments::{Format, OutputArguments, Results};
 use crate::client::connection::Connection;
 use crate::client::error::{ClientError, Exit};
+use crate::client::output::certificates::Certificates;
 use crate::client::output::files::Folder;
 use crate::client::output::paths::Paths;
 use crate::client::output::table::SOLUTIONS_SHOWN;
@@ -52,9 +53,13 @@ pub async fn show(
         {
             folder.family(&block.parameters)?;
         }
+        let mut certificates = Certificates::create(path, &summary)?;
         connection
             .solutions(job, |solution| {
                 folder.solution(&solution)?;
+                if let Some(certificates) = &mut certificates {
+                    certificates.solution(&solution)?;
+                }
                 if rows.len() < wanted {
                     rows.push(solution);
                 }
@@ -64,6 +69,9 @@ pub async fn show(
         let mut paths = Paths::new(path.join("paths.parquet"));
         connection.paths(job, |path| paths.path(path)).await?;
         paths.finish()?;
+        if let Some(certificates) = certificates {
+            certificates.finish()?;
+        }
         folder.finish(&json)?;
     } else if wanted > 0 {
         connection

@@ -26,9 +26,14 @@ pub struct Folder {
 }
 
 /// A file with its name, for messages.
-struct Written {
+pub(super) struct Written {
     path: PathBuf,
     file: BufWriter<File>,
+}
+
+/// A new file in the folder.
+pub(super) fn create(folder: &Path, name: &str) -> Result<Written, ClientError> {
+    Written::create(folder, name)
 }
 
 impl Written {
@@ -41,7 +46,7 @@ impl Written {
         })
     }
 
-    fn write(&mut self, text: &str) -> Result<(), ClientError> {
+    pub(super) fn write(&mut self, text: &str) -> Result<(), ClientError> {
         self.write_bytes(text.as_bytes())
     }
 
@@ -50,7 +55,7 @@ impl Written {
         file.write_all(bytes).map_err(|e| cannot_write(path, e))
     }
 
-    fn finish(mut self) -> Result<(), ClientError> {
+    pub(super) fn finish(mut self) -> Result<(), ClientError> {
         self.file.flush().map_err(|e| cannot_write(&self.path, e))
     }
 }

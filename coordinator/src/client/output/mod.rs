@@ -1,5 +1,6 @@
 //! The same answers for people and for programs.
 
+pub mod certificates;
 pub mod drawing;
 pub mod files;
 pub mod json;

@@ -261,7 +261,15 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
         (None, reason) => lines.line("real", "-", reason.as_deref().unwrap_or("not asked")),
     }
     if let Some(n) = s.certified {
-        lines.line("certified", &count(n), "");
+        let boxes = format!(
+            "of {}: each alone in its box, no box meets another",
+            count(s.nonsingular)
+        );
+        let note = match s.certified_real {
+            Some(real) if n > 0 => format!("{boxes}; {} proved real", count(real)),
+            _ => boxes,
+        };
+        lines.line("certified", &count(n), &note);
     }
     if s.positive_dimensional == Some(true) {
         lines.line("and also", "", "a positive-dimensional solution set");

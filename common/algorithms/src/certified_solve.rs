@@ -1,0 +1,337 @@
+//! CertifiedSolve: any solve, and then the proof of what it found.
+//!
+//! When the solve is done, its finite nonsingular endpoints become the points
+//! of one more stage, which certifies them; its facts are judged together when
+//! the solution sets are made (`cognate_solutions::certificates`).
+
+use crate::any_algorithm::AnyAlgorithm;
+use crate::{Next, Opening, PathAlgorithm, Progress, StageProgress};
+use cognate_continuation::certification::parameters_at_targets;
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_solutions::certificates::{Attempt, certify};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What a finished solve offers to be certified.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certifiable {
+    /// A homotopy that ends at the parameters of each target.
+    pub homotopy: HomotopyKind,
+    /// Its seed, from which combinations of equations are made where there are too many.
+    pub seed: u64,
+    /// The settings that its paths were tracked with.
+    pub settings: Settings,
+    /// Its finite nonsingular endpoints, target by target.
+    pub points: Vec<CertifiablePoint>,
+}
+
+/// One endpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CertifiablePoint {
+    /// At which target.
+    pub target: u64,
+    /// Which path ended there, as the solution sets name it.
+    pub path: u64,
+    /// Values of the variables.
+    pub values: Vec<Complex64>,
+}
+
+/// A solve with its certificates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CertifiedSolve {
+    solve: AnyAlgorithm,
+    certification: Option<Certifying>,
+}
+
+/// The stage that certifies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Certifying {
+    homotopy: HomotopyKind,
+    seed: u64,
+    /// `None` where there was nothing to certify.
+    stage: Option<StageProgress>,
+    /// Target and path of each item.
+    items: Vec<(u64, u64)>,
+    /// What was found, item by item; empty until the stage is absorbed.
+    found: Vec<Attempt>,
+}
+
+impl CertifiedSolve {
+    /// The solve that begins with this one.
+    pub fn new(solve: AnyAlgorithm) -> Self {
+        Self {
+            solve,
+            certification: None,
+        }
+    }
+
+    /// The solve whose solutions are certified.
+    pub fn solve(&self) -> &AnyAlgorithm {
+        &self.solve
+    }
+
+    /// The same with another limit of repetitions.
+    #[must_use]
+    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
+        self.solve = self.solve.with_max_retries(max_retries);
+        self
+    }
+
+    /// The last stage, now that the solve is done.
+    fn open(&mut self) -> Next {
+        let Some(certifiable) = self.solve.certifiable() else {
+            return Next::Done;
+        };
+        let Certifiable {
+            homotopy,
+            seed,
+            settings,
+            points,
+        } = certifiable;
+        let items: Vec<(u64, u64)> = points.iter().map(|p| (p.target, p.path)).collect();
+        let mut certifying = Certifying {
+            homotopy: homotopy.clone(),
+            seed,
+            stage: None,
+            items,
+            found: Vec::new(),
+        };
+        let Some(first) = points.first() else {
+            self.certification = Some(certifying);
+            return Next::Done;
+        };
+        let dimension = first.values.len();
+        let stored = Arc::new(StoredPoints {
+            dimension,
+            coordinates: points.iter().flat_map(|p| p.values.clone()).collect(),
+        });
+        let all = stored.as_start();
+        let count = points.len() as u64;
+        let start_points = if points.iter().all(|p| p.target == 0) && !several(&homotopy) {
+            all
+        } else {
+            // Item i of target t is point i there: its index among all targets and points.
+            StartPoints::Selected {
+                base: Box::new(all),
+                indices: (0..)
+                    .zip(&points)
+                    .map(|(i, p)| p.target * count + i)
+                    .collect(),
+            }
+        };
+        let before = self.solve.progress().stages;
+        let id = before.iter().map(|stage| stage.id.0 + 1).max().unwrap_or(0);
+        let stage = Stage {
+            id: StageId(id),
+            work: Work::Certify,
+            homotopy,
+            start_points,
+            settings,
+            seed,
+            attempt: 0,
+        };
+        certifying.stage = Some(StageProgress {
+            id: stage.id,
+            attempt: 0,
+            items: count,
+            absorbed: false,
+        });
+        self.certification = Some(certifying);
+        Next::Open(Box::new(Opening {
+            stage,
+            objects: vec![stored],
+        }))
+    }
+}
+
+/// Whether a homotopy has several targets.
+fn several(homotopy: &HomotopyKind) -> bool {
+    matches!(homotopy, HomotopyKind::Parameter { targets, .. } if targets.len() > 1)
+}
+
+impl PathAlgorithm for CertifiedSolve {
+    fn next(&mut self) -> Next {
+        match &self.certification {
+            Some(Certifying {
+                stage: Some(stage), ..
+            }) if !stage.absorbed => Next::Wait,
+            Some(_) => Next::Done,
+            None => match self.solve.next() {
+                Next::Done => self.open(),
+                other => other,
+            },
+        }
+    }
+
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        let Some(certifying) = &mut self.certification else {
+            return self.solve.absorb(stage, results);
+        };
+        let own = certifying
+            .stage
+            .as_mut()
+            .filter(|own| own.id == stage && !own.absorbed)
+            .expect("only an open stage is absorbed");
+        own.absorbed = true;
+        certifying.found = results.map(|result| result.certification).collect();
+        assert_eq!(
+            certifying.found.len(),
+            certifying.items.len(),
+            "a stage is absorbed as a whole"
+        );
+    }
+
+    fn progress(&self) -> Progress {
+        let mut progress = self.solve.progress();
+        if let Some(stage) = self.certification.as_ref().and_then(|c| c.stage) {
+            progress.stages.push(stage);
+            progress.done = stage.absorbed;
+            if !stage.absorbed {
+                progress.description = format!("certifying {} solutions", stage.items);
+            }
+        } else if self.certification.is_none() {
+            progress.done = false;
+        }
+        progress
+    }
+
+    fn snapshot(&self) -> Vec<u8> {
+        AnyAlgorithm::Certified(Box::new(self.clone())).to_bytes()
+    }
+
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+        let mut sets = self.solve.solution_sets(system);
+        let Some(certifying) = &self.certification else {
+            return sets;
+        };
+        let mut attempts: HashMap<(u64, u64), &Attempt> = HashMap::new();
+        attempts.extend(certifying.items.iter().copied().zip(&certifying.found));
+        let targets = parameters_at_targets(&certifying.homotopy, system);
+        for ((target, set), parameters) in (0u64..).zip(&mut sets).zip(&targets) {
+            let attempt = |path: u64| attempts.get(&(target, path)).map(|&found| found.clone());
+            certify(set, system, parameters, &attempt, certifying.seed);
+        }
+        sets
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::GivenStart;
+    use crate::run_locally::{drive, run_locally};
+    use crate::{PlanOptions, plan};
+    use cognate_continuation::prepared_work::PreparedWork;
+    use cognate_systems::named::katsura;
+
+    fn certified(set: &SolutionSet) -> (Option<u64>, Option<u64>, u64) {
+        let counts = &set.counts;
+        (counts.certified, counts.certified_real, counts.distinct)
+    }
+
+    fn with_certificates() -> PlanOptions {
+        PlanOptions {
+            certify: true,
+            seed: 7,
+            ..PlanOptions::default()
+        }
+    }
+
+    #[test]
+    fn every_solution_of_katsura_is_certified_also_after_a_restart() {
+        let system = katsura(4).system;
+        let mut planned = plan(&system, &with_certificates()).unwrap();
+        let mut works = Vec::new();
+        let mut lived_through = planned.algorithm.clone();
+        let done: Result<(), std::convert::Infallible> =
+            drive(&mut lived_through, &mut |opening| {
+                works.push(opening.stage.work);
+                let find = |wanted| opening.object(wanted);
+                let prepared = PreparedWork::new(&planned.system, &opening.stage, &find).unwrap();
+                Ok(prepared.run(0..prepared.items(), 8))
+            });
+        assert_eq!(done, Ok(()));
+        assert_eq!(works, [Work::Track, Work::Certify]);
+        assert!(lived_through.progress().done);
+        let sets = lived_through.solution_sets(&planned.system);
+        assert_eq!(sets[0].counts.certified, Some(16));
+        assert!(sets[0].counts.certified_real.is_some_and(|n| n >= 2));
+        // Written down and read back after every step.
+        let mut open: Option<Box<Opening>> = None;
+        loop {
+            let bytes = planned.algorithm.snapshot();
+            planned.algorithm = AnyAlgorithm::restore(&bytes).unwrap();
+            match planned.algorithm.next() {
+                Next::Open(opening) => open = Some(opening),
+                Next::Wait => {
+                    let opening = open.take().unwrap();
+                    let find = |wanted| opening.object(wanted);
+                    let prepared =
+                        PreparedWork::new(&planned.system, &opening.stage, &find).unwrap();
+                    let mut results = prepared.run(0..prepared.items(), 1).into_iter();
+                    planned.algorithm.absorb(opening.stage.id, &mut results);
+                }
+                Next::Done => break,
+            }
+        }
+        assert_eq!(planned.algorithm.solution_sets(&planned.system), sets);
+    }
+
+    #[test]
+    fn many_targets_are_certified_in_one_stage() {
+        let text =
+            "CONFIG\nEND;\nINPUT\nvariable_group x; parameter p; function f; f = x^3 - p;\nEND;\n";
+        let system = cognate_systems::formats::read("test", text.as_bytes())
+            .unwrap()
+            .system;
+        let real = |v: f64| Complex64::new(v, 0.0);
+        let half = Complex64::new(-0.5, f64::sqrt(0.75));
+        let points = Arc::new(StoredPoints {
+            dimension: 1,
+            coordinates: vec![real(1.0), half, half.conj()],
+        });
+        let options = PlanOptions {
+            start_points: Some(GivenStart {
+                object: points.digest(),
+                count: 3,
+                dimension: 1,
+            }),
+            start_parameters: Some(vec![real(1.0)]),
+            target_parameters: vec![vec![real(8.0)], vec![real(-0.1)], vec![real(0.0)]],
+            ..with_certificates()
+        };
+        let mut planned = plan(&system, &options).unwrap();
+        let find = |_| Some(points.clone());
+        let sets = run_locally(&planned.system, &mut planned.algorithm, &find, 8).unwrap();
+        assert_eq!(certified(&sets[0]), (Some(3), Some(1), 3));
+        assert_eq!(certified(&sets[1]), (Some(3), Some(1), 3));
+        // x^3 = 0: one singular solution, which no box can show.
+        assert_eq!(certified(&sets[2]), (Some(0), Some(0), 1));
+        let refused = sets[2].solutions[0].certificate.as_ref().unwrap();
+        assert!(refused.reason.as_deref().unwrap().contains("singular"));
+    }
+
+    #[test]
+    fn certificates_of_combinations_say_so() {
+        // Survey, system (35): three equations in two unknowns, three solutions.
+        let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f1, f2, f3; \
+                    f1 = x*y; f2 = x*(x - y - 1); f3 = y*(x - y - 1);\nEND;\n";
+        let system = cognate_systems::formats::read("35", text.as_bytes())
+            .unwrap()
+            .system;
+        let mut planned = plan(&system, &with_certificates()).unwrap();
+        let sets = run_locally(&planned.system, &mut planned.algorithm, &|_| None, 8).unwrap();
+        assert_eq!(certified(&sets[0]), (Some(3), Some(3), 3));
+        assert!(sets[0].warnings.iter().any(|w| w.contains("squared-up")));
+        let of = sets[0].certified_system.as_ref().unwrap();
+        assert!(of.squared_up);
+    }
+}

@@ -1,0 +1,53 @@
+//! PreparedWork: all that a worker makes of a stage before it does its items, whatever they are.
+
+use crate::certification::CertificationStage;
+use crate::path_result::PathResult;
+use crate::stage::{PrepareError, PreparedStage};
+use crate::start_points::{Digest, StoredPoints};
+use crate::work::{Stage, Work};
+use cognate_systems::system::System;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A stage of any kind of work, ready for its items.
+#[derive(Debug)]
+pub enum PreparedWork {
+    /// Paths to track.
+    Track(Box<PreparedStage>),
+    /// Points to certify.
+    Certify(Box<CertificationStage>),
+}
+
+impl PreparedWork {
+    /// Checks that stage and system fit, and compiles. `objects` finds stored points by their
+    /// digest.
+    pub fn new(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<Self, PrepareError> {
+        Ok(match stage.work {
+            Work::Track => Self::Track(Box::new(PreparedStage::new(system, stage, objects)?)),
+            Work::Certify => {
+                Self::Certify(Box::new(CertificationStage::new(system, stage, objects)?))
+            }
+        })
+    }
+
+    /// Number of items.
+    pub fn items(&self) -> u64 {
+        match self {
+            Self::Track(stage) => stage.items(),
+            Self::Certify(stage) => stage.items(),
+        }
+    }
+
+    /// Does these items, where it can `width` at a time; results in item order, the same at
+    /// every width and in every split.
+    pub fn run(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
+        match self {
+            Self::Track(stage) => stage.track(items, width),
+            Self::Certify(stage) => stage.run(items),
+        }
+    }
+}
