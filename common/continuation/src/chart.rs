@@ -4,9 +4,11 @@
 //! homogenising one). A random linear equation, the patch, removes y_0:
 //! `y_0 = c_0 + c_1 y_1 + ... + c_m y_m`. What is left are the coordinates that the
 //! tracker sees; solutions at infinity are ordinary points of it (survey, section 6.3).
+//! The affine chart has the patch `y_0 = 1`: infinity is far away in it, and programs are short.
 
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -77,6 +79,17 @@ impl Chart {
         }
     }
 
+    /// The affine chart: y_0 = 1 in every affine group, so that the chart's coordinates are the
+    /// system's variables. Homogeneous groups keep their random patches.
+    pub fn affine(system: &System, seed: u64) -> Self {
+        let mut chart = Self::new(system, seed);
+        for group in chart.groups.iter_mut().filter(|group| !group.homogeneous) {
+            group.patch.fill(Complex64::default());
+            group.patch[0] = Complex64::new(1.0, 0.0);
+        }
+        chart
+    }
+
     /// Number of coordinates that the tracker sees.
     pub fn dimension(&self) -> usize {
         self.dimension
@@ -106,8 +119,11 @@ impl Chart {
                     .map(|j| out.variable((group.first + j - 1) as u32))
                     .collect();
                 let mut y0 = exact(out, group.patch[0]);
-                for (j, &y) in free.iter().enumerate() {
-                    let c = exact(out, group.patch[j + 1]);
+                for (&y, &c) in free.iter().zip(&group.patch[1..]) {
+                    if c == Complex64::default() {
+                        continue;
+                    }
+                    let c = exact(out, c);
                     let term = out.multiply(c, y);
                     y0 = out.add(y0, term);
                 }
@@ -129,6 +145,25 @@ impl Chart {
             coordinates.extend_from_slice(free);
         }
         coordinates
+    }
+
+    /// The homogenising coordinates of the affine groups at a point of the chart, of one lane.
+    pub(crate) fn homogenizing_values<R: Real>(
+        &self,
+        context: R::Context,
+        point: &[Complex<R>],
+    ) -> Vec<Complex64> {
+        let affine = self.groups.iter().filter(|group| !group.homogeneous);
+        affine
+            .map(|group| {
+                let exact = |c: Complex64| Complex::<R>::from_f64(context, c.re, c.im);
+                let mut y0 = exact(group.patch[0]);
+                for (&c, y) in group.patch[1..].iter().zip(&point[group.first..]) {
+                    y0.mul_add(&exact(c), y);
+                }
+                y0.lane(0)
+            })
+            .collect()
     }
 
     /// Scales each group of homogeneous coordinates by a power of two, so that its largest

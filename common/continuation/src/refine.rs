@@ -6,7 +6,7 @@ use cognate_numeric::lanes::dispatch::{Job, dispatch};
 use cognate_numeric::linear_algebra::condition::condition_number;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
-use cognate_numeric::scalar::Complex;
+use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
 
@@ -35,26 +35,29 @@ impl Report {
 }
 
 /// Largest modulus in one column.
-fn largest(matrix: &Matrix<f64>, column: usize) -> f64 {
-    (0..matrix.rows())
-        .fold(0.0f64, |m, i| {
-            let size = matrix.at(i, column).norm_sqr();
-            if size > m || size.is_nan() { size } else { m }
-        })
-        .sqrt()
+#[inline(always)]
+fn largest<S: Real>(matrix: &Matrix<S>, column: usize) -> f64 {
+    let mut largest = 0.0f64;
+    for i in 0..matrix.rows() {
+        let size = matrix.at(i, column).norm_sqr().lane(0);
+        if size > largest || size.is_nan() {
+            largest = size;
+        }
+    }
+    largest.sqrt()
 }
 
 /// One run of Newton's method, compiled for the instruction set: it stands apart from the
 /// lockstep loop, which would otherwise contain it many times.
-struct Newton<'r, 'a, 'p> {
-    refiner: &'r mut Refiner<'a>,
+struct Newton<'r, 'a, 'p, S: Real> {
+    refiner: &'r mut Refiner<'a, S>,
     point: &'p mut [Complex64],
     t: Complex64,
     target: u64,
     most: u32,
 }
 
-impl Job for Newton<'_, '_, '_> {
+impl<S: Real> Job for Newton<'_, '_, '_, S> {
     type Output = Report;
     #[inline(always)]
     fn run(self) -> Report {
@@ -63,28 +66,30 @@ impl Job for Newton<'_, '_, '_> {
     }
 }
 
-/// Work space for looking closely at one point.
-pub(crate) struct Refiner<'a> {
+/// Work space for looking closely at one point, in the arithmetic of the room.
+pub(crate) struct Refiner<'a, S: Real> {
     homotopy: &'a Homotopy,
-    scratch: <Interpreter as Evaluate<f64>>::Scratch,
-    matrix: Matrix<f64>,
-    elimination: Matrix<f64>,
-    x: Vec<Complex<f64>>,
-    p: Vec<Complex<f64>>,
-    dp: Vec<Complex<f64>>,
+    context: S::Context,
+    scratch: <Interpreter as Evaluate<S>>::Scratch,
+    matrix: Matrix<S>,
+    elimination: Matrix<S>,
+    x: Vec<Complex<S>>,
+    p: Vec<Complex<S>>,
+    dp: Vec<Complex<S>>,
 }
 
-impl<'a> Refiner<'a> {
-    pub(crate) fn new(homotopy: &'a Homotopy) -> Self {
+impl<'a, S: Real> Refiner<'a, S> {
+    pub(crate) fn new(homotopy: &'a Homotopy, context: S::Context) -> Self {
         let n = homotopy.dimension();
-        let zero = Complex { re: 0.0, im: 0.0 };
+        let zero = Complex::<S>::zero(context);
         Self {
             homotopy,
-            scratch: Evaluate::<f64>::scratch(homotopy.program(), ()),
-            matrix: Matrix::zeros((), n, n + 2),
-            elimination: Matrix::zeros((), n, n + 2),
-            x: vec![zero; n],
-            p: vec![zero; homotopy.parameter_count()],
+            context,
+            scratch: Evaluate::<S>::scratch(homotopy.program(), context),
+            matrix: Matrix::zeros(context, n, n + 2),
+            elimination: Matrix::zeros(context, n, n + 2),
+            x: vec![zero.clone(); n],
+            p: vec![zero.clone(); homotopy.parameter_count()],
             dp: vec![zero; homotopy.parameter_count()],
         }
     }
@@ -119,13 +124,15 @@ impl<'a> Refiner<'a> {
     #[inline(always)]
     fn iterate(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {
         let n = point.len();
-        let native = |z: Complex64| Complex { re: z.re, im: z.im };
+        let context = self.context;
+        let native = |z: Complex64| Complex::<S>::from_f64(context, z.re, z.im);
         let (a, b) = self.homotopy.ends(target);
         let a: Vec<_> = a.map(native).collect();
         let b: Vec<_> = b.map(native).collect();
+        let t = Complex::from_f64((), t.re, t.im);
         self.homotopy
             .path()
-            .at::<f64>((), &native(t), &a, &b, &mut self.p, &mut self.dp);
+            .at::<S>(context, &t, &a, &b, &mut self.p, &mut self.dp);
         for (x, z) in self.x.iter_mut().zip(&*point) {
             *x = native(*z);
         }
@@ -133,19 +140,16 @@ impl<'a> Refiner<'a> {
         let mut last = f64::INFINITY;
         let mut round = 0;
         loop {
-            self.homotopy.program().linearize(
-                &self.x,
-                &self.p,
-                &self.dp,
-                &mut self.matrix,
-                &mut self.scratch,
-            );
+            self.homotopy
+                .program()
+                .jacobian(&self.x, &self.p, &mut self.matrix, &mut self.scratch);
             report.residual = largest(&self.matrix, n);
             if round >= most {
                 break; // the matrix of the last point stands for the condition number
             }
             self.elimination.clone_from(&self.matrix);
-            eliminate::<f64, 1>(&mut self.elimination, &mut 0.0);
+            let mut exchanges = S::Control::from_f64((), 0.0);
+            eliminate::<S, 1>(&mut self.elimination, &mut exchanges);
             let correction = largest(&self.elimination, n) / norm(point);
             if !(correction <= 0.5 * last || correction <= 1e-12) {
                 break; // not converging, or not a number
@@ -163,10 +167,20 @@ impl<'a> Refiner<'a> {
         }
         if report.converged {
             for (z, x) in point.iter_mut().zip(&self.x) {
-                *z = Complex64::new(x.re, x.im);
+                *z = x.lane(0);
             }
         }
-        report.condition = condition_number(&self.matrix);
+        let mut rounded = Matrix::zeros((), n, n);
+        for i in 0..n {
+            for j in 0..n {
+                let entry = self.matrix.at(i, j);
+                *rounded.at_mut(i, j) = Complex {
+                    re: entry.re.lane(0),
+                    im: entry.im.lane(0),
+                };
+            }
+        }
+        report.condition = condition_number(&rounded);
         report
     }
 }

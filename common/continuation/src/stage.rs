@@ -8,20 +8,17 @@ use crate::path_result::PathResult;
 use crate::start_points::{DamagedPoints, Digest, StartPoints, StoredPoints};
 use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::total_degree::TotalDegree;
-use crate::tracker::lockstep::Lockstep;
-use crate::tracker::observer::{Observer, Recorder, StepEvent};
+use crate::tracker::observer::{Recorder, StepEvent};
+use crate::tracker::rooms;
 use crate::tracker::settings::Settings;
 use crate::work::{Stage, Work};
-use cognate_numeric::lanes::Lanes;
-use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on};
-use cognate_numeric::scalar::{DoubleDouble, Real};
-use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees};
+use cognate_numeric::lanes::dispatch::InstructionSet;
+use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees};
 use cognate_systems::system::{System, SystemError};
 use cognate_systems::transform::randomize;
 use num_complex::Complex64;
-use std::marker::PhantomData;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Why a stage cannot be prepared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -58,9 +55,6 @@ pub enum PrepareError {
     /// The stage has no paths.
     #[error("the stage asks for other work than tracking")]
     Work,
-    /// An arithmetic that is not there.
-    #[error("not in this version: arithmetic of {0} bits; there are 53 and 106")]
-    Precision(u32),
     /// The object with the start points is not there.
     #[error("the object {0} with the start points is missing")]
     MissingObject(Digest),
@@ -75,10 +69,22 @@ enum Points {
     Stored(Arc<StoredPoints>),
 }
 
+/// The homotopy in projective patches, compiled when the first path needs it.
+#[derive(Debug)]
+struct Beyond {
+    system: System,
+    degrees: Degrees,
+    homotopy: OnceLock<Homotopy>,
+}
+
 /// A stage, ready to track any of its items, in any order, any number of times, with the same bits.
 #[derive(Debug)]
 pub struct PreparedStage {
+    /// In the chart where the paths begin.
     homotopy: Homotopy,
+    /// In random projective patches, for paths that leave the affine chart; `None` where all
+    /// paths are tracked in such patches from the beginning.
+    beyond: Option<Beyond>,
     /// The equations that are asked, where combinations of them are tracked.
     asked: Option<AskedSystem>,
     points: Points,
@@ -100,9 +106,6 @@ impl PreparedStage {
         system.check()?;
         if stage.work != Work::Track {
             return Err(PrepareError::Work);
-        }
-        if !matches!(stage.settings.precision_bits, 53 | 106) {
-            return Err(PrepareError::Precision(stage.settings.precision_bits));
         }
         let dimension = system.dimension();
         if system.equation_count() < dimension || dimension == 0 {
@@ -149,12 +152,11 @@ impl PreparedStage {
         let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
         let of_asked = degrees(system).map_err(wrong)?;
         check_homogeneous(system, &of_asked).map_err(wrong)?;
-        let chart = Chart::new(system, stage.seed);
         // What is tracked: where there are more equations than unknowns, combinations of them.
         let overdetermined = system.equation_count() > dimension;
         let (asked, combined, of_system);
         let system = if overdetermined {
-            let (kind, chart) = (&stage.homotopy, chart.clone());
+            let (kind, chart) = (&stage.homotopy, Chart::new(system, stage.seed));
             asked = Some(AskedSystem::new(system, &of_asked, kind, chart, stage.seed));
             combined = randomize(system, &of_asked, stage.seed);
             of_system = degrees(&combined).map_err(wrong)?;
@@ -162,6 +164,14 @@ impl PreparedStage {
         } else {
             (asked, of_system) = (None, of_asked);
             system
+        };
+        // Between two generic members of a family almost all paths stay near: they are tracked in
+        // the system's own coordinates, and go on in projective patches where they run far out.
+        let affine = matches!(stage.homotopy, HomotopyKind::Parameter { .. });
+        let chart = if affine {
+            Chart::affine(system, stage.seed)
+        } else {
+            Chart::new(system, stage.seed)
         };
         let base = match &stage.start_points {
             StartPoints::Selected { base, .. } => base,
@@ -251,11 +261,18 @@ impl PreparedStage {
             &of_system,
             &stage.homotopy,
             start_system,
-            chart,
+            chart.clone(),
+            &sample(&points, &chart),
             stage.seed,
         );
+        let beyond = affine.then(|| Beyond {
+            system: system.clone(),
+            degrees: of_system,
+            homotopy: OnceLock::new(),
+        });
         Ok(Self {
             homotopy,
+            beyond,
             asked,
             points,
             stage: stage.clone(),
@@ -269,9 +286,33 @@ impl PreparedStage {
         self.items
     }
 
-    /// The homotopy.
+    /// The homotopy in the chart where the paths begin.
     pub fn homotopy(&self) -> &Homotopy {
         &self.homotopy
+    }
+
+    /// The homotopy in projective patches, for paths that left the affine chart; `None` where
+    /// all paths begin in projective patches.
+    pub(crate) fn homotopy_beyond(&self) -> Option<&Homotopy> {
+        let beyond = self.beyond.as_ref()?;
+        Some(beyond.homotopy.get_or_init(|| {
+            let chart = Chart::new(&beyond.system, self.stage.seed);
+            let begins = sample(&self.points, &chart);
+            Homotopy::new(
+                &beyond.system,
+                &beyond.degrees,
+                &self.stage.homotopy,
+                None,
+                chart,
+                &begins,
+                self.stage.seed,
+            )
+        }))
+    }
+
+    /// Whether paths may leave the chart where they begin.
+    pub(crate) fn has_beyond(&self) -> bool {
+        self.beyond.is_some()
     }
 
     pub(crate) fn settings(&self) -> &Settings {
@@ -323,19 +364,8 @@ impl PreparedStage {
         width: usize,
     ) -> Vec<PathResult> {
         assert!(items.end <= self.items, "a chunk lies within its stage");
-        let wide = matches!(self.settings().precision_bits, 106);
         let first = items.start;
-        let mut results = match (width, wide) {
-            (1, false) => dispatch_on(set, Track::<f64>::new(self, items, None)),
-            (8, false) => dispatch_on(set, Track::<Lanes<8>>::new(self, items, None)),
-            (16, false) => dispatch_on(set, Track::<Lanes<16>>::new(self, items, None)),
-            // Few paths come here, one at a time; lanes of double-doubles multiply the time that
-            // this crate takes to compile by ten.
-            (1 | 8 | 16, true) => {
-                dispatch_on(set, Track::<DoubleDouble<f64>>::new(self, items, None))
-            }
-            _ => panic!("there are lanes of width 1, 8 and 16, not {width}"),
-        };
+        let mut results = rooms::track(self, set, items, width, None);
         self.hold_against_asked(first, &mut results);
         results
     }
@@ -353,44 +383,23 @@ impl PreparedStage {
     pub fn trace(&self, item: u64) -> (PathResult, Vec<StepEvent>) {
         assert!(item < self.items, "the item lies within the stage");
         let mut recorder = Recorder::default();
-        let (set, items) = (InstructionSet::detect(), item..item + 1);
-        let mut results = if self.settings().precision_bits == 106 {
-            dispatch_on(
-                set,
-                Track::<DoubleDouble<f64>>::new(self, items, Some(&mut recorder)),
-            )
-        } else {
-            dispatch_on(set, Track::<f64>::new(self, items, Some(&mut recorder)))
-        };
+        let set = InstructionSet::detect();
+        let mut results = rooms::track(self, set, item..item + 1, 1, Some(&mut recorder));
         self.hold_against_asked(item, &mut results);
         (results.remove(0), recorder.0)
     }
 }
 
-/// One chunk in one arithmetic.
-struct Track<'a, R>(
-    &'a PreparedStage,
-    Range<u64>,
-    Option<&'a mut dyn Observer>,
-    PhantomData<R>,
-);
-
-impl<'a, R> Track<'a, R> {
-    fn new(
-        stage: &'a PreparedStage,
-        items: Range<u64>,
-        observer: Option<&'a mut dyn Observer>,
-    ) -> Self {
-        Self(stage, items, observer, PhantomData)
-    }
-}
-
-impl<R: Real<Context = ()>> Job for Track<'_, R> {
-    type Output = Vec<PathResult>;
-    #[inline(always)]
-    fn run(self) -> Vec<PathResult> {
-        Lockstep::<R>::new(self.0, (), self.1, self.2).run()
-    }
+/// A few of the stored start points, evenly spaced, in the chart; none of a start system.
+fn sample(points: &Points, chart: &Chart) -> Vec<Vec<Complex64>> {
+    const SAMPLES: usize = 32;
+    let Points::Stored(points) = points else {
+        return Vec::new();
+    };
+    let count = points.len().min(SAMPLES);
+    (0..count)
+        .filter_map(|k| chart.from_variables(points.point(k * points.len() / count)))
+        .collect()
 }
 
 #[cfg(test)]
@@ -420,6 +429,69 @@ mod tests {
     fn prepare(system: &System) -> PreparedStage {
         let found = degrees(system).unwrap();
         PreparedStage::new(system, &stage(&found.total), &|_| None).unwrap()
+    }
+
+    #[test]
+    fn what_leaves_the_affine_chart_goes_on_and_is_the_same_at_every_width() {
+        // p x^2 + x - 2 and y - x^2: for p -> 0 one of the two solutions runs away.
+        let mut e = cognate_systems::expression::Expressions::new();
+        let (x, y, p) = (e.variable(0), e.variable(1), e.parameter(0));
+        let square = e.power(x, 2);
+        let scaled = e.multiply(p, square);
+        let (sum, two) = (e.add(scaled, x), e.integer(2));
+        let equations = vec![e.subtract(sum, two), e.subtract(y, square)];
+        let system = System {
+            expressions: e,
+            variables: vec!["x".into(), "y".into()],
+            parameters: vec!["p".into()],
+            groups: vec![cognate_systems::system::VariableGroup {
+                variables: vec![0, 1],
+                homogeneous: false,
+            }],
+            equations,
+            equation_names: vec!["f".into(), "g".into()],
+            ..System::default()
+        };
+        let c = |re: f64| Complex64::new(re, 0.0);
+        // x^2 + x - 2 = (x - 1)(x + 2), many times over.
+        let points: Vec<Complex64> = (0..20)
+            .flat_map(|_| [c(1.0), c(1.0), c(-2.0), c(4.0)])
+            .collect();
+        let stored = Arc::new(StoredPoints {
+            dimension: 2,
+            coordinates: points,
+        });
+        let stage = Stage {
+            homotopy: HomotopyKind::Parameter {
+                start: vec![c(1.0)],
+                targets: vec![vec![c(0.0)], vec![Complex64::new(-2.0, 1.0)]],
+            },
+            start_points: StartPoints::Stored {
+                object: Digest([0; 32]),
+                count: 40,
+            },
+            ..stage(&[2, 2])
+        };
+        let prepared = PreparedStage::new(&system, &stage, &|_| Some(stored.clone())).unwrap();
+        let narrow = prepared.track(0..prepared.items(), 1);
+        for width in [8, 16] {
+            assert_eq!(narrow, prepared.track(0..prepared.items(), width));
+        }
+        assert_eq!(narrow[31..47], prepared.track(31..47, 8)[..]);
+        for (i, result) in narrow.iter().enumerate() {
+            let end = result.endpoint.to_double();
+            let far = end[0].norm_sqr() < 1e-20;
+            assert_eq!(far, i < 40 && i % 2 == 1, "{i}: {result:?}");
+            if !far {
+                assert_eq!(result.outcome, PathOutcome::Regular, "{i}");
+                assert!(result.accuracy < 1e-12, "{i}: {result:?}");
+            }
+        }
+        assert!(
+            (narrow[0].endpoint.to_double()[1] / narrow[0].endpoint.to_double()[0] - 2.0)
+                .norm_sqr()
+                < 1e-20
+        );
     }
 
     #[test]

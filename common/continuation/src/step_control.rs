@@ -5,6 +5,7 @@
 //! met the target is h (target/e)^(1/q). Roots are taken as chains of square
 //! roots, which are correctly rounded: nothing from libm decides a step.
 
+use crate::predictor::hermite::POINTS;
 use cognate_numeric::scalar::{Mask, Real};
 
 /// The error aimed at, as a part of the largest that is accepted.
@@ -16,14 +17,13 @@ const SHRINKAGE: (f64, f64) = (0.1, 0.5);
 
 /// `h` for the next step. `error` is the size of the first Newton correction, `limit` the largest accepted.
 ///
-/// `three`, `two`: how many points the predictor had. `may_grow` is false after a rejection.
+/// `known[k]`: whether the predictor had a point k + 1; `may_grow` is false after a rejection.
 #[inline(always)]
 pub fn next_step<C: Real<Context = (), Control = C>>(
     h: &C,
     error: &C,
     limit: &C,
-    two: C::Mask,
-    three: C::Mask,
+    known: &[C::Mask; POINTS - 1],
     accepted: C::Mask,
     may_grow: C::Mask,
 ) -> C {
@@ -32,7 +32,7 @@ pub fn next_step<C: Real<Context = (), Control = C>>(
     let mut floor = C::from_f64((), 1e-18);
     floor.max(error);
     ratio.div(&floor);
-    // (target/error)^(1/2), ^(1/4) and about ^(1/6) (1/8 + 1/32 = 1/6.4).
+    // (target/error)^(1/2), ^(1/4), about ^(1/6) (1/8 + 1/32 = 1/6.4), and ^(1/8).
     let mut half = ratio;
     half.sqrt();
     let mut quarter = half.clone();
@@ -44,8 +44,9 @@ pub fn next_step<C: Real<Context = (), Control = C>>(
     sixth.sqrt();
     sixth.mul(&eighth);
     let mut factor = half;
-    factor.select(two, &quarter);
-    factor.select(two.and(three), &sixth);
+    for (known, root) in known.iter().zip([&quarter, &sixth, &eighth]) {
+        factor.select(*known, root);
+    }
     factor.mul(&C::from_f64((), 0.95));
 
     let mut grown = factor.clone();
@@ -71,7 +72,7 @@ mod tests {
     #[test]
     fn steps_shrink_grow_and_survive_nonsense() {
         let step = |error: f64, accepted: bool, may_grow: bool| {
-            next_step::<f64>(&1.0, &error, &1e-4, true, true, accepted, may_grow)
+            next_step::<f64>(&1.0, &error, &1e-4, &[true; 3], accepted, may_grow)
         };
         assert_eq!(step(1e-17, true, true), 2.0);
         assert_eq!(step(1e-17, true, false), 1.0);

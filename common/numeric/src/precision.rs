@@ -1,38 +1,29 @@
 //! The ladder itself: what a rung is. When to change rung is `continuation`'s business.
 
-use serde::{Deserialize, Serialize};
+/// Bits of hardware doubles, the first rung.
+pub const DOUBLE: u32 = 53;
+/// Bits of double-doubles, the second.
+pub const DOUBLE_DOUBLE: u32 = 106;
 
-/// A rung of the precision ladder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum Precision {
-    /// Hardware doubles, 53 bits.
-    Double,
-    /// Double-doubles, 106 bits.
-    DoubleDouble,
-    /// MPFR with this many bits.
-    Bits(u32),
-}
-
-impl Precision {
-    /// Bits of the significand.
-    pub fn bits(self) -> u32 {
-        match self {
-            Self::Double => 53,
-            Self::DoubleDouble => 106,
-            Self::Bits(bits) => bits,
-        }
-    }
-
-    /// Unit roundoff 2^-bits.
-    pub fn unit_roundoff(self) -> f64 {
-        // Exact: powers of two down to 2^-1074, 0 below, never from libm.
-        let bits = self.bits().min(1100);
-        let mut u = 1.0;
-        for _ in 0..bits {
-            u *= 0.5;
-        }
-        u
-    }
+/// Bits of the rungs from `lowest` to `highest`: doubles, double-doubles, then MPFR with twice the
+/// bits each time. At least one; the first has at least `lowest` bits.
+pub fn rungs(lowest: u32, highest: u32) -> impl Iterator<Item = u32> {
+    let first = match lowest {
+        0..=DOUBLE => DOUBLE,
+        ..=DOUBLE_DOUBLE => DOUBLE_DOUBLE,
+        more => more,
+    };
+    std::iter::successors(Some(first), move |&bits| {
+        let next = match bits {
+            DOUBLE => DOUBLE_DOUBLE,
+            // A rung that is hardly higher than the one below is not worth its steps.
+            more => match more.saturating_mul(2) {
+                double if double > highest && highest >= more + more / 4 => highest,
+                double => double,
+            },
+        };
+        (next <= highest).then_some(next)
+    })
 }
 
 #[cfg(test)]
@@ -40,8 +31,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unit_roundoff_of_doubles_is_half_an_epsilon() {
-        assert_eq!(Precision::Double.unit_roundoff(), f64::EPSILON / 2.0);
-        assert_eq!(Precision::Bits(1).unit_roundoff(), 0.5);
+    fn rungs_double_up_to_the_limit() {
+        let list = |low, high| rungs(low, high).collect::<Vec<u32>>();
+        assert_eq!(list(53, 53), [53]);
+        assert_eq!(list(53, 106), [53, 106]);
+        assert_eq!(list(53, 1024), [53, 106, 212, 424, 848]);
+        assert_eq!(list(53, 512), [53, 106, 212, 424]);
+        assert_eq!(list(64, 64), [106]);
+        assert_eq!(list(150, 400), [150, 300, 400]);
+        assert_eq!(list(u32::MAX, u32::MAX), [u32::MAX]);
     }
 }

@@ -98,6 +98,11 @@ impl Cauchy {
         self.total_turns = 0;
     }
 
+    /// Forgets the turns, not how many they were.
+    pub fn forget(&mut self) {
+        self.previous = None;
+    }
+
     /// All turns made for this path.
     pub fn total_turns(&self) -> u32 {
         self.total_turns

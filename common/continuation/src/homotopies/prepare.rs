@@ -12,8 +12,8 @@ use cognate_numeric::linear_algebra::lu::pivot_order;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_numeric::scalar::Complex;
-use cognate_systems::evaluation::{Evaluate, Interpreter};
+use cognate_numeric::scalar::{Complex, Real};
+use cognate_systems::evaluation::{Evaluate, Interpreter, values};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::polynomial::Degrees;
 use cognate_systems::system::System;
@@ -37,7 +37,6 @@ pub struct Homotopy {
     start: Vec<Complex64>,
     /// Parameters of the program at t = 0, for each target.
     targets: Vec<Vec<Complex64>>,
-    homogenizing: Vec<usize>,
 }
 
 /// The power of two that brings `size` between 1/2 and 1.
@@ -63,17 +62,11 @@ pub(crate) fn normalize(
     stream: &mut RandomStream,
 ) {
     const PROBES: usize = 4;
-    let native = |z: Complex64| Complex { re: z.re, im: z.im };
-    let program = Interpreter::compile(out, equations, dimension, parameters.len());
-    let mut scratch = Evaluate::<f64>::scratch(&program, ());
-    let p: Vec<_> = parameters.iter().map(|&z| native(z)).collect();
-    let mut values = vec![Complex { re: 0.0, im: 0.0 }; equations.len()];
     let mut sizes = vec![0.0f64; equations.len()];
     for _ in 0..PROBES {
-        let x: Vec<_> = (0..dimension).map(|_| native(stream.unit())).collect();
-        program.value(&x, &p, &mut values, &mut scratch);
-        for (size, value) in sizes.iter_mut().zip(&values) {
-            *size = size.max(value.norm_sqr().sqrt());
+        let x: Vec<_> = (0..dimension).map(|_| stream.unit()).collect();
+        for (size, value) in sizes.iter_mut().zip(values(out, equations, &x, parameters)) {
+            Real::max(size, &value.norm_sqr().sqrt());
         }
     }
     for (equation, size) in equations.iter_mut().zip(sizes) {
@@ -99,15 +92,29 @@ fn generic_unit(seed: u64, purpose: Purpose) -> Complex64 {
     }
 }
 
+/// A random unit complex number between 20 and 60 degrees off the real axis, either side.
+///
+/// Wide enough to pass by the singularities between real parameters, and not longer than needed:
+/// between generic nine-point parameters such arcs took 10 % fewer steps than half-circles.
+fn detour(seed: u64) -> Complex64 {
+    let mut stream = RandomStream::new(seed, Purpose::Detour, 0);
+    let tangent_of_half = 0.18 + 0.4 * stream.uniform();
+    let square = tangent_of_half * tangent_of_half;
+    let side = if stream.bits() & 1 == 0 { 2.0 } else { -2.0 };
+    Complex64::new(1.0 - square, side * tangent_of_half) / (1.0 + square)
+}
+
 impl Homotopy {
     /// Makes the program. The system has been checked, is square, and the
-    /// lengths of all parameter values fit it.
+    /// lengths of all parameter values fit it. `begins`: points of the chart where paths begin,
+    /// as a sample; none where start points are made from a start system.
     pub(crate) fn new(
         system: &System,
         degrees: &Degrees,
         kind: &HomotopyKind,
         start_system: Option<&StartSystem>,
         chart: Chart,
+        begins: &[Vec<Complex64>],
         seed: u64,
     ) -> Self {
         let mut out = Expressions::new();
@@ -158,30 +165,42 @@ impl Homotopy {
                 (None, vec![zero, gamma], vec![vec![one, zero]])
             }
             HomotopyKind::Parameter { start, targets } => {
-                let gamma = generic_unit(seed, Purpose::Detour);
+                let gamma = detour(seed);
                 (Some(gamma), start.clone(), targets.clone())
             }
             HomotopyKind::PathVariable { .. } => (None, vec![one], vec![vec![zero]]),
         };
 
-        // The order in which elimination meets the rows, taken half-way at a random point.
+        // The order in which elimination meets the rows: from points where the paths begin, or
+        // half-way at random points.
         let native = |z: Complex64| Complex { re: z.re, im: z.im };
         let program = Interpreter::compile(&out, &equations, dimension, start.len());
         let mut scratch = Evaluate::<f64>::scratch(&program, ());
-        let x: Vec<_> = (0..dimension).map(|_| native(probe.unit())).collect();
-        let p: Vec<_> = start
-            .iter()
-            .zip(&targets[0])
-            .map(|(s, t)| native((s + t) * 0.5))
-            .collect();
-        let dp = vec![native(zero); p.len()];
-        let mut matrix = Matrix::zeros((), dimension, dimension + 2);
-        program.linearize(&x, &p, &dp, &mut matrix, &mut scratch);
-        let ordered: Vec<NodeId> = pivot_order(&matrix).iter().map(|&i| equations[i]).collect();
-
+        let mut samples = Vec::new();
+        let mut sample = |x: &[Complex64], p: &[Complex<f64>]| {
+            let x: Vec<_> = x.iter().map(|&z| native(z)).collect();
+            let mut matrix = Matrix::zeros((), dimension, dimension + 2);
+            program.jacobian(&x, p, &mut matrix, &mut scratch);
+            samples.push(matrix);
+        };
+        if begins.is_empty() {
+            let p: Vec<_> = start
+                .iter()
+                .zip(&targets[0])
+                .map(|(s, t)| native((s + t) * 0.5))
+                .collect();
+            for _ in 0..4 {
+                let x: Vec<_> = (0..dimension).map(|_| probe.unit()).collect();
+                sample(&x, &p);
+            }
+        } else {
+            let p: Vec<_> = start.iter().map(|&z| native(z)).collect();
+            for x in begins {
+                sample(x, &p);
+            }
+        }
         Self {
-            program: Interpreter::compile(&out, &ordered, dimension, start.len()),
-            homogenizing: chart.homogenizing(),
+            program: program.with_row_order(&pivot_order(&samples)),
             chart,
             path: ParameterPath { arc },
             start,
@@ -229,10 +248,14 @@ impl Homotopy {
         )
     }
 
-    /// Values of the homogenising coordinates at a point of the chart.
-    pub(crate) fn homogenizing(&self, point: &[Complex64]) -> Vec<Complex64> {
-        let coordinates = self.chart.homogeneous(point);
-        self.homogenizing.iter().map(|&k| coordinates[k]).collect()
+    /// Values of the homogenising coordinates at a point of the chart, of one lane: formed with
+    /// all digits of the point, since they are small where they matter, then rounded.
+    pub(crate) fn homogenizing<R: Real>(
+        &self,
+        context: R::Context,
+        point: &[Complex<R>],
+    ) -> Vec<Complex64> {
+        self.chart.homogenizing_values(context, point)
     }
 
     /// Normalised homogeneous coordinates of a point of the chart.

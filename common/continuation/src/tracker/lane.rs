@@ -1,6 +1,7 @@
 //! Lane: what one path knows of itself between steps.
 
 use crate::endgames::cauchy::Cauchy;
+use num_complex::Complex64;
 
 /// Where a path is in its life. The order is that of the life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -55,9 +56,49 @@ pub(crate) struct Lane {
     pub item: u64,
     /// Index in the stage that first started the path.
     pub origin: u64,
+    /// Which of the homotopy's targets it goes to.
+    pub target: u64,
     pub phase: Phase,
     pub steps: u32,
     pub rejections: u32,
     pub evaluations: u32,
+    /// Highest precision so far.
+    pub highest_bits: u32,
+    /// How often it went up a rung.
+    pub climbs: u32,
+    /// Accepted steps in this room.
+    pub steps_here: u32,
+    /// Rejections since the last accepted step that only noise explains.
+    pub starved: u32,
+    /// Second Newton correction of the last of these rejections.
+    pub last_rejected: f64,
+    /// Where the turns around 0 began in this room: t and the point.
+    pub first_turn: Option<(f64, Vec<Complex64>)>,
     pub cauchy: Cauchy,
+}
+
+impl Lane {
+    /// A path that has not been anywhere.
+    pub fn begin(&mut self, item: u64, origin: u64, target: u64) {
+        (self.item, self.origin, self.target) = (item, origin, target);
+        (self.steps, self.rejections, self.evaluations) = (0, 0, 0);
+        (self.highest_bits, self.climbs) = (0, 0);
+        self.cauchy.clear();
+    }
+
+    /// The path comes into a room of this arithmetic.
+    pub fn arrive(&mut self, bits: u32) {
+        self.phase = Phase::Starting;
+        self.highest_bits = self.highest_bits.max(bits);
+        (self.steps_here, self.starved) = (0, 0);
+        self.last_rejected = f64::INFINITY;
+        self.first_turn = None;
+    }
+
+    /// Whether the difficult place that sent the path up lies behind it: each time it was sent
+    /// up again, twice as many steps must have gone well.
+    pub fn may_go_down(&self) -> bool {
+        const STEPS: u32 = 8;
+        self.climbs < 6 && self.steps_here >= STEPS << self.climbs
+    }
 }

@@ -4,15 +4,18 @@
 //! Every lane has its own t and step, a rejected lane only shrinks its step, and
 //! a lane whose path has ended takes the next start point with a step of length
 //! 0. So there is no divergence, and no lane ever looks at another: the bits of
-//! a path are those of the same path alone (W = 1 is a width).
+//! a path are those of the same path alone (W = 1 is a width). What a room
+//! (a chart and an arithmetic) cannot do, another may: see `rooms`.
 
 use super::lane::{Lane, Phase};
 use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
+use super::rooms::{Departure, Door, Ended, Room, Waiting};
+use super::settings::Settings;
 use crate::chart::{LEAST_NORM, norm};
 use crate::endgames::cauchy::{self, VERTICES, distance};
 use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
-use crate::predictor::hermite::weights;
+use crate::predictor::hermite::{POINTS, weights};
 use crate::refine::Refiner;
 use crate::stage::PreparedStage;
 use crate::step_control::next_step;
@@ -22,7 +25,6 @@ use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::{Complex, Mask, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
-use std::ops::Range;
 
 /// A step is accepted when the second Newton correction is at most this part of the first.
 const CONTRACTION: f64 = 0.1;
@@ -33,19 +35,27 @@ const ARRIVED: f64 = 1e-7;
 /// A refinement is accepted when its second correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
 
+/// A path whose coordinates exceed this goes on in projective patches.
+const FAR: f64 = 1e4;
+/// So many rejections since the last accepted step that only noise explains send a path to the
+/// next rung.
+const STARVED: u32 = 2;
+/// An endgame that does not settle is not tried again above this many bits: what then remains
+/// is not for want of digits.
+const ENDGAME_BITS: u32 = 212;
+
 /// The paths of all lanes: coordinates in the chart, the newest point first.
 struct Batch<R: Real> {
-    x: [Vec<Complex<R>>; 3],
-    tangent: [Vec<Complex<R>>; 3],
-    t: [Complex<R::Control>; 3],
+    x: [Vec<Complex<R>>; POINTS],
+    tangent: [Vec<Complex<R>>; POINTS],
+    t: [Complex<R::Control>; POINTS],
     candidate: Vec<Complex<R>>,
     candidate_tangent: Vec<Complex<R>>,
     target: Complex<R::Control>,
     /// Wanted length of the next step.
     h: R::Control,
-    /// Lanes with at least two, three points behind them.
-    two: R::Mask,
-    three: R::Mask,
+    /// Lanes with at least two, three, ... points behind them.
+    known: [R::Mask; POINTS - 1],
     /// Lanes whose next step has length 0.
     refine: R::Mask,
     /// Lanes whose last step was not rejected.
@@ -60,15 +70,14 @@ impl<R: Real> Batch<R> {
         let points = || vec![Complex::<R>::zero(context); dimension];
         let control = |v: f64| R::Control::from_f64((), v);
         Self {
-            x: [points(), points(), points()],
-            tangent: [points(), points(), points()],
+            x: std::array::from_fn(|_| points()),
+            tangent: std::array::from_fn(|_| points()),
             t: std::array::from_fn(|_| Complex::from_f64((), 1.0, 0.0)),
             candidate: points(),
             candidate_tangent: points(),
             target: Complex::from_f64((), 1.0, 0.0),
             h: control(0.0),
-            two: R::Mask::splat(false),
-            three: R::Mask::splat(false),
+            known: [R::Mask::splat(false); POINTS - 1],
             refine: R::Mask::splat(true),
             may_grow: R::Mask::splat(true),
             a: vec![Complex::zero(context); parameters],
@@ -79,8 +88,9 @@ impl<R: Real> Batch<R> {
 
     /// The points behind a lane no longer belong to where it goes.
     fn forget_history(&mut self, lane: usize) {
-        self.two.set_lane(lane, false);
-        self.three.set_lane(lane, false);
+        for known in &mut self.known {
+            known.set_lane(lane, false);
+        }
     }
 
     fn read(
@@ -121,21 +131,22 @@ impl<R: Real> Batch<R> {
     }
 }
 
-/// Tracks the paths of `items`; results in item order.
-pub(crate) struct Lockstep<'a, R: Real> {
+/// All lanes of one room.
+pub(super) struct Lockstep<'a, R: Real> {
     stage: &'a PreparedStage,
+    room: Room<'a>,
     context: R::Context,
+    settings: Settings,
     batch: Batch<R>,
     lanes: Vec<Lane>,
     scratch: <Interpreter as Evaluate<R>>::Scratch,
     matrix: Matrix<R>,
     p: Vec<Complex<R>>,
     dp: Vec<Complex<R>>,
-    refiner: Refiner<'a>,
+    refiner: Refiner<'a, R::Single>,
     circle: Vec<Complex64>,
-    items: Range<u64>,
-    next_item: u64,
-    results: Vec<Option<PathResult>>,
+    waiting: Waiting,
+    ended: Ended,
     observer: Option<&'a mut dyn Observer>,
     point: Vec<Complex64>,
     tangent: Vec<Complex64>,
@@ -145,102 +156,102 @@ pub(crate) struct Lockstep<'a, R: Real> {
 struct Step {
     accepted: bool,
     arrived: bool,
+    /// First and second Newton correction, relative.
+    predictor_error: f64,
     correction: f64,
+    /// Largest coordinate of the point that was tried.
+    size: f64,
 }
 
 impl<'a, R: Real> Lockstep<'a, R> {
     #[inline(always)]
-    pub(crate) fn new(
-        stage: &'a PreparedStage,
+    pub(super) fn new(
+        room: Room<'a>,
         context: R::Context,
-        items: Range<u64>,
+        waiting: Waiting,
         observer: Option<&'a mut dyn Observer>,
     ) -> Self {
-        let homotopy = stage.homotopy();
+        let homotopy = room.homotopy;
         let n = homotopy.dimension();
         let parameters = homotopy.parameter_count();
-        let count = usize::try_from(items.end - items.start).expect("a chunk fits in memory");
         Self {
-            stage,
+            stage: room.stage,
             context,
+            settings: room.settings(),
             batch: Batch::new(context, n, parameters),
             lanes: vec![Lane::default(); R::WIDTH],
             scratch: Evaluate::<R>::scratch(homotopy.program(), context),
             matrix: Matrix::zeros(context, n, n + 2),
             p: vec![Complex::zero(context); parameters],
             dp: vec![Complex::zero(context); parameters],
-            refiner: Refiner::new(homotopy),
+            refiner: Refiner::new(homotopy, context),
             circle: roots_of_unity(VERTICES),
-            next_item: items.start,
-            results: vec![None; count],
-            items,
+            room,
+            waiting,
+            ended: Ended::default(),
             observer,
             point: Vec::with_capacity(n),
             tangent: Vec::with_capacity(n),
         }
     }
 
+    /// Until every path has ended or left.
     #[inline(always)]
-    pub(crate) fn run(mut self) -> Vec<PathResult> {
+    pub(super) fn run(mut self) -> Ended {
         for lane in 0..R::WIDTH {
             self.refill(lane);
         }
         while self.lanes.iter().any(|lane| lane.phase != Phase::Idle) {
             self.step();
         }
-        self.results
-            .into_iter()
-            .map(|result| result.expect("every item ends with exactly one result"))
-            .collect()
+        self.ended
     }
 
     /// Puts the next path into a lane, if there is one.
     fn refill(&mut self, lane: usize) {
-        while self.next_item < self.items.end {
-            let item = self.next_item;
-            self.next_item += 1;
-            let (origin, target) = self.stage.item(item);
+        let homotopy = self.room.homotopy;
+        loop {
             let path = &mut self.lanes[lane];
-            path.item = item;
-            path.origin = origin;
-            path.phase = Phase::Starting;
-            path.steps = 0;
-            path.rejections = 0;
-            path.evaluations = 0;
-            path.cauchy.clear();
-            self.batch.exchanges.set_lane(lane, 0.0);
-            let (a, b) = self.stage.homotopy().ends(target);
+            let (t, exchanges, start) = if let Some(item) = self.waiting.items.next() {
+                let (origin, target) = self.stage.item(item);
+                path.begin(item, origin, target);
+                let start = self.stage.start_point(origin);
+                (Complex64::new(1.0, 0.0), 0.0, start)
+            } else if let Some(departure) = self.waiting.departures.pop_front() {
+                *path = departure.lane;
+                let start = homotopy.chart().point(&departure.point);
+                (departure.t, departure.exchanges, start)
+            } else {
+                path.phase = Phase::Idle;
+                return;
+            };
+            path.arrive(self.room.bits);
+            let target = path.target;
+            self.batch.exchanges.set_lane(lane, exchanges);
+            let (a, b) = homotopy.ends(target);
             for (slot, value) in self.batch.a.iter_mut().zip(a) {
                 slot.set_lane(lane, value);
             }
             for (slot, value) in self.batch.b.iter_mut().zip(b) {
                 slot.set_lane(lane, value);
             }
-            let one = Complex64::new(1.0, 0.0);
-            match self.stage.start_point(origin) {
-                Some(point) => {
-                    self.point.clear();
-                    self.point.extend_from_slice(&point);
-                    self.batch.write(lane, one, &point, &point);
-                    self.batch.follow(lane, one, 0.0);
-                    self.batch.refine(lane);
-                    return;
-                }
-                None => {
-                    self.point.clear();
-                    self.point
-                        .resize(self.stage.homotopy().dimension(), Complex64::default());
-                    self.fail(lane, one, Failure::InvalidStartPoint);
-                }
+            if let Some(point) = start {
+                self.batch.write(lane, t, &point, &point);
+                self.batch.follow(lane, t, 0.0);
+                self.batch.refine(lane);
+                return;
             }
+            self.point.clear();
+            self.point
+                .resize(homotopy.dimension(), Complex64::default());
+            self.fail(lane, t, Failure::InvalidStartPoint);
         }
-        self.lanes[lane].phase = Phase::Idle;
     }
 
     /// One step of all lanes.
     #[inline(always)]
     fn step(&mut self) {
-        let settings = self.stage.settings();
+        let settings = &self.settings;
         let n = self.batch.candidate.len();
         let control = |v: f64| R::Control::from_f64((), v);
 
@@ -260,22 +271,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
         t.select(batch.refine, &batch.t[0]);
 
         // Predict.
-        let w = weights(
-            [&batch.t[0], &batch.t[1], &batch.t[2]],
-            &t,
-            batch.two,
-            batch.three,
-        );
-        let history = if batch.three.any() {
-            3
-        } else if batch.two.any() {
-            2
-        } else {
-            1
-        };
+        let w = weights(&batch.t, &t, &batch.known);
         for i in 0..n {
             let mut sum = Complex::<R>::zero(self.context);
-            for k in 0..history {
+            for k in 0..POINTS {
                 let weight = Complex::from_control(self.context, &w.point[k]);
                 sum.mul_add(&weight, &batch.x[k][i]);
                 let weight = Complex::from_control(self.context, &w.tangent[k]);
@@ -286,7 +285,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
 
         // Newton; then Newton and tangent from one factorisation.
-        let homotopy = self.stage.homotopy();
+        let homotopy = self.room.homotopy;
         homotopy.path().at(
             self.context,
             &t,
@@ -298,16 +297,22 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let mut corrections = [control(0.0), control(0.0)];
         let mut size = control(0.0);
         for (round, correction) in corrections.iter_mut().enumerate() {
-            homotopy.program().linearize(
-                &batch.candidate,
-                &self.p,
-                &self.dp,
-                &mut self.matrix,
-                &mut self.scratch,
-            );
             if round == 0 {
+                homotopy.program().jacobian(
+                    &batch.candidate,
+                    &self.p,
+                    &mut self.matrix,
+                    &mut self.scratch,
+                );
                 eliminate::<R, 1>(&mut self.matrix, &mut batch.exchanges);
             } else {
+                homotopy.program().linearize(
+                    &batch.candidate,
+                    &self.p,
+                    &self.dp,
+                    &mut self.matrix,
+                    &mut self.scratch,
+                );
                 eliminate::<R, 2>(&mut self.matrix, &mut batch.exchanges);
             }
             size = control(LEAST_NORM * LEAST_NORM);
@@ -353,15 +358,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .and(first.less_equal(&control(START_ERROR)))
             .and(batch.refine);
         let accepted = moved.or(refined);
-        let wanted = next_step(
-            &batch.h,
-            first,
-            &limit,
-            batch.two,
-            batch.three,
-            moved,
-            batch.may_grow,
-        );
+        let wanted = next_step(&batch.h, first, &limit, &batch.known, moved, batch.may_grow);
         // A step that only reached its target says little about longer ones: keep the wish.
         let mut h = wanted;
         h.min(&control(settings.max_step));
@@ -372,7 +369,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
         // Move: the points behind shift by one.
         for i in 0..n {
-            for k in (1..3).rev() {
+            for k in (1..POINTS).rev() {
                 let (newer, older) = batch.x.split_at_mut(k);
                 older[0][i].select(moved, &newer[k - 1][i]);
                 let (newer, older) = batch.tangent.split_at_mut(k);
@@ -381,14 +378,17 @@ impl<'a, R: Real> Lockstep<'a, R> {
             batch.x[0][i].select(accepted, &batch.candidate[i]);
             batch.tangent[0][i].select(accepted, &batch.candidate_tangent[i]);
         }
-        for k in (1..3).rev() {
+        for k in (1..POINTS).rev() {
             let (newer, older) = batch.t.split_at_mut(k);
             older[0].select(moved, &newer[k - 1]);
         }
         batch.t[0].select(moved, &t);
-        batch.three = batch.three.or(moved.and(batch.two));
-        batch.two = batch.two.or(moved);
+        for k in (1..POINTS - 1).rev() {
+            batch.known[k] = batch.known[k].or(moved.and(batch.known[k - 1]));
+        }
+        batch.known[0] = batch.known[0].or(moved);
 
+        let small = 0.01 * settings.predictor_tolerance;
         // What only single paths know: a glance at each, and more where something happened.
         for lane in 0..R::WIDTH {
             if self.lanes[lane].phase == Phase::Idle {
@@ -399,23 +399,36 @@ impl<'a, R: Real> Lockstep<'a, R> {
             let step = Step {
                 accepted: accepted.lane(lane),
                 arrived: accepted.lane(lane) && reaches.lane(lane),
+                predictor_error: first.lane(lane),
                 correction: second.lane(lane),
+                size: size.lane(lane),
             };
             if refining.lane(lane) {
             } else if step.accepted {
                 path.steps += 1;
+                path.steps_here += 1;
+                (path.starved, path.last_rejected) = (0, f64::INFINITY);
             } else {
                 path.rejections += 1;
+                // A correction that neither Newton's method nor a shorter step makes smaller is
+                // noise.
+                let stuck = step.predictor_error <= small
+                    && step.correction > CONTRACTION * step.predictor_error
+                    && step.correction > 0.3 * path.last_rejected;
+                path.starved += u32::from(stuck);
+                path.last_rejected = step.correction;
             }
             if let Some(observer) = &mut self.observer {
+                let point: Vec<_> = self.batch.x[0].iter().map(|z| z.lane(lane)).collect();
                 let event = StepEvent {
                     phase: path.phase.name(),
                     t: t.lane(lane),
                     step: self.batch.h.lane(lane),
                     accepted: step.accepted,
-                    predictor_error: first.lane(lane),
+                    predictor_error: step.predictor_error,
                     correction: step.correction,
-                    point: self.batch.x[0].iter().map(|z| z.lane(lane)).collect(),
+                    precision_bits: self.room.bits,
+                    point: homotopy.endpoint(&point),
                 };
                 observer.step(path.origin, event);
             }
@@ -425,7 +438,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// Decides how one path goes on after a step.
     fn attend(&mut self, lane: usize, step: &Step) {
-        let settings = self.stage.settings();
+        let settings = &self.settings;
         let phase = self.lanes[lane].phase;
         let t = self.batch.t[0].lane(lane);
         let h = self.batch.h.lane(lane);
@@ -439,7 +452,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             Phase::Starting => {
                 self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
                 if !step.accepted {
-                    return self.fail_and_refill(lane, t, Failure::InvalidStartPoint);
+                    return self.give_up(lane, t, Failure::InvalidStartPoint);
                 }
                 // With the tangent alone the error is about (h |x'|/|x|)^2 / 2.
                 let speed = norm(&self.tangent) / norm(&self.point);
@@ -453,12 +466,24 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 if step.arrived {
                     self.lanes[lane].phase = Phase::Arriving;
                     self.batch.refine(lane);
+                } else if self.room.beyond && (step.size > FAR || t.re <= settings.endgame_radius) {
+                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                    self.leave(lane, t, Door::Beyond);
+                } else if step.accepted
+                    && self.room.down
+                    && self.lanes[lane].may_go_down()
+                    && t.re > 10.0 * settings.endgame_radius
+                {
+                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                    self.leave(lane, t, Door::Down);
                 } else if t.re <= settings.endgame_radius && !(step.accepted && h >= t.re) {
                     self.lanes[lane].phase = Phase::Settling;
                     self.batch.refine(lane);
-                } else if h < settings.min_step * t.re.max(settings.endgame_radius) {
+                } else if self.lanes[lane].starved >= STARVED
+                    || h < settings.min_step * t.re.max(settings.endgame_radius)
+                {
                     self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
-                    self.fail_and_refill(lane, t, Failure::StepTooSmall);
+                    self.give_up(lane, t, Failure::StepTooSmall);
                 }
             }
             Phase::Arriving => {
@@ -466,7 +491,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 self.tangent.clone_from(&self.point);
                 let report = self
                     .refiner
-                    .refine(&mut self.point, self.stage.item(self.lanes[lane].item).1);
+                    .refine(&mut self.point, self.lanes[lane].target);
                 // From a singular endpoint Newton's method may leave for another solution.
                 let moved = distance(&self.point, &self.tangent) / norm(&self.tangent);
                 if step.accepted
@@ -479,6 +504,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 // Back to the last point before 0, from where the turns begin.
                 self.batch.read(lane, 1, &mut self.point, &mut self.tangent);
                 let before = self.batch.t[1].lane(lane);
+                if self.room.beyond {
+                    return self.leave(lane, before, Door::Beyond);
+                }
                 let (point, tangent) = (
                     std::mem::take(&mut self.point),
                     std::mem::take(&mut self.tangent),
@@ -501,19 +529,23 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         _ => Phase::Sampling,
                     };
                     self.batch.refine(lane);
-                } else if h < settings.min_step.max(1e-9 * self.modulus(t)) {
+                } else if self.lanes[lane].starved >= STARVED
+                    || h < settings.min_step.max(1e-9 * t.norm_sqr().sqrt())
+                {
                     self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
-                    self.fail_and_refill(lane, t, Failure::StepTooSmall);
+                    self.give_up(lane, t, Failure::StepTooSmall);
                 }
             }
             Phase::Settling | Phase::Sampling => {
                 self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
                 if !step.accepted {
-                    return self.fail_and_refill(lane, t, Failure::EndgameUnsettled);
+                    return self.give_up(lane, t, Failure::EndgameUnsettled);
                 }
-                let homogenizing = self.stage.homotopy().homogenizing(&self.point);
+                let homogenizing = self.homogenizing();
                 let path = &mut self.lanes[lane];
                 let next = if phase == Phase::Settling {
+                    path.first_turn
+                        .get_or_insert_with(|| (t.re, self.point.clone()));
                     path.cauchy.begin(
                         t.re,
                         &self.point,
@@ -532,8 +564,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// Carries out what the endgame wants.
     fn obey(&mut self, lane: usize, next: cauchy::Next) {
-        let settings = self.stage.settings();
-        let target = self.stage.item(self.lanes[lane].item).1;
+        let settings = &self.settings;
+        let target = self.lanes[lane].target;
         match next {
             cauchy::Next::Vertex { radius, vertex } => {
                 let to = self.circle[(vertex % VERTICES) as usize] * radius;
@@ -605,13 +637,23 @@ impl<'a, R: Real> Lockstep<'a, R> {
             }
             cauchy::Next::Unsettled => {
                 let t = self.batch.t[0].lane(lane);
-                self.fail_and_refill(lane, t, Failure::EndgameUnsettled);
+                self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
     }
 
-    fn modulus(&self, t: Complex64) -> f64 {
-        t.norm_sqr().sqrt()
+    /// Values of the homogenising coordinates at `self.point`, which is that of the one lane
+    /// where there is one: then with all its digits.
+    fn homogenizing(&self) -> Vec<Complex64> {
+        if R::WIDTH == 1 {
+            self.room
+                .homotopy
+                .homogenizing(self.context, &self.batch.x[0])
+        } else {
+            let native = |z: &Complex64| Complex { re: z.re, im: z.im };
+            let point: Vec<Complex<f64>> = self.point.iter().map(native).collect();
+            self.room.homotopy.homogenizing((), &point)
+        }
     }
 
     /// A path has ended at `self.point`; the lane takes the next one.
@@ -631,6 +673,44 @@ impl<'a, R: Real> Lockstep<'a, R> {
             winding_number,
             infinity_turns,
         );
+        self.refill(lane);
+    }
+
+    /// In this room there is no going on: elsewhere there may be.
+    fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
+        let door = if self.room.beyond {
+            Door::Beyond
+        } else if self.room.up
+            && (why != Failure::EndgameUnsettled || self.room.bits < ENDGAME_BITS)
+        {
+            Door::Up
+        } else {
+            return self.fail_and_refill(lane, t, why);
+        };
+        // The turns around 0 are made again from the beginning, which lies on the real axis.
+        match self.lanes[lane].first_turn.take() {
+            Some((radius, point)) => {
+                self.point = point;
+                self.leave(lane, Complex64::new(radius, 0.0), door);
+            }
+            None => self.leave(lane, t, door),
+        }
+    }
+
+    /// The path goes on in another room from `self.point`.
+    fn leave(&mut self, lane: usize, t: Complex64, door: Door) {
+        let mut path = self.lanes[lane].clone();
+        path.cauchy.forget();
+        if door == Door::Up {
+            path.climbs += 1;
+        }
+        self.ended.departures.push(Departure {
+            lane: path,
+            t,
+            point: self.room.homotopy.chart().homogeneous(&self.point),
+            exchanges: self.batch.exchanges.lane(lane),
+            door,
+        });
         self.refill(lane);
     }
 
@@ -658,14 +738,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
             origin: PathIndex(path.origin),
             attempt: self.stage.attempt(),
             outcome,
-            endpoint: Coordinates::Double(self.stage.homotopy().endpoint(&self.point)),
+            endpoint: Coordinates::Double(self.room.homotopy.endpoint(&self.point)),
             t,
             residual: report.residual,
             condition: report.condition,
             accuracy: report.accuracy,
             winding_number,
             infinity_turns,
-            precision_bits: R::bits(self.context),
+            precision_bits: path.highest_bits,
             counts: Counts {
                 steps: path.steps,
                 rejections: path.rejections,
@@ -676,8 +756,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
             asked: None,
             certification: None,
         };
-        let at = usize::try_from(path.item - self.items.start).expect("a chunk fits in memory");
-        debug_assert!(self.results[at].is_none(), "an item ends once");
-        self.results[at] = Some(result);
+        self.ended.results.push((path.item, result));
     }
 }

@@ -7,4 +7,5 @@ pub mod lane;
 pub mod lockstep;
 pub mod observer;
 pub mod outcome;
+pub(crate) mod rooms;
 pub mod settings;

@@ -18,7 +18,9 @@ pub struct StepEvent {
     pub predictor_error: f64,
     /// Second Newton correction, relative.
     pub correction: f64,
-    /// The point after the step, in the chart.
+    /// Bits of the arithmetic that it was tried in.
+    pub precision_bits: u32,
+    /// The point after the step: normalised homogeneous coordinates, group after group.
     pub point: Vec<Complex64>,
 }
 

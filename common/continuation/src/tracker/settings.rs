@@ -1,5 +1,6 @@
 //! Settings: every number that decides a path, with unit, default, and where the default comes from.
 
+use cognate_numeric::precision::rungs;
 use serde::{Deserialize, Serialize};
 
 /// What decides how a path is tracked. Part of what a path's result is a function of.
@@ -29,8 +30,10 @@ pub struct Settings {
     pub singular_condition: f64,
     /// Relative accuracy at which a singular endpoint counts as settled.
     pub endgame_tolerance: f64,
-    /// Bits of the arithmetic: 53 (double) or 106 (double-double).
+    /// Bits of the arithmetic that a path begins in: 53 (double), 106 (double-double), or more.
     pub precision_bits: u32,
+    /// A path that lacks digits goes up to at most this many bits.
+    pub max_precision_bits: u32,
 }
 
 impl Default for Settings {
@@ -48,6 +51,7 @@ impl Default for Settings {
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
             precision_bits: 53,
+            max_precision_bits: 1024,
         }
     }
 }
@@ -91,8 +95,8 @@ impl Preset {
 }
 
 impl Settings {
-    /// Settings for a path that is tracked again, `attempt` counted from 1: first tighter in the
-    /// same arithmetic, from the second time on in double-doubles.
+    /// Settings for a path that is tracked again, `attempt` counted from 1: tighter each time,
+    /// from the second time on with twice the digits from the beginning.
     #[must_use]
     pub fn tightened(&self, attempt: u16) -> Self {
         let mut tighter = self.clone();
@@ -102,7 +106,8 @@ impl Settings {
             tighter.max_steps = tighter.max_steps.saturating_mul(4);
         }
         if attempt >= 2 {
-            tighter.precision_bits = tighter.precision_bits.max(106);
+            let rung = rungs(self.precision_bits, self.max_precision_bits).nth(1);
+            tighter.precision_bits = rung.unwrap_or(self.precision_bits);
         }
         tighter.predictor_tolerance = tighter.predictor_tolerance.max(1e-9);
         tighter

@@ -195,4 +195,8 @@ impl<const W: usize> Real for Lanes<W> {
     fn control(&self) -> Self {
         *self
     }
+    #[inline(always)]
+    fn swap_lane(&mut self, other: &mut Self, lane: usize) {
+        std::mem::swap(&mut self.0[lane], &mut other.0[lane]);
+    }
 }

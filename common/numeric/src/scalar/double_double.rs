@@ -256,6 +256,11 @@ impl<B: Real<Context = (), Control = B>> Real for DoubleDouble<B> {
     fn control(&self) -> B {
         self.hi.clone()
     }
+    #[inline(always)]
+    fn swap_lane(&mut self, other: &mut Self, lane: usize) {
+        self.hi.swap_lane(&mut other.hi, lane);
+        self.lo.swap_lane(&mut other.lo, lane);
+    }
 }
 
 #[cfg(test)]

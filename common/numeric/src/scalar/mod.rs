@@ -110,6 +110,11 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
     fn select(&mut self, mask: Self::Mask, other: &Self);
     /// Rounded to a double.
     fn control(&self) -> Self::Control;
+    /// Exchanges one lane with another number's; as it stands here for scalars of one lane.
+    #[inline(always)]
+    fn swap_lane(&mut self, other: &mut Self, _lane: usize) {
+        std::mem::swap(self, other);
+    }
     /// `self = max(self, other)`; a lane that is not a number takes the other.
     #[inline(always)]
     fn max(&mut self, other: &Self) {
@@ -194,6 +199,13 @@ impl<R: Real> Complex<R> {
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> num_complex::Complex64 {
         num_complex::Complex64::new(self.re.lane(lane), self.im.lane(lane))
+    }
+
+    /// Exchanges the numbers of one lane with another's.
+    #[inline(always)]
+    pub fn swap_lane(&mut self, other: &mut Self, lane: usize) {
+        self.re.swap_lane(&mut other.re, lane);
+        self.im.swap_lane(&mut other.im, lane);
     }
 
     /// `self = other` where `mask` is true.

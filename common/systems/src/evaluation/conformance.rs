@@ -330,6 +330,15 @@ pub fn check_exactly<E: Evaluate<MultiplePrecision>>(compile: Compile<E>) {
         let (xr, pr, dpr) = (round(BITS, &x), round(BITS, &p), round(BITS, &dp));
         let mut out = Matrix::zeros(BITS, rows, n + 2);
         evaluator.linearize(&xr, &pr, &dpr, &mut out, &mut scratch);
+        // [J | H] alone is the same, and leaves the last column as it is.
+        let mut alone = Matrix::zeros(BITS, rows, n + 2);
+        evaluator.jacobian(&xr, &pr, &mut alone, &mut scratch);
+        for row in 0..rows {
+            for column in 0..=n {
+                assert_eq!(alone.at(row, column), out.at(row, column), "{}", case.name);
+            }
+            assert_eq!(alone.at(row, n + 1), &Complex::zero(BITS), "{}", case.name);
+        }
         let mut values = vec![Complex::zero(BITS); rows];
         evaluator.value(&xr, &pr, &mut values, &mut scratch);
         let still = |count| vec![ComplexRational::default(); count];
@@ -534,6 +543,7 @@ impl<R: Real, E: Evaluate<R>> Job for Both<'_, R, E> {
             self.case.equations.len(),
         );
         let mut out = Matrix::zeros(self.context, rows, n + 2);
+        let mut alone = Matrix::zeros(self.context, rows, n + 2);
         let mut values = vec![Complex::zero(self.context); rows];
         // The first point must leave no trace in what the second one gives.
         for index in [1, 2] {
@@ -542,8 +552,10 @@ impl<R: Real, E: Evaluate<R>> Job for Both<'_, R, E> {
             let dp = lane_point::<R>(self.context, m, 3 * index + 2);
             self.evaluator
                 .linearize(&x, &p, &dp, &mut out, self.scratch);
+            self.evaluator.jacobian(&x, &p, &mut alone, self.scratch);
             self.evaluator.value(&x, &p, &mut values, self.scratch);
         }
+        values.extend(alone.entries);
         (out.entries, values)
     }
 }

@@ -7,45 +7,135 @@
 use super::{Evaluate, Shape};
 use crate::expression::{Expressions, NodeId};
 use crate::straight_line_program::assignments::Assignments;
-use crate::straight_line_program::constant::ConstantPool;
 use crate::straight_line_program::instruction::{FREQUENT, Operation, Terms};
 use crate::straight_line_program::schedule::{Scheduling, schedule};
 use crate::straight_line_program::{Index, Layout, StraightLineProgram, Target};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A compiled system. Cloning shares the programs.
 #[derive(Clone, Debug)]
 pub struct Interpreter(Arc<Compiled>);
 
-#[derive(Debug)]
 struct Compiled {
-    shape: Shape,
-    pool: ConstantPool,
+    assignments: Assignments,
     /// Constants of the pool that fill all lanes, in the order of the memory.
     constants: Vec<u32>,
     /// Constants of the pool that stand once for all lanes.
     singles: Vec<u32>,
+    scheduling: Scheduling,
     wide: Programs,
     /// The same for one path at a time.
     narrow: Programs,
 }
 
-#[derive(Debug)]
+impl std::fmt::Debug for Compiled {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Compiled")
+            .field("shape", &self.assignments.shape)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Programs for one type of number, each scheduled when it is first used.
+#[derive(Debug, Default)]
 struct Programs {
-    linearize: StraightLineProgram,
-    value: StraightLineProgram,
+    linearize: OnceLock<StraightLineProgram>,
+    jacobian: OnceLock<StraightLineProgram>,
+    value: OnceLock<StraightLineProgram>,
+}
+
+/// Which program.
+#[derive(Clone, Copy)]
+enum Which {
+    Linearize,
+    Jacobian,
+    Value,
 }
 
 impl Compiled {
-    /// The programs for one type of number.
+    fn new(
+        assignments: Assignments,
+        constants: Vec<u32>,
+        singles: Vec<u32>,
+        scheduling: Scheduling,
+    ) -> Self {
+        Self {
+            assignments,
+            constants,
+            singles,
+            scheduling,
+            wide: Programs::default(),
+            narrow: Programs::default(),
+        }
+    }
+
+    fn layout(&self) -> Layout {
+        Layout {
+            variables: self.assignments.shape.variables,
+            parameters: self.assignments.shape.parameters,
+            constants: self.constants.len(),
+            singles: self.singles.len(),
+        }
+    }
+
+    /// A program for lanes or for one path at a time.
     #[inline(always)]
-    fn programs<R: Real>(&self) -> &Programs {
-        if R::WIDTH == 1 {
-            &self.narrow
+    fn program(&self, which: Which, lanes: bool) -> &StraightLineProgram {
+        let programs = if lanes { &self.wide } else { &self.narrow };
+        let cell = match which {
+            Which::Linearize => &programs.linearize,
+            Which::Jacobian => &programs.jacobian,
+            Which::Value => &programs.value,
+        };
+        match cell.get() {
+            Some(program) => program,
+            None => cell.get_or_init(|| self.schedule(which, lanes)),
+        }
+    }
+
+    #[cold]
+    fn schedule(&self, which: Which, lanes: bool) -> StraightLineProgram {
+        let scheduling = if lanes {
+            self.scheduling
         } else {
-            &self.wide
+            // A slot of one double is small, and a mispredicted jump costs
+            // more than an instruction: long runs before all.
+            Scheduling {
+                window: self.scheduling.window.saturating_mul(16),
+                longest_run: self.scheduling.longest_run.saturating_mul(4),
+            }
+        };
+        let shape = self.assignments.shape;
+        let columns = shape.variables + 2;
+        let (layout, entries) = (self.layout(), shape.equations * columns);
+        match which {
+            Which::Linearize => {
+                let all = |_| true;
+                schedule(
+                    &self.assignments.linearize,
+                    layout,
+                    entries,
+                    all,
+                    scheduling,
+                )
+            }
+            Which::Jacobian => {
+                let wanted = |entry| entry % columns != columns - 1;
+                let assignments = self.assignments.jacobian();
+                schedule(&assignments, layout, entries, wanted, scheduling)
+            }
+            Which::Value => {
+                let all = |_| true;
+                schedule(
+                    &self.assignments.value,
+                    layout,
+                    shape.equations,
+                    all,
+                    scheduling,
+                )
+            }
         }
     }
 }
@@ -80,56 +170,64 @@ impl Interpreter {
         let mut assignments = Assignments::compile(expressions, equations, variables, parameters);
         let constants = assignments.number_constants();
         let singles = assignments.number_singles();
-        let layout = Layout {
-            variables,
-            parameters,
-            constants: constants.len(),
-            singles: singles.len(),
-        };
-        let entries = equations.len() * (variables + 2);
-        let programs = |scheduling| Programs {
-            linearize: schedule(&assignments.linearize, layout, entries, scheduling),
-            value: schedule(&assignments.value, layout, equations.len(), scheduling),
-        };
-        Self(Arc::new(Compiled {
-            wide: programs(scheduling),
-            // A slot of one double is small, and a mispredicted jump costs
-            // more than an instruction: long runs before all.
-            narrow: programs(Scheduling {
-                window: scheduling.window.saturating_mul(16),
-                longest_run: scheduling.longest_run.saturating_mul(4),
-            }),
-            shape: assignments.shape,
-            pool: assignments.pool,
+        Self(Arc::new(Compiled::new(
+            assignments,
             constants,
             singles,
-        }))
+            scheduling,
+        )))
+    }
+
+    /// The same system with its equations in another order: row i of the results is what was
+    /// row `order[i]`, bit for bit.
+    ///
+    /// # Panics
+    /// When `order` is no permutation of the equations.
+    #[must_use]
+    pub fn with_row_order(&self, order: &[usize]) -> Self {
+        let mut sorted = order.to_vec();
+        sorted.sort_unstable();
+        assert!(
+            sorted.into_iter().eq(0..self.0.assignments.shape.equations),
+            "every equation has its place"
+        );
+        Self(Arc::new(Compiled::new(
+            self.0.assignments.with_row_order(order),
+            self.0.constants.clone(),
+            self.0.singles.clone(),
+            self.0.scheduling,
+        )))
     }
 
     /// Sizes of the system.
     pub fn shape(&self) -> Shape {
-        self.0.shape
+        self.0.assignments.shape
     }
 
     /// The program of `linearize` for lanes.
     pub fn linearize_program(&self) -> &StraightLineProgram {
-        &self.0.wide.linearize
+        self.0.program(Which::Linearize, true)
+    }
+
+    /// The program of `jacobian` for lanes.
+    pub fn jacobian_program(&self) -> &StraightLineProgram {
+        self.0.program(Which::Jacobian, true)
     }
 
     /// The program of `value` for lanes.
     pub fn value_program(&self) -> &StraightLineProgram {
-        &self.0.wide.value
+        self.0.program(Which::Value, true)
     }
 
     /// Real operations of one `linearize` of one path.
     pub fn flops(&self) -> usize {
-        self.0.wide.linearize.flops()
+        self.linearize_program().flops()
     }
 
-    /// Bytes of scratch space, of which most is used in every call.
+    /// Bytes of scratch space of `linearize`, of which most is used in every call.
     pub fn scratch_bytes<R: Real>(&self) -> usize {
-        let programs = self.0.programs::<R>();
-        programs.linearize.memory().max(programs.value.memory()) * size_of::<Complex<R>>()
+        let program = self.0.program(Which::Linearize, R::WIDTH > 1);
+        program.memory() * size_of::<Complex<R>>()
             + self.0.singles.len() * size_of::<Complex<R::Single>>()
     }
 }
@@ -148,19 +246,19 @@ impl<R: Real> Evaluate<R> for Interpreter {
     type Scratch = Scratch<R>;
 
     fn shape(&self) -> Shape {
-        self.0.shape
+        self.0.assignments.shape
     }
 
     fn scratch(&self, context: R::Context) -> Scratch<R> {
-        let programs = self.0.programs::<R>();
-        let layout = programs.linearize.layout();
-        let length = programs.linearize.memory().max(programs.value.memory());
-        let mut memory = vec![Complex::zero(context); length];
+        // The memory grows when a program that needs more is used for the first time.
+        let layout = self.0.layout();
+        let pool = &self.0.assignments.pool;
+        let mut memory = vec![Complex::zero(context); layout.temporaries()];
         let first = layout.temporaries() - layout.constants;
         for (slot, &constant) in memory[first..].iter_mut().zip(&self.0.constants) {
-            *slot = self.0.pool.round(constant, context);
+            *slot = pool.round(constant, context);
         }
-        let round = |&constant| self.0.pool.round(constant, context);
+        let round = |&constant| pool.round(constant, context);
         Scratch {
             memory,
             singles: self.0.singles.iter().map(round).collect(),
@@ -177,16 +275,30 @@ impl<R: Real> Evaluate<R> for Interpreter {
         out: &mut Matrix<R>,
         s: &mut Scratch<R>,
     ) {
-        let shape = &self.0.shape;
-        assert!(
-            out.rows() == shape.equations && out.columns() == shape.variables + 2,
-            "[J | H | H_t] has a row for each equation and two columns more than variables"
-        );
+        let shape = &self.0.assignments.shape;
+        assert_columns(shape, out);
         load(&mut s.memory, x, 0, shape.variables);
         load(&mut s.memory, p, shape.variables, shape.parameters);
         let directions = shape.variables + shape.parameters;
         load(&mut s.memory, dp, directions, shape.parameters);
-        execute(&self.0.programs::<R>().linearize, s, &mut out.entries);
+        let program = self.0.program(Which::Linearize, R::WIDTH > 1);
+        execute(program, s, &mut out.entries);
+    }
+
+    #[inline(always)]
+    fn jacobian(
+        &self,
+        x: &[Complex<R>],
+        p: &[Complex<R>],
+        out: &mut Matrix<R>,
+        s: &mut Scratch<R>,
+    ) {
+        let shape = &self.0.assignments.shape;
+        assert_columns(shape, out);
+        load(&mut s.memory, x, 0, shape.variables);
+        load(&mut s.memory, p, shape.variables, shape.parameters);
+        let program = self.0.program(Which::Jacobian, R::WIDTH > 1);
+        execute(program, s, &mut out.entries);
     }
 
     #[inline(always)]
@@ -197,11 +309,19 @@ impl<R: Real> Evaluate<R> for Interpreter {
         out: &mut [Complex<R>],
         s: &mut Scratch<R>,
     ) {
-        let shape = &self.0.shape;
+        let shape = &self.0.assignments.shape;
         load(&mut s.memory, x, 0, shape.variables);
         load(&mut s.memory, p, shape.variables, shape.parameters);
-        execute(&self.0.programs::<R>().value, s, out);
+        execute(self.0.program(Which::Value, R::WIDTH > 1), s, out);
     }
+}
+
+#[inline(always)]
+fn assert_columns<R: Real>(shape: &Shape, out: &Matrix<R>) {
+    assert!(
+        out.rows() == shape.equations && out.columns() == shape.variables + 2,
+        "[J | H | H_t] has a row for each equation and two columns more than variables"
+    );
 }
 
 /// Copies inputs to their place in the memory.
@@ -213,10 +333,21 @@ fn load<R: Real>(memory: &mut [Complex<R>], from: &[Complex<R>], start: usize, l
     }
 }
 
+/// Makes room for the temporaries of a program that is used for the first time.
+#[cold]
+fn grow<R: Real>(memory: &mut Vec<Complex<R>>, length: usize) {
+    if let Some(any) = memory.first().cloned() {
+        memory.resize(length, any);
+    }
+}
+
 /// Runs the program; its addresses were checked when it was made.
 #[inline(always)]
 fn execute<R: Real>(program: &StraightLineProgram, s: &mut Scratch<R>, out: &mut [Complex<R>]) {
     let mut result = s.result.take().expect("the result is put back below");
+    if s.memory.len() < program.memory() {
+        grow(&mut s.memory, program.memory());
+    }
     let memory = &mut s.memory[..program.memory()];
     let singles = s.singles.as_slice();
     let out = &mut out[..program.outputs()];

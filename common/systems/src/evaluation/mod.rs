@@ -5,9 +5,11 @@
 //! whatever evaluator comes later.
 
 pub mod conformance;
+mod direct;
 mod interpreter;
 mod reference;
 
+pub use direct::values;
 pub use interpreter::{Interpreter, Scratch};
 pub use reference::Reference;
 
@@ -41,6 +43,14 @@ pub trait Evaluate<R: Real>: Send + Sync {
         x: &[Complex<R>],
         p: &[Complex<R>],
         dp: &[Complex<R>],
+        out: &mut Matrix<R>,
+        s: &mut Self::Scratch,
+    );
+    /// [J | H] alone: the same bits in these columns of `out`, and what was in the last one stays.
+    fn jacobian(
+        &self,
+        x: &[Complex<R>],
+        p: &[Complex<R>],
         out: &mut Matrix<R>,
         s: &mut Self::Scratch,
     );

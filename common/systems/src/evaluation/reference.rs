@@ -57,6 +57,16 @@ impl<R: Real> Evaluate<R> for Reference {
         evaluate(&self.0.linearize, x, p, dp, s, &mut out.entries);
     }
 
+    fn jacobian(
+        &self,
+        x: &[Complex<R>],
+        p: &[Complex<R>],
+        out: &mut Matrix<R>,
+        s: &mut Vec<Complex<R>>,
+    ) {
+        evaluate(&self.0.jacobian(), x, p, &[], s, &mut out.entries);
+    }
+
     fn value(
         &self,
         x: &[Complex<R>],

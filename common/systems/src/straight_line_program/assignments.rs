@@ -139,6 +139,63 @@ impl Assignments {
         }
     }
 
+    /// The same with the equations in another order: row i is the present row `order[i]`.
+    /// Which operations are done does not change, so no bit does.
+    pub(crate) fn with_row_order(&self, order: &[usize]) -> Self {
+        let mut place = vec![0u32; order.len()];
+        for (row, &old) in order.iter().enumerate() {
+            place[old] = u32::try_from(row).expect("fewer than 2^32 equations");
+        }
+        let columns = u32::try_from(self.shape.variables + 2).expect("fewer than 2^32 variables");
+        let moved = |assignments: &[Assignment], columns: u32| {
+            let mut moved = assignments.to_vec();
+            for entry in moved.iter_mut().filter_map(|a| a.output.as_mut()) {
+                *entry = place[(*entry / columns) as usize] * columns + *entry % columns;
+            }
+            moved
+        };
+        Self {
+            shape: self.shape,
+            pool: self.pool.clone(),
+            linearize: moved(&self.linearize, columns),
+            value: moved(&self.value, 1),
+        }
+    }
+
+    /// What of `linearize` gives [J | H], in the same order: the last column is left out.
+    pub(crate) fn jacobian(&self) -> Vec<Assignment> {
+        let columns = u32::try_from(self.shape.variables + 2).expect("fewer than 2^32 variables");
+        let mut wanted = vec![false; self.linearize.len()];
+        for (number, assignment) in self.linearize.iter().enumerate().rev() {
+            wanted[number] |= assignment
+                .output
+                .is_some_and(|entry| entry % columns != columns - 1);
+            if wanted[number] {
+                for operand in &assignment.operands {
+                    if let Operand::Value(v) = operand {
+                        wanted[*v as usize] = true;
+                    }
+                }
+            }
+        }
+        let mut place = vec![0u32; self.linearize.len()];
+        let mut kept = Vec::new();
+        for (number, assignment) in self.linearize.iter().enumerate() {
+            if !wanted[number] {
+                continue;
+            }
+            place[number] = u32::try_from(kept.len()).expect("fewer than 2^32 assignments");
+            let mut assignment = assignment.clone();
+            for operand in &mut assignment.operands {
+                if let Operand::Value(v) = operand {
+                    *v = place[*v as usize];
+                }
+            }
+            kept.push(assignment);
+        }
+        kept
+    }
+
     /// Numbers the constants that fill all lanes afresh, those that are used,
     /// from 0; gives their numbers in the pool.
     pub(crate) fn number_constants(&mut self) -> Vec<u32> {

@@ -125,7 +125,8 @@ pub struct StraightLineProgram {
 
 impl StraightLineProgram {
     /// Checks a program: every address is in the memory, only temporaries are
-    /// written, every output is written exactly once, runs and code match.
+    /// written, every output of `wanted` is written exactly once and no other, runs and code
+    /// match.
     ///
     /// # Panics
     /// When it is not so; programs are made by the compiler, never read from outside.
@@ -133,11 +134,12 @@ impl StraightLineProgram {
         layout: Layout,
         temporaries: usize,
         outputs: usize,
+        wanted: impl Fn(usize) -> bool,
         runs: Vec<Run>,
         code: Vec<Index>,
     ) -> Self {
         let memory = layout.temporaries() + temporaries;
-        let mut written = vec![false; outputs];
+        let mut written: Vec<bool> = (0..outputs).map(|entry| !wanted(entry)).collect();
         let mut rest = code.as_slice();
         for run in &runs {
             assert!(run.operation.operands() > 0, "a sum has a term");

@@ -30,11 +30,13 @@ impl Default for Scheduling {
     }
 }
 
-/// Orders the assignments, gives them slots, and packs them.
+/// Orders the assignments, gives them slots, and packs them. Of the output's entries they
+/// give those that are `wanted`.
 pub(crate) fn schedule(
     assignments: &[Assignment],
     layout: Layout,
     outputs: usize,
+    wanted: impl Fn(usize) -> bool,
     scheduling: Scheduling,
 ) -> StraightLineProgram {
     let runs = order_in_runs(assignments, scheduling);
@@ -68,7 +70,7 @@ pub(crate) fn schedule(
             code.extend(assignment.operands.iter().map(address));
         }
     }
-    StraightLineProgram::new(layout, slots, outputs, packed, code)
+    StraightLineProgram::new(layout, slots, outputs, wanted, packed, code)
 }
 
 /// All assignments, in runs of equal operation and target.
