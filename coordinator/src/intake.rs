@@ -7,6 +7,7 @@ use crate::api::error::ApiError;
 use crate::coordinator::NewProblem;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Settings;
+use cognate_numeric::precision::{DOUBLE, rungs};
 use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
@@ -48,11 +49,14 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
         .map_err(|e| e.within("system"))?;
     check_options(&options)?;
     warnings.extend(precision_warning(&file));
-    let precision_bits = &mut options.settings.precision_bits;
-    match options.precision {
-        PrecisionChoice::Adaptive => {}
-        PrecisionChoice::Double => *precision_bits = Some(DOUBLE_BITS),
-        PrecisionChoice::Bits(bits) => *precision_bits = Some(arithmetic(bits)),
+    let fixed = match options.precision {
+        PrecisionChoice::Adaptive => None,
+        PrecisionChoice::Double => Some(DOUBLE),
+        PrecisionChoice::Bits(bits) => Some(arithmetic(bits)),
+    };
+    if fixed.is_some() {
+        options.settings.precision_bits = fixed;
+        options.settings.max_precision_bits = fixed;
     }
     let base = options.settings.preset.unwrap_or_default().settings();
     options.settings = SettingsChoice::all(
@@ -85,26 +89,20 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
     })
 }
 
-/// Bits of hardware doubles, the first arithmetic.
-const DOUBLE_BITS: u32 = 53;
+/// The most bits that may be asked for.
+pub const MOST_BITS: u32 = 65_536;
 
-/// Bits of double-doubles, the widest arithmetic of this version.
-pub const MOST_BITS: u32 = 106;
-
-/// The narrowest arithmetic with at least so many bits, else the widest.
+/// The arithmetic with at least so many bits: doubles, double-doubles, or exactly so many.
 fn arithmetic(bits: u32) -> u32 {
-    if bits <= DOUBLE_BITS {
-        DOUBLE_BITS
-    } else {
-        MOST_BITS
-    }
+    let mut rungs = rungs(bits.min(MOST_BITS), 0);
+    rungs.next().expect("there is a first rung")
 }
 
 /// What to say about a file that asks for more bits than there are.
 pub fn precision_warning(file: &FileSettings) -> Option<String> {
     match file.precision {
         Some(PrecisionHint::Bits(bits)) if bits > MOST_BITS => Some(format!(
-            "the file asks for {bits} bits; this version computes in {MOST_BITS} at most"
+            "the file asks for {bits} bits; paths are tracked with {MOST_BITS} at most"
         )),
         _ => None,
     }
@@ -114,6 +112,10 @@ pub fn precision_warning(file: &FileSettings) -> Option<String> {
 /// would only lose paths: tolerances are taken where they are smaller.
 pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
     let smaller = |asked: Option<f64>, ours: f64| asked.filter(|&a| (1e-300..ours).contains(&a));
+    let asked_bits = match file.precision {
+        Some(PrecisionHint::Bits(bits)) => Some(arithmetic(bits)),
+        _ => None,
+    };
     SettingsChoice {
         tolerance: smaller(file.tracking_tolerance, base.tolerance),
         endgame_tolerance: smaller(
@@ -124,10 +126,8 @@ pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
             .maximum_steps
             .filter(|&steps| steps > 0)
             .map(|steps| u32::try_from(steps).unwrap_or(u32::MAX).min(1_000_000_000)),
-        precision_bits: match file.precision {
-            Some(PrecisionHint::Bits(bits)) => Some(arithmetic(bits)),
-            _ => None,
-        },
+        precision_bits: asked_bits,
+        max_precision_bits: asked_bits.map(|bits| bits.max(base.max_precision_bits)),
         ..SettingsChoice::default()
     }
 }
@@ -138,7 +138,7 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
         && bits > MOST_BITS
     {
         return Err(ApiError::NotInThisVersion(format!(
-            "precision of {bits} bits; this version computes in {MOST_BITS} at most"
+            "precision of {bits} bits; paths are tracked with {MOST_BITS} at most"
         )));
     }
     match (options.start, &options.start_solutions) {
@@ -255,7 +255,7 @@ mod tests {
         let (_, message) = said(CIRCLES, options);
         assert!(message.contains("needs start solutions"), "{message}");
         let options = Options {
-            precision: PrecisionChoice::Bits(200),
+            precision: PrecisionChoice::Bits(MOST_BITS + 1),
             ..Options::default()
         };
         let (code, message) = said(CIRCLES, options);

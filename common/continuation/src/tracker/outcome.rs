@@ -42,7 +42,7 @@ impl Failure {
     pub fn describe(self) -> &'static str {
         match self {
             Self::InvalidStartPoint => "the start point does not solve the start system",
-            Self::StepTooSmall => "the step became too small for double precision",
+            Self::StepTooSmall => "the step became too small for the highest precision allowed",
             Self::TooManySteps => "more steps than the settings allow",
             Self::EndgameUnsettled => "the endgame found no stable endpoint",
             Self::KilledItsWorker => "tracking it ended the worker's process, every time",
