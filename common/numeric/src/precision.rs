@@ -8,10 +8,10 @@ pub const DOUBLE_DOUBLE: u32 = 106;
 /// Bits of the rungs from `lowest` to `highest`: doubles, double-doubles, then MPFR with twice the
 /// bits each time. At least one; the first has at least `lowest` bits.
 pub fn rungs(lowest: u32, highest: u32) -> impl Iterator<Item = u32> {
-    let first = match lowest {
-        0..=DOUBLE => DOUBLE,
-        ..=DOUBLE_DOUBLE => DOUBLE_DOUBLE,
-        more => more,
+    let first = if lowest <= DOUBLE {
+        DOUBLE
+    } else {
+        lowest.max(DOUBLE_DOUBLE)
     };
     std::iter::successors(Some(first), move |&bits| {
         let next = match bits {

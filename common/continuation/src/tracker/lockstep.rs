@@ -262,6 +262,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let mut remaining = way.norm_sqr();
         remaining.sqrt();
         let reaches = remaining.less_equal(&batch.h);
+        let mut tried = batch.h.clone();
+        tried.min(&remaining);
+        tried.select(batch.refine, &control(0.0));
         let mut ratio = batch.h.clone();
         ratio.div(&remaining);
         let mut t = batch.t[0].clone();
@@ -423,7 +426,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 let event = StepEvent {
                     phase: path.phase.name(),
                     t: t.lane(lane),
-                    step: self.batch.h.lane(lane),
+                    step: tried.lane(lane),
                     accepted: step.accepted,
                     predictor_error: step.predictor_error,
                     correction: step.correction,

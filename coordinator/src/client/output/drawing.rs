@@ -224,6 +224,7 @@ mod tests {
             accepted,
             predictor_error: 1e-5,
             correction: 1e-11,
+            precision_bits: 53,
             point: vec![Complex64::new(s, 1.0 - s), Complex64::new(-s, 0.5)],
         }
     }
