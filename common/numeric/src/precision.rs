@@ -5,6 +5,12 @@ pub const DOUBLE: u32 = 53;
 /// Bits of double-doubles, the second.
 pub const DOUBLE_DOUBLE: u32 = 106;
 
+/// Unit roundoff 2^-bits; 0 where that is below all doubles.
+pub fn unit_roundoff(bits: u32) -> f64 {
+    // Exact: powers of two down to 2^-1074, never from libm.
+    (0..bits.min(1100)).fold(1.0, |u, _| u * 0.5)
+}
+
 /// Bits of the rungs from `lowest` to `highest`: doubles, double-doubles, then MPFR with twice the
 /// bits each time. At least one; the first has at least `lowest` bits.
 pub fn rungs(lowest: u32, highest: u32) -> impl Iterator<Item = u32> {
@@ -29,6 +35,12 @@ pub fn rungs(lowest: u32, highest: u32) -> impl Iterator<Item = u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn unit_roundoff_of_doubles_is_half_an_epsilon() {
+        assert_eq!(unit_roundoff(DOUBLE), f64::EPSILON / 2.0);
+        assert_eq!(unit_roundoff(u32::MAX), 0.0);
+    }
 
     #[test]
     fn rungs_double_up_to_the_limit() {

@@ -453,7 +453,7 @@ fn above_sum(a: f64, b: f64) -> f64 {
 
 /// 2^-bits; 0 below the smallest double.
 fn unit(bits: u32) -> f64 {
-    cognate_numeric::precision::Precision::Bits(bits).unit_roundoff()
+    cognate_numeric::precision::unit_roundoff(bits)
 }
 
 #[cfg(test)]
