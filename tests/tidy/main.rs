@@ -227,7 +227,7 @@ fn mathematics_knows_no_clock_no_file_no_thread() {
                 "tracing::",
                 "rayon::",
                 "tokio::",
-                "use rand",
+                "use rand::",
             ];
             offences.extend(uses(&file, &names));
         }
