@@ -14,7 +14,7 @@ use std::ops::Range;
 /// An exchange costs a lane's whole batch; on nine points 0.1 asked for 1.3 of them in each
 /// elimination, 0.01 for a quarter, with the same steps and endpoints. Newton's method
 /// corrects what a small pivot blurs.
-const KEPT_PIVOT: f64 = 0.01;
+pub const KEPT_PIVOT: f64 = 0.01;
 
 /// Solves for the last `RHS` columns of the n x (n + extra) matrix `a`, of which the first n are J.
 ///
@@ -94,7 +94,7 @@ pub(super) fn eliminate_columns<R: Real>(
 
 /// Brings the row with the largest entry of column `rows.start` to its diagonal, in one lane.
 #[inline(always)]
-fn exchange<R: Real>(
+pub fn exchange<R: Real>(
     entries: &mut [Complex<R>],
     stride: usize,
     rows: Range<usize>,

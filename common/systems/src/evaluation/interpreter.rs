@@ -7,11 +7,12 @@
 use super::{Evaluate, Shape};
 use crate::expression::{Expressions, NodeId};
 use crate::straight_line_program::assignments::Assignments;
-use crate::straight_line_program::instruction::{FREQUENT, Operation, Terms};
+use crate::straight_line_program::instruction::{Assignment, FREQUENT, Operation, Terms};
 use crate::straight_line_program::schedule::{Scheduling, schedule};
 use crate::straight_line_program::{Index, Layout, StraightLineProgram, Target};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 /// A compiled system. Cloning shares the programs.
@@ -46,11 +47,14 @@ struct Programs {
     value: OnceLock<StraightLineProgram>,
 }
 
-/// Which program.
-#[derive(Clone, Copy)]
-enum Which {
+/// What a program of a system computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// [J | H | H_t].
     Linearize,
+    /// [J | H].
     Jacobian,
+    /// H.
     Value,
 }
 
@@ -82,21 +86,21 @@ impl Compiled {
 
     /// A program for lanes or for one path at a time.
     #[inline(always)]
-    fn program(&self, which: Which, lanes: bool) -> &StraightLineProgram {
+    fn program(&self, program: Program, lanes: bool) -> &StraightLineProgram {
         let programs = if lanes { &self.wide } else { &self.narrow };
-        let cell = match which {
-            Which::Linearize => &programs.linearize,
-            Which::Jacobian => &programs.jacobian,
-            Which::Value => &programs.value,
+        let cell = match program {
+            Program::Linearize => &programs.linearize,
+            Program::Jacobian => &programs.jacobian,
+            Program::Value => &programs.value,
         };
         match cell.get() {
             Some(program) => program,
-            None => cell.get_or_init(|| self.schedule(which, lanes)),
+            None => cell.get_or_init(|| self.schedule(program, lanes)),
         }
     }
 
     #[cold]
-    fn schedule(&self, which: Which, lanes: bool) -> StraightLineProgram {
+    fn schedule(&self, program: Program, lanes: bool) -> StraightLineProgram {
         let scheduling = if lanes {
             self.scheduling
         } else {
@@ -110,8 +114,8 @@ impl Compiled {
         let shape = self.assignments.shape;
         let columns = shape.variables + 2;
         let (layout, entries) = (self.layout(), shape.equations * columns);
-        match which {
-            Which::Linearize => {
+        match program {
+            Program::Linearize => {
                 let all = |_| true;
                 schedule(
                     &self.assignments.linearize,
@@ -121,12 +125,12 @@ impl Compiled {
                     scheduling,
                 )
             }
-            Which::Jacobian => {
+            Program::Jacobian => {
                 let wanted = |entry| entry % columns != columns - 1;
                 let assignments = self.assignments.jacobian();
                 schedule(&assignments, layout, entries, wanted, scheduling)
             }
-            Which::Value => {
+            Program::Value => {
                 let all = |_| true;
                 schedule(
                     &self.assignments.value,
@@ -206,17 +210,35 @@ impl Interpreter {
 
     /// The program of `linearize` for lanes.
     pub fn linearize_program(&self) -> &StraightLineProgram {
-        self.0.program(Which::Linearize, true)
+        self.0.program(Program::Linearize, true)
     }
 
     /// The program of `jacobian` for lanes.
     pub fn jacobian_program(&self) -> &StraightLineProgram {
-        self.0.program(Which::Jacobian, true)
+        self.0.program(Program::Jacobian, true)
     }
 
     /// The program of `value` for lanes.
     pub fn value_program(&self) -> &StraightLineProgram {
-        self.0.program(Which::Value, true)
+        self.0.program(Program::Value, true)
+    }
+
+    /// What a program computes, operation by operation, for evaluators of another kind: they
+    /// choose where and when, and keep the order of rounding.
+    pub fn assignments(&self, program: Program) -> Cow<'_, [Assignment]> {
+        match program {
+            Program::Linearize => Cow::Borrowed(&self.0.assignments.linearize),
+            Program::Jacobian => Cow::Owned(self.0.assignments.jacobian()),
+            Program::Value => Cow::Borrowed(&self.0.assignments.value),
+        }
+    }
+
+    /// The constants of the assignments in doubles, by number: first those that fill all lanes
+    /// (`Operand::Constant`), then those that stand once (`Operand::Single`).
+    pub fn constants(&self) -> [Vec<Complex<f64>>; 2] {
+        let pool = &self.0.assignments.pool;
+        [&self.0.constants, &self.0.singles]
+            .map(|numbers| numbers.iter().map(|&c| pool.round(c, ())).collect())
     }
 
     /// Real operations of one `linearize` of one path.
@@ -226,7 +248,7 @@ impl Interpreter {
 
     /// Bytes of scratch space of `linearize`, of which most is used in every call.
     pub fn scratch_bytes<R: Real>(&self) -> usize {
-        let program = self.0.program(Which::Linearize, R::WIDTH > 1);
+        let program = self.0.program(Program::Linearize, R::WIDTH > 1);
         program.memory() * size_of::<Complex<R>>()
             + self.0.singles.len() * size_of::<Complex<R::Single>>()
     }
@@ -281,7 +303,7 @@ impl<R: Real> Evaluate<R> for Interpreter {
         load(&mut s.memory, p, shape.variables, shape.parameters);
         let directions = shape.variables + shape.parameters;
         load(&mut s.memory, dp, directions, shape.parameters);
-        let program = self.0.program(Which::Linearize, R::WIDTH > 1);
+        let program = self.0.program(Program::Linearize, R::WIDTH > 1);
         execute(program, s, &mut out.entries);
     }
 
@@ -297,7 +319,7 @@ impl<R: Real> Evaluate<R> for Interpreter {
         assert_columns(shape, out);
         load(&mut s.memory, x, 0, shape.variables);
         load(&mut s.memory, p, shape.variables, shape.parameters);
-        let program = self.0.program(Which::Jacobian, R::WIDTH > 1);
+        let program = self.0.program(Program::Jacobian, R::WIDTH > 1);
         execute(program, s, &mut out.entries);
     }
 
@@ -312,7 +334,7 @@ impl<R: Real> Evaluate<R> for Interpreter {
         let shape = &self.0.assignments.shape;
         load(&mut s.memory, x, 0, shape.variables);
         load(&mut s.memory, p, shape.variables, shape.parameters);
-        execute(self.0.program(Which::Value, R::WIDTH > 1), s, out);
+        execute(self.0.program(Program::Value, R::WIDTH > 1), s, out);
     }
 }
 

@@ -10,7 +10,7 @@ mod interpreter;
 mod reference;
 
 pub use direct::values;
-pub use interpreter::{Interpreter, Scratch};
+pub use interpreter::{Interpreter, Program, Scratch};
 pub use reference::Reference;
 
 use cognate_numeric::linear_algebra::matrix::Matrix;
