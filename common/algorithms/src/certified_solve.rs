@@ -333,5 +333,17 @@ mod tests {
         assert!(sets[0].warnings.iter().any(|w| w.contains("squared-up")));
         let of = sets[0].certified_system.as_ref().unwrap();
         assert!(of.squared_up);
+        // Exchanging p and P exchanges the first two equations, but not their combinations with
+        // the third: all three solutions are real, and the combinations do not prove it.
+        let text = "CONFIG\nEND;\nINPUT\nvariable_group p, P; function f1, f2, f3; \
+                    f1 = p^2 - P; f2 = P^2 - p; f3 = p*P - 1;\nEND;\n";
+        let mut system = cognate_systems::formats::read("pairs", text.as_bytes())
+            .unwrap()
+            .system;
+        system.conjugates = vec![(0, 1)];
+        let mut planned = plan(&system, &with_certificates()).unwrap();
+        let sets = run_locally(&planned.system, &mut planned.algorithm, &|_| None, 8).unwrap();
+        assert_eq!(certified(&sets[0]), (Some(3), None, 3));
+        assert_eq!(sets[0].counts.real, Some(3));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Attempt;
 use super::distinct::Distinctness;
-use cognate_continuation::certification::{Certificate, Certification, certified_system};
+use cognate_continuation::certification::{Certificate, Certification};
 use cognate_numeric::exact_text::exact_text;
 use cognate_numeric::rational::Rational;
 use cognate_systems::formats;
@@ -119,16 +119,13 @@ impl SolutionCertificate {
 }
 
 impl CertifiedSystem {
-    /// Of a system at these values of its parameters.
+    /// Of a system at these values of its parameters, and what was certified instead of it.
     pub(super) fn of(
         system: &System,
         parameters: &[Complex64],
         invariant: bool,
-        seed: u64,
+        combinations: Option<&System>,
     ) -> Self {
-        let squared_up = system.equation_count() > system.dimension();
-        let square = squared_up.then(|| certified_system(system, seed).ok());
-        let combinations = square.flatten().and_then(|s| formats::json::write(&s).ok());
         let name = |v: &usize| system.variables[*v].clone();
         Self {
             variables: system.variables.clone(),
@@ -150,8 +147,8 @@ impl CertifiedSystem {
                 .map(|(a, b)| [name(a), name(b)])
                 .collect(),
             invariant,
-            squared_up,
-            combinations,
+            squared_up: system.equation_count() > system.dimension(),
+            combinations: combinations.and_then(|square| formats::json::write(square).ok()),
         }
     }
 }

@@ -15,7 +15,7 @@ pub use line::{CertifiedCoordinate, CertifiedSystem, SolutionCertificate};
 use crate::involution::Involution;
 use crate::solution_set::SolutionSet;
 use boxes::Groups;
-use cognate_continuation::certification::{Certificate, Certification};
+use cognate_continuation::certification::{Certificate, Certification, certified_system};
 use cognate_systems::system::System;
 use distinct::Distinctness;
 use num_complex::Complex64;
@@ -35,7 +35,11 @@ pub fn certify(
     attempt: &dyn Fn(u64) -> Option<Attempt>,
     seed: u64,
 ) {
-    let involution = Involution::of(system, parameters).ok();
+    // Combinations of invariant equations need not be invariant; what is proved is about them.
+    let square = certified_system(system, seed).ok();
+    let involution = square
+        .as_ref()
+        .and_then(|square| Involution::of(square, parameters).ok());
     let groups = Groups::of(system);
     let attempts: Vec<Option<Attempt>> = set
         .solutions
@@ -106,7 +110,9 @@ pub fn certify(
         );
     }
     let invariant = involution.is_some();
-    set.certified_system = Some(CertifiedSystem::of(system, parameters, invariant, seed));
+    let combinations = square.filter(|_| system.equation_count() > system.dimension());
+    let of = CertifiedSystem::of(system, parameters, invariant, combinations.as_ref());
+    set.certified_system = Some(of);
 }
 
 #[cfg(test)]

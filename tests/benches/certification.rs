@@ -1,0 +1,79 @@
+//! How many certificates a second: Krawczyk's test at the solutions of a file, on one thread.
+//!
+//! `cargo bench -p cognate-tests --bench certification`. CPU seconds of the test alone, beside
+//! those of the tracking that found the points; the work space is made once for each system, as
+//! a worker makes it once for each piece of a chunk.
+
+use cognate_algorithms::run_locally::run_locally;
+use cognate_algorithms::{PlanOptions, plan};
+use cognate_continuation::certification::Krawczyk;
+use num_complex::Complex64;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// CPU seconds of this thread so far; `None` where the system does not tell.
+fn cpu_seconds() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
+}
+
+fn main() {
+    println!(
+        "{:34} {:>6} {:>6} {:>12} {:>12} {:>14}  bits",
+        "system", "n", "points", "tracking s", "certifying s", "certificates/s"
+    );
+    for name in [
+        "three_rpr",
+        "six_revolute_manseur_doty",
+        "stewart_gough_dietmaier",
+        "cyclic_5",
+        "noon_5",
+        "katsura_10",
+    ] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../deploy/examples")
+            .join(format!("{name}.bertini"));
+        let content = std::fs::read(&file).expect("an example");
+        let system = cognate_systems::formats::read(name, &content)
+            .expect("a problem")
+            .system;
+        let options = PlanOptions {
+            seed: 1,
+            ..PlanOptions::default()
+        };
+        let mut planned = plan(&system, &options).expect("a plan");
+        let before = cpu_seconds();
+        let sets = run_locally(&planned.system, &mut planned.algorithm, &|_| None, 16)
+            .expect("paths that can be tracked");
+        let tracking = cpu_seconds().zip(before).map(|(a, b)| a - b);
+        let points: Vec<Vec<Complex64>> = sets[0]
+            .solutions
+            .iter()
+            .filter(|solution| !solution.singular)
+            .map(|solution| solution.variables.0.iter().map(|(_, z)| *z).collect())
+            .collect();
+        let mut krawczyk = Krawczyk::new(&system, &[]);
+        let mut bits: BTreeMap<u32, usize> = BTreeMap::new();
+        let before = cpu_seconds();
+        for point in &points {
+            if let Some(certificate) = krawczyk.certify(point).certificate() {
+                *bits.entry(certificate.precision_bits).or_default() += 1;
+            }
+        }
+        let certifying = cpu_seconds().zip(before).map(|(a, b)| a - b);
+        let shown = |seconds: Option<f64>| match seconds {
+            Some(seconds) => format!("{seconds:.4}"),
+            None => "-".to_owned(),
+        };
+        let rate = certifying.map(|seconds| points.len() as f64 / seconds);
+        println!(
+            "{name:34} {:>6} {:>6} {:>12} {:>12} {:>14}  {bits:?}",
+            system.dimension(),
+            points.len(),
+            shown(tracking),
+            shown(certifying),
+            rate.map_or("-".to_owned(), |rate| format!("{rate:.0}")),
+        );
+    }
+}
