@@ -17,6 +17,8 @@ pub struct Answer {
     pub nonsingular: u64,
     /// Paths to singular finite endpoints.
     pub singular_paths: u64,
+    /// Paths to positive-dimensional solution sets.
+    pub positive_dimensional: u64,
     /// Paths to infinity.
     pub at_infinity: u64,
     /// Paths to solutions only of the combinations of equations that are tracked.
@@ -69,6 +71,10 @@ pub fn complaints(set: &SolutionSet, answer: &Answer) -> String {
     expect("nonsingular", counts.nonsingular, answer.nonsingular);
     expect("finite paths", paths.finite, answer.nonsingular);
     expect("singular paths", paths.singular, answer.singular_paths);
+    let on_sets = paths.positive_dimensional.unwrap_or(u64::MAX);
+    expect("positive-dimensional", on_sets, answer.positive_dimensional);
+    let sets = u64::from(counts.positive_dimensional == Some(true));
+    expect("sets", sets, u64::from(answer.positive_dimensional > 0));
     expect("at infinity", paths.at_infinity, answer.at_infinity);
     expect("excess", paths.excess.unwrap_or(0), answer.excess);
     if let Some(singular) = answer.singular {

@@ -6,6 +6,7 @@
 mod check;
 mod classical_systems;
 mod hard_paths;
+mod isolated_or_not;
 mod mechanisms;
 mod nine_point;
 mod overdetermined;

@@ -51,7 +51,7 @@ fn dietmaiers_platform_has_40_real_postures() {
     let found = |real| Answer {
         paths: 128,
         nonsingular: 40,
-        singular_paths: 88,
+        positive_dimensional: 88,
         real: Some(real),
         ..Answer::default()
     };
@@ -120,7 +120,7 @@ fn a_griffis_duffy_platform_has_40_nonsingular_points_in_a_slice() {
     let found = Answer {
         paths: 64,
         nonsingular: 40,
-        singular_paths: 24,
+        positive_dimensional: 24,
         real: Some(None),
         ..Answer::default()
     };

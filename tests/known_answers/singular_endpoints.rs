@@ -6,7 +6,7 @@ use cognate_systems::named::{caprasse, griewank_osborne};
 use cognate_tests::systems::written;
 
 /// Multiplicity of each solution, ascending.
-fn multiplicities(set: &cognate_solutions::solution_set::SolutionSet) -> Vec<u64> {
+pub fn multiplicities(set: &cognate_solutions::solution_set::SolutionSet) -> Vec<u64> {
     let mut all: Vec<u64> = set.solutions.iter().map(|s| s.multiplicity).collect();
     all.sort_unstable();
     all

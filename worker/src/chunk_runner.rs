@@ -278,6 +278,7 @@ pub(crate) mod tests {
             counts: Counts::default(),
             asked: None,
             certification: None,
+            local_dimension: None,
         }
     }
 

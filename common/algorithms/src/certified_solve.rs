@@ -140,6 +140,7 @@ impl CertifiedSolve {
         };
         certifying.stage = Some(StageProgress {
             id: stage.id,
+            work: stage.work,
             attempt: 0,
             items: count,
             absorbed: false,

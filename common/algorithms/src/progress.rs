@@ -1,6 +1,6 @@
 //! Progress: how far a solve is, for people and for clients.
 
-use cognate_continuation::work::StageId;
+use cognate_continuation::work::{StageId, Work};
 use serde::{Deserialize, Serialize};
 
 /// One stage of a solve.
@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct StageProgress {
     /// Its number.
     pub id: StageId,
+    /// What is done with its items.
+    pub work: Work,
     /// 0 for the first tracking, then 1, 2, ...
     pub attempt: u16,
     /// How many paths it has.
@@ -23,6 +25,8 @@ pub struct VerdictCounts {
     pub finite: u64,
     /// Singular and finite.
     pub singular: u64,
+    /// On positive-dimensional solution sets.
+    pub positive_dimensional: u64,
     /// At infinity.
     pub at_infinity: u64,
     /// Solutions only of the combinations of equations that are tracked.

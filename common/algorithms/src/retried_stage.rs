@@ -1,26 +1,37 @@
 //! RetriedStage: a stage, and the stages that track again what failed or crossed in it.
 //!
 //! The books of one solve: every path's last result, its verdict, and which
-//! paths are to be tracked again. Repetitions keep the seed (and so gamma:
+//! paths are to be tracked again; at last, whether singular endpoints are isolated. Repetitions keep the seed (and so gamma:
 //! another would change which start reaches which end) and tighten the
 //! settings; the verdict uses the last.
 
 use crate::progress::{Progress, StageProgress, VerdictCounts};
-use crate::{Certifiable, CertifiablePoint, Next};
+use crate::{Certifiable, CertifiablePoint, Next, Opening};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::local_dimension::Question;
+use cognate_continuation::local_dimension::candidates::{self, Candidate};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
-use cognate_continuation::work::{Stage, StageId};
+use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Decision, Tolerances, Verdict, classify};
-use cognate_solutions::path_crossing::{CrossingBook, crossings};
+use cognate_solutions::path_crossing::{CrossingBook, coincidences, crossings};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// How often a path is tracked again at most, before it counts as failed.
 pub const MAX_RETRIES: u16 = 3;
+
+/// Highest order of the functionals that are asked for at a singular endpoint, where the number of
+/// paths that end there bounds its multiplicity;
+const DEPTH: u32 = 40;
+/// ... and where nothing does. Multiplicities of mechanisms are small; what goes on past it stays
+/// undecided.
+const DEPTH_WITHOUT_BOUND: u32 = 8;
 
 /// What is kept of one target besides its results.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -45,6 +56,11 @@ pub struct RetriedStage {
     stages: Vec<StageProgress>,
     /// Paths that the next stage has to track; `None` before the first and after the last.
     wanted: Option<Vec<u64>>,
+    /// Paths that end at one singular point each, when nothing is to be tracked any more: the items
+    /// of a last stage, which finds out whether the points are isolated.
+    singular_points: Vec<Vec<u64>>,
+    /// That stage is to be opened.
+    isolation_wanted: bool,
 }
 
 impl RetriedStage {
@@ -77,6 +93,8 @@ impl RetriedStage {
             targets: vec![TargetBook::default(); targets as usize],
             stages: Vec::new(),
             wanted: None,
+            singular_points: Vec::new(),
+            isolation_wanted: false,
         }
     }
 
@@ -102,23 +120,73 @@ impl RetriedStage {
         if self.stages.iter().any(|stage| !stage.absorbed) {
             return Next::Wait;
         }
-        let stage = if self.stages.is_empty() {
-            self.first.clone()
+        let opening = if self.stages.is_empty() {
+            self.first.clone().into()
+        } else if let Some(indices) = self.wanted.take() {
+            self.repetition(indices).into()
+        } else if std::mem::take(&mut self.isolation_wanted) {
+            self.isolation()
         } else {
-            match self.wanted.take() {
-                None => return Next::Done,
-                Some(indices) => self.repetition(indices),
-            }
+            return Next::Done;
         };
+        let Opening { stage, .. } = &opening;
         self.stages.push(StageProgress {
             id: stage.id,
+            work: stage.work,
             attempt: stage.attempt,
             items: stage
                 .items()
                 .expect("a plan has only stages whose paths can be counted"),
             absorbed: false,
         });
-        Next::Open(Box::new(stage.into()))
+        Next::Open(Box::new(opening))
+    }
+
+    /// The stage that finds out whether singular endpoints are isolated: one item for each point,
+    /// the most accurate of the endpoints there.
+    fn isolation(&self) -> Opening {
+        let points: Vec<Candidate> = self
+            .singular_points
+            .iter()
+            .map(|paths| {
+                let accuracy = |path: &&u64| self.results[**path as usize].accuracy;
+                let best = paths
+                    .iter()
+                    .min_by(|a, b| accuracy(a).total_cmp(&accuracy(b)))
+                    .expect("a point is where a path ends");
+                let result = &self.results[*best as usize];
+                let target = best / self.paths_per_target;
+                Candidate {
+                    values: self.shape.to_variables(result.endpoint.to_double()),
+                    target,
+                    question: self.question(result.accuracy, target, paths.len() as u64),
+                }
+            })
+            .collect();
+        let points = Arc::new(candidates::to_stored(&points));
+        Opening {
+            stage: Stage {
+                id: StageId(self.first.id.0 + self.stages.len() as u32),
+                work: Work::LocalDimension,
+                start_points: points.as_start(),
+                ..self.first.clone()
+            },
+            objects: vec![points],
+        }
+    }
+
+    /// What is known of a singular point at which this many paths end.
+    fn question(&self, accuracy: f64, target: u64, paths: u64) -> Question {
+        let book = &self.targets[target as usize];
+        // Paths of which the end is not known may all belong there.
+        let lost = book.verdicts.failed + book.crossings.paths().count() as u64;
+        // Other homotopies may leave out paths, and then fewer than the multiplicity end there.
+        let complete = matches!(self.first.homotopy, HomotopyKind::StraightLine { .. });
+        Question {
+            accuracy,
+            bound: if complete { paths + lost } else { u64::MAX },
+            depth: if complete { DEPTH } else { DEPTH_WITHOUT_BOUND },
+        }
     }
 
     fn repetition(&self, indices: Vec<u64>) -> Stage {
@@ -146,8 +214,20 @@ impl RetriedStage {
             .find(|stage| stage.id == id && !stage.absorbed)
             .expect("only an open stage is absorbed");
         stage.absorbed = true;
-        let (attempt, items) = (stage.attempt, stage.items);
+        let (attempt, items, work) = (stage.attempt, stage.items, stage.work);
         let mut taken = 0;
+        if work == Work::LocalDimension {
+            for (result, paths) in results.zip(&self.singular_points) {
+                taken += 1;
+                for &path in paths {
+                    let result = result.local_dimension.clone();
+                    self.results[path as usize].local_dimension = result;
+                }
+            }
+            assert_eq!(taken, items, "a stage is absorbed as a whole");
+            self.judge();
+            return;
+        }
         for result in results {
             let origin = result.origin.0;
             if attempt == 0 {
@@ -163,6 +243,35 @@ impl RetriedStage {
         assert_eq!(taken, items, "a stage is absorbed as a whole");
         let suspects = self.judge();
         self.wanted = (!suspects.is_empty() && attempt < self.max_retries).then_some(suspects);
+        if self.wanted.is_none() {
+            self.singular_points = self.find_singular_points();
+            self.isolation_wanted = !self.singular_points.is_empty();
+        }
+    }
+
+    /// The paths that end at one singular finite point, for each such point.
+    fn find_singular_points(&self) -> Vec<Vec<u64>> {
+        let size = self.paths_per_target.max(1) as usize;
+        let mut points = Vec::new();
+        for results in self.results.chunks(size) {
+            let singular: Vec<bool> = results
+                .iter()
+                .map(|result| {
+                    classify(result, &self.shape, &self.tolerances).verdict == Verdict::Singular
+                })
+                .collect();
+            let clusters = coincidences(
+                results,
+                &self.shape,
+                &self.tolerances,
+                self.first.seed,
+                |place| singular[place],
+            );
+            let paths =
+                |members: Vec<usize>| members.iter().map(|&m| results[m].origin.0).collect();
+            points.extend(clusters.into_iter().map(paths));
+        }
+        points
     }
 
     /// Brings all verdicts up to date; returns the paths to track again, ascending.
@@ -194,6 +303,7 @@ impl RetriedStage {
                     Verdict::Finite => book.verdicts.finite += 1,
                     Verdict::Singular => book.verdicts.singular += 1,
                     Verdict::AtInfinity => book.verdicts.at_infinity += 1,
+                    Verdict::PositiveDimensional => book.verdicts.positive_dimensional += 1,
                     Verdict::Excess => book.verdicts.excess += 1,
                     Verdict::Failed => {
                         book.verdicts.failed += 1;
@@ -218,11 +328,19 @@ impl RetriedStage {
             paths.singular += book.verdicts.singular;
             paths.at_infinity += book.verdicts.at_infinity;
             paths.excess += book.verdicts.excess;
+            paths.positive_dimensional += book.verdicts.positive_dimensional;
             paths.failed += book.verdicts.failed;
         }
         let open = self.stages.iter().find(|stage| !stage.absorbed);
-        let done = !self.stages.is_empty() && open.is_none() && self.wanted.is_none();
+        let done = !self.stages.is_empty()
+            && open.is_none()
+            && self.wanted.is_none()
+            && !self.isolation_wanted;
         let description = match open {
+            Some(stage) if stage.work == Work::LocalDimension => format!(
+                "{what}: finding out whether {} singular points are isolated",
+                stage.items
+            ),
             Some(stage) if stage.attempt == 0 => format!("{what}: tracking {} paths", stage.items),
             Some(stage) => format!(
                 "{what}: tracking {} paths again, more carefully ({} of {})",

@@ -79,6 +79,7 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                 counts: Counts::default(),
                 asked: None,
                 certification: None,
+                local_dimension: None,
             }
         })
         .collect()

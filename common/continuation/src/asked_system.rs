@@ -7,6 +7,7 @@
 use crate::chart::{Chart, exact, norm};
 use crate::homotopies::HomotopyKind;
 use crate::homotopies::prepare::normalize;
+use crate::local_dimension::series::{Monomials, Series};
 use crate::path_result::{AskedFit, PathResult};
 use crate::tracker::outcome::PathOutcome;
 use cognate_numeric::lanes::dispatch::{Job, dispatch};
@@ -24,6 +25,8 @@ use num_complex::Complex64;
 /// The equations in the chart, each scaled to about 1.
 #[derive(Debug)]
 pub struct AskedSystem {
+    expressions: Expressions,
+    equations: Vec<NodeId>,
     program: Interpreter,
     chart: Chart,
     /// Values of the program's parameters at each target.
@@ -101,6 +104,8 @@ impl AskedSystem {
         normalize(&mut out, &mut equations, dimension, &targets[0], &mut probe);
         Self {
             program: Interpreter::compile(&out, &equations, dimension, targets[0].len()),
+            expressions: out,
+            equations,
             chart,
             targets,
         }
@@ -127,6 +132,40 @@ impl AskedSystem {
             values: column(n),
             columns: (0..n).map(column).collect(),
         }
+    }
+
+    /// The chart.
+    pub fn chart(&self) -> &Chart {
+        &self.chart
+    }
+
+    /// How fast the Jacobian changes with the point: an estimate of its derivative's size, from
+    /// differences in random directions. `columns` are the Jacobian there.
+    pub fn curvature(&self, point: &[Complex64], target: u64, columns: &[Vec<Complex64>]) -> f64 {
+        const DIRECTIONS: u64 = 2;
+        const STEP: f64 = 1e-4;
+        let mut largest = 0.0f64;
+        for k in 0..DIRECTIONS {
+            let mut random = RandomStream::new(k, Purpose::Probe, 2);
+            let length = STEP * norm(point);
+            let moved: Vec<_> = point.iter().map(|z| z + random.unit() * length).collect();
+            let there = self.linearize(&moved, target).columns;
+            let pairs = there.iter().flatten().zip(columns.iter().flatten());
+            let change: f64 = pairs.map(|(a, b)| (a - b).norm_sqr()).sum();
+            largest = largest.max(change.sqrt() / length);
+        }
+        largest
+    }
+
+    /// The equations as power series, where the coordinates have these series.
+    pub fn expand(
+        &self,
+        monomials: &Monomials,
+        coordinates: &[Series],
+        target: u64,
+    ) -> Option<Vec<Series>> {
+        let parameters = self.targets.get(usize::try_from(target).ok()?)?;
+        monomials.expand(&self.expressions, &self.equations, coordinates, parameters)
     }
 
     /// How well the endpoint of a path solves all equations; `None` for a failed path.

@@ -1,11 +1,11 @@
 //! How one path is followed: start systems, homotopies, the tracker, endgames.
 //!
-//! In the order of a path's life: [`work`] says what is asked, [`stage`] prepares
-//! it, [`chart`] and [`homotopies`] make the program, [`start_systems`] and
+//! In the order of a path's life: [`work`] says what is asked, [`prepared_work`] and
+//! [`stage`] prepare it, [`chart`] and [`homotopies`] make the program, [`start_systems`] and
 //! [`start_points`] the beginning; [`predictor`], [`step_control`] and [`tracker`]
 //! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left;
-//! [`asked_system`] holds it against more equations than could be tracked.
-//! [`certification`] proves what is there; [`prepared_work`] is any of it for a worker.
+//! [`asked_system`] holds it against all equations that are asked, [`local_dimension`] says
+//! whether it is isolated, [`certification`] proves what is there.
 //! `examples/two_conics.rs` is a whole solve in thirty lines.
 #![forbid(unsafe_code)]
 
@@ -14,6 +14,7 @@ pub mod certification;
 pub mod chart;
 pub mod endgames;
 pub mod homotopies;
+pub mod local_dimension;
 pub mod path_result;
 pub mod predictor;
 pub mod prepared_work;

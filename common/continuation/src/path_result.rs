@@ -60,6 +60,21 @@ pub struct AskedFit {
     pub correction: f64,
 }
 
+/// How the dual space of the system grows at an endpoint (see `local_dimension`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LocalDimension {
+    /// Dimension of the space of differential functionals of order 0, 0 and 1, ... that vanish on
+    /// the ideal: 1, then 1 more than the corank of the Jacobian, ... Where two are equal the
+    /// point is isolated and they are its multiplicity.
+    pub dual_dimensions: Vec<u32>,
+    /// An isolated point has at most this multiplicity: the dimensions went on no further past it.
+    /// `u64::MAX` where no bound is known.
+    pub bound: u64,
+    /// How clearly singular values were told from noise: the least factor between any of them
+    /// and the border. About 1 where nothing can be said.
+    pub margin: f64,
+}
+
 /// All that is known about one path when it ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathResult {
@@ -97,4 +112,6 @@ pub struct PathResult {
     /// What was proved of the point, in a stage that certifies; its `endpoint` is the point that
     /// was given, in the values of the variables.
     pub certification: Option<Certification>,
+    /// Whether the endpoint is isolated; `None` where it was not asked.
+    pub local_dimension: Option<LocalDimension>,
 }

@@ -1,6 +1,7 @@
 //! PreparedWork: all that a worker makes of a stage before it does its items, whatever they are.
 
 use crate::certification::CertificationStage;
+use crate::local_dimension::prepared::PreparedLocalDimension;
 use crate::path_result::PathResult;
 use crate::stage::{PrepareError, PreparedStage};
 use crate::start_points::{Digest, StoredPoints};
@@ -16,6 +17,8 @@ pub enum PreparedWork {
     Track(Box<PreparedStage>),
     /// Points to certify.
     Certify(Box<CertificationStage>),
+    /// Endpoints of which it is asked whether they are isolated.
+    LocalDimension(Box<PreparedLocalDimension>),
 }
 
 impl PreparedWork {
@@ -31,6 +34,10 @@ impl PreparedWork {
             Work::Certify => {
                 Self::Certify(Box::new(CertificationStage::new(system, stage, objects)?))
             }
+            Work::LocalDimension => {
+                let prepared = PreparedLocalDimension::new(system, stage, objects)?;
+                Self::LocalDimension(Box::new(prepared))
+            }
         })
     }
 
@@ -39,6 +46,7 @@ impl PreparedWork {
         match self {
             Self::Track(stage) => stage.items(),
             Self::Certify(stage) => stage.items(),
+            Self::LocalDimension(stage) => stage.items(),
         }
     }
 
@@ -48,6 +56,7 @@ impl PreparedWork {
         match self {
             Self::Track(stage) => stage.track(items, width),
             Self::Certify(stage) => stage.run(items),
+            Self::LocalDimension(stage) => stage.run(items),
         }
     }
 }

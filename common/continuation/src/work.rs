@@ -18,6 +18,9 @@ pub enum Work {
     Track,
     /// Prove that there is exactly one solution near each point.
     Certify,
+    /// Find out whether the endpoints that are the start points are isolated (see
+    /// `local_dimension`); they lie at the end of the homotopy.
+    LocalDimension,
 }
 
 /// One kind of work over the start points of one homotopy.
@@ -42,6 +45,9 @@ pub struct Stage {
 impl Stage {
     /// How many items the stage has; `None` when they are more than fit in 64 bits.
     pub fn items(&self) -> Option<u64> {
+        if self.work == Work::LocalDimension {
+            return self.start_points.count();
+        }
         match (&self.homotopy, &self.start_points) {
             // An item of a repetition is named by its index among all targets and starts.
             (_, StartPoints::Selected { indices, .. }) => Some(indices.len() as u64),

@@ -52,6 +52,12 @@ pub const SELECTED_PATHS: Limit = Limit {
     what: "paths named one by one",
     value: 10_000_000,
 };
+/// Orders of functionals at an endpoint.
+pub const DUAL_DIMENSIONS: Limit = Limit {
+    name: "DUAL_DIMENSIONS",
+    what: "dimensions of dual spaces",
+    value: 1000,
+};
 /// Coordinates of an endpoint: every variable may have a group of its own.
 pub const COORDINATES: Limit = Limit {
     name: "COORDINATES",

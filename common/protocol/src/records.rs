@@ -8,7 +8,9 @@
 //! worker is in them.
 
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
-use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::{
+    AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
+};
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_numeric::exact_text::{exact_text, read_exact};
@@ -22,6 +24,7 @@ mod tag {
     pub const ASKED: u8 = 1;
     pub const CERTIFIED: u8 = 2;
     pub const UNCERTIFIED: u8 = 3;
+    pub const LOCAL_DIMENSION: u8 = 4;
 }
 
 /// Bytes that hold no records.
@@ -131,6 +134,7 @@ impl Writer {
             counts,
             asked,
             certification,
+            local_dimension,
         } = result;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -191,6 +195,18 @@ impl Writer {
                     Uncertified::NoContraction => 5,
                 });
             }
+        }
+        if let Some(LocalDimension {
+            dual_dimensions,
+            bound,
+            margin,
+        }) = local_dimension
+        {
+            self.0.push(tag::LOCAL_DIMENSION);
+            self.length(dual_dimensions.len());
+            dual_dimensions.iter().for_each(|&d| self.u32(d));
+            self.u64(*bound);
+            self.f64(*margin);
         }
     }
 }
@@ -350,6 +366,7 @@ impl<'a> Reader<'a> {
             },
             asked: None,
             certification: None,
+            local_dimension: None,
         };
         let mut last = 0;
         while self.at < end {
@@ -379,6 +396,16 @@ impl<'a> Reader<'a> {
                         _ => return Err(self.damaged("a reason that this version does not know")),
                     };
                     result.certification = Some(Certification::Uncertified(reason));
+                }
+                tag::LOCAL_DIMENSION => {
+                    let orders = self.length(4)?;
+                    result.local_dimension = Some(LocalDimension {
+                        dual_dimensions: (0..orders)
+                            .map(|_| self.u32())
+                            .collect::<Result<_, _>>()?,
+                        bound: self.u64()?,
+                        margin: self.f64()?,
+                    });
                 }
                 _ => return Err(self.damaged("a fact that this version does not know")),
             }

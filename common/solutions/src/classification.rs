@@ -4,7 +4,7 @@
 //! stored results. The first class that holds is the path's class.
 
 use crate::point_shape::{PointShape, largest, modulus};
-use cognate_continuation::path_result::{AskedFit, PathResult};
+use cognate_continuation::path_result::{AskedFit, LocalDimension, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +44,9 @@ pub struct Tolerances {
     pub singular_coincidence_factor: f64,
     /// See `singular_coincidence_factor`.
     pub singular_coincidence_floor: f64,
+    /// The rank of a multiplicity matrix is believed when every singular value is this many times
+    /// larger or smaller than the border between values and noise.
+    pub rank_margin: f64,
     /// An expression of a degenerate set is 0 within this many times the error that
     /// the endpoint's estimated error makes in it.
     pub degenerate_factor: f64,
@@ -66,6 +69,7 @@ impl Default for Tolerances {
             coincidence_floor: 1e-10,
             singular_coincidence_factor: 50.0,
             singular_coincidence_floor: 1e-8,
+            rank_margin: 3.0,
             degenerate_factor: 10.0,
             degenerate_floor: 1e-13,
         }
@@ -74,8 +78,8 @@ impl Default for Tolerances {
 
 /// What a path's end is, in the order in which the classes are asked.
 ///
-/// One class of the contract has no rule yet: whether a singular endpoint lies
-/// on a positive-dimensional set is not decided; such paths stand in `Singular`.
+/// A singular endpoint of which it is not decided whether it lies on a
+/// positive-dimensional set stands in `Singular`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Verdict {
     /// Not tracked to the end.
@@ -84,6 +88,8 @@ pub enum Verdict {
     AtInfinity,
     /// Finite, but a solution only of the combinations of equations that were tracked.
     Excess,
+    /// Finite, on a curve, surface, ... of solutions.
+    PositiveDimensional,
     /// Finite, with a singular Jacobian.
     Singular,
     /// Finite, nonsingular and so isolated.
@@ -144,12 +150,55 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     let verdict = match singular {
         _ if at_infinity => Verdict::AtInfinity,
         _ if !solves_what_is_asked(result, tolerances) => Verdict::Excess,
-        true => Verdict::Singular,
+        true => match isolation(result, tolerances) {
+            Isolation::PositiveDimensional => Verdict::PositiveDimensional,
+            Isolation::Isolated { .. } | Isolation::Undecided => Verdict::Singular,
+        },
         false => Verdict::Finite,
     };
     Decision {
         verdict,
         by_precision_limit,
+    }
+}
+
+/// What the dual spaces at a singular endpoint say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Isolation {
+    /// It is isolated: they stop growing.
+    Isolated {
+        /// Its multiplicity as a solution of the system that is asked.
+        multiplicity: u32,
+    },
+    /// They outgrow what an isolated point could have.
+    PositiveDimensional,
+    /// They were not asked for, or not clear, or neither happened within reach.
+    Undecided,
+}
+
+/// Whether an endpoint is isolated, from its dual spaces.
+pub fn isolation(result: &PathResult, tolerances: &Tolerances) -> Isolation {
+    let Some(LocalDimension {
+        dual_dimensions,
+        bound,
+        margin,
+    }) = &result.local_dimension
+    else {
+        return Isolation::Undecided;
+    };
+    let [.., before, last] = dual_dimensions.as_slice() else {
+        return Isolation::Undecided;
+    };
+    if margin.is_nan() || *margin < tolerances.rank_margin {
+        Isolation::Undecided
+    } else if last <= before {
+        Isolation::Isolated {
+            multiplicity: *last,
+        }
+    } else if u64::from(*last) > *bound {
+        Isolation::PositiveDimensional
+    } else {
+        Isolation::Undecided
     }
 }
 
@@ -305,6 +354,35 @@ mod tests {
         );
         let far = [(1e-17, 0.0), (1.0, 0.0)];
         expect(with(regular(0, &far), 0.3, 0.2), Verdict::AtInfinity);
+    }
+
+    #[test]
+    fn dual_spaces_say_whether_a_singular_endpoint_is_isolated() {
+        let with = |dimensions: &[u32], bound, margin| {
+            let result = PathResult {
+                local_dimension: Some(LocalDimension {
+                    dual_dimensions: dimensions.to_vec(),
+                    bound,
+                    margin,
+                }),
+                ..singular(0, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0])
+            };
+            (
+                isolation(&result, &Tolerances::default()),
+                verdict(&result).0,
+            )
+        };
+        let isolated = |multiplicity| (Isolation::Isolated { multiplicity }, Verdict::Singular);
+        let undecided = (Isolation::Undecided, Verdict::Singular);
+        let on_a_set = (Isolation::PositiveDimensional, Verdict::PositiveDimensional);
+        assert_eq!(with(&[1, 2, 3, 3], 3, 1e5), isolated(3));
+        assert_eq!(with(&[1, 1], 1, 1e5), isolated(1));
+        assert_eq!(with(&[1, 3, 5], 1, 1e5), on_a_set);
+        assert_eq!(with(&[1, 3, 5], 1, 1.5), undecided, "not clear");
+        assert_eq!(with(&[1, 3, 5], 5, 1e5), undecided, "not far enough");
+        assert_eq!(with(&[1, 3, 5], u64::MAX, 1e5), undecided, "no bound");
+        assert_eq!(with(&[1], 1, 1e5), undecided);
+        assert_eq!(with(&[1, 2, 2], 1, f64::NAN), undecided);
     }
 
     #[test]

@@ -4,7 +4,9 @@
 //! give the same set, whoever tracked them in whatever chunks.
 
 use crate::certificates::CertifiedSystem;
-use crate::classification::{Decision, Tolerances, Verdict, classify, solves};
+use crate::classification::{
+    Decision, Isolation, Tolerances, Verdict, classify, isolation, solves,
+};
 use crate::degenerate;
 use crate::involution::Involution;
 use crate::path_crossing::{coincidences, crossings, radius};
@@ -82,6 +84,8 @@ pub struct SolutionSet {
     pub solutions: Vec<Solution>,
     /// The paths that failed, ascending.
     pub failed: Vec<FailedPath>,
+    /// The paths that end on positive-dimensional solution sets, ascending.
+    pub on_positive_dimensional_sets: Vec<u64>,
     /// What a reader should know.
     pub warnings: Vec<String>,
     /// What the certificates are of, where there are some.
@@ -150,7 +154,7 @@ impl<'a> Draft<'a> {
         self.fail_what_still_crosses();
         self.list_failures();
         self.count_paths(history);
-        let representatives = self.merge();
+        let representatives = self.merge(history);
         self.decide_reality(&representatives);
         self.count_solutions(history, &representatives);
         self.find_classes();
@@ -197,12 +201,14 @@ impl<'a> Draft<'a> {
             of_it.count() as u64
         };
         let singular = count(Verdict::Singular);
+        let on_sets = count(Verdict::PositiveDimensional);
+        let undecided = self.undecided();
         let mut paths = PathCounts {
             total: self.results.len() as u64,
             finite: count(Verdict::Finite),
             singular,
-            // A point of a positive-dimensional set has a singular Jacobian.
-            positive_dimensional: (singular == 0).then_some(0),
+            // Null only where nothing is known; else the warning says how many are open.
+            positive_dimensional: (undecided == 0 || on_sets > 0).then_some(on_sets),
             excess: Some(count(Verdict::Excess)),
             at_infinity: count(Verdict::AtInfinity),
             failed: count(Verdict::Failed),
@@ -222,10 +228,26 @@ impl<'a> Draft<'a> {
         paths.highest_precision_bits = paths.by_precision.keys().copied().max().unwrap_or(0);
         assert_eq!(paths.sum(), paths.total, "every path is in one class");
         self.set.paths = paths;
+        let places = self.results.iter().zip(&self.decisions);
+        self.set.on_positive_dimensional_sets = places
+            .filter(|(_, decision)| decision.verdict == Verdict::PositiveDimensional)
+            .map(|(result, _)| result.origin.0)
+            .collect();
+    }
+
+    /// Singular endpoints of which it is not decided whether they are isolated.
+    fn undecided(&self) -> u64 {
+        let singular = self.results.iter().zip(&self.decisions);
+        singular
+            .filter(|(result, decision)| {
+                decision.verdict == Verdict::Singular
+                    && isolation(result, self.tolerances) == Isolation::Undecided
+            })
+            .count() as u64
     }
 
     /// Solutions from finite endpoints; returns the place of the result that stands for each.
-    fn merge(&mut self) -> Vec<usize> {
+    fn merge(&mut self, history: &History) -> Vec<usize> {
         let mut found: Vec<(usize, Solution)> = Vec::new();
         let mut broken = Vec::new();
         for verdict in [Verdict::Finite, Verdict::Singular] {
@@ -245,6 +267,7 @@ impl<'a> Draft<'a> {
                 found.push(solution);
             }
         }
+        self.compare_multiplicities(history, &found);
         if let Some(&first) = broken.first() {
             self.set.warnings.push(format!(
                 "at {} singular endpoint{} (first of path {}) the winding numbers do not fit the \
@@ -258,6 +281,36 @@ impl<'a> Draft<'a> {
         let (representatives, solutions) = found.into_iter().unzip();
         self.set.solutions = solutions;
         representatives
+    }
+
+    /// As many paths end at an isolated point as its dual space has dimensions, where all paths of
+    /// a complete start are known and the equations were tracked as they are.
+    fn compare_multiplicities(&mut self, history: &History, found: &[(usize, Solution)]) {
+        let square = self.system.equation_count() == self.system.dimension();
+        if !history.complete_start || !square || !self.set.failed.is_empty() {
+            return;
+        }
+        let differing: Vec<u64> = found
+            .iter()
+            .filter(
+                |(place, solution)| match isolation(&self.results[*place], self.tolerances) {
+                    Isolation::Isolated { multiplicity } => {
+                        u64::from(multiplicity) != solution.multiplicity
+                    }
+                    _ => false,
+                },
+            )
+            .map(|(_, solution)| solution.paths[0])
+            .collect();
+        if !differing.is_empty() {
+            self.set.warnings.push(format!(
+                "at {} isolated singular point{} another number of paths ends than the \
+                 multiplicity by the dual space (first paths: {})",
+                differing.len(),
+                plural(differing.len()),
+                some_of(&differing),
+            ));
+        }
     }
 
     /// The solution of some coinciding endpoints, and whose point it is: the most accurate.
@@ -334,12 +387,18 @@ impl<'a> Draft<'a> {
         counts.with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
         // Every positive-dimensional set has an end of a complete start system's
         // paths on it, where the Jacobian is singular, if only at infinity.
-        let all_regular = self
-            .results
-            .iter()
-            .all(|result| result.outcome == PathOutcome::Regular);
-        counts.positive_dimensional =
-            (history.complete_start && all_regular && set.failed.is_empty()).then_some(false);
+        let all_isolated = self.results.iter().all(|result| {
+            result.outcome == PathOutcome::Regular
+                || matches!(
+                    isolation(result, self.tolerances),
+                    Isolation::Isolated { .. }
+                )
+        });
+        counts.positive_dimensional = if set.on_positive_dimensional_sets.is_empty() {
+            (history.complete_start && all_isolated && set.failed.is_empty()).then_some(false)
+        } else {
+            Some(true)
+        };
         counts.degenerate = degenerate::count(
             self.system,
             self.parameters,
@@ -368,14 +427,16 @@ impl<'a> Draft<'a> {
     }
 
     fn warn(&mut self) {
+        let undecided = self.undecided();
         let set = &mut self.set;
         let paths = &set.paths;
-        if paths.singular > 0 {
+        if undecided > 0 {
             set.warnings.push(format!(
-                "whether the {} singular endpoint{} are isolated is not decided in this version: \
-                 those on a positive-dimensional set are counted as singular solutions",
+                "whether {undecided} of the {} path{} to singular endpoints end{} at an isolated \
+                 point is not decided: if not, no solution but a positive-dimensional set is there",
                 paths.singular,
                 plural(paths.singular as usize),
+                if undecided == 1 { "s" } else { "" },
             ));
         }
         if paths.crossings_found > paths.crossings_resolved {

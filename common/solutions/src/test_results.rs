@@ -40,6 +40,7 @@ pub fn regular(path: u64, point: &[(f64, f64)]) -> PathResult {
         counts: Counts::default(),
         asked: None,
         certification: None,
+        local_dimension: None,
     }
 }
 

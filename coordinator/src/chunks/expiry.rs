@@ -68,6 +68,7 @@ pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
         counts: Counts::default(),
         asked: None,
         certification: None,
+        local_dimension: None,
     }
 }
 

@@ -48,6 +48,7 @@ pub struct Explanation {
 fn purpose(stage: &Stage) -> String {
     match stage.attempt {
         _ if stage.work == Work::Certify => "certifying".to_owned(),
+        _ if stage.work == Work::LocalDimension => "whether singular endpoints are isolated".into(),
         0 => "tracking".to_owned(),
         attempt => format!("tracking again, more carefully ({attempt})"),
     }
@@ -263,10 +264,13 @@ impl Coordinator {
         if let Some(summary) = &summary {
             let paths = &summary.paths;
             lines.push(format!(
-                "paths: {} finite, {} singular, {} excess (no solutions before randomisation), \
+                "paths: {} finite, {} singular, {} on positive-dimensional sets, {} excess (no solutions before randomisation), \
                  {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
                 paths.finite,
                 paths.singular,
+                paths
+                    .positive_dimensional
+                    .map_or("an unknown number".to_owned(), |n| n.to_string()),
                 paths.excess.unwrap_or(0),
                 paths.at_infinity,
                 paths.failed,
@@ -343,7 +347,7 @@ fn classified(
     shape: &PointShape,
 ) -> Vec<ClassifiedPath> {
     let mut solution_of = HashMap::new();
-    let mut failed = HashSet::new();
+    let (mut failed, mut on_sets) = (HashSet::new(), HashSet::new());
     let mut number = 0;
     for set in sets {
         for solution in &set.solutions {
@@ -351,6 +355,7 @@ fn classified(
             number += 1;
         }
         failed.extend(set.failed.iter().map(|f| f.path));
+        on_sets.extend(set.on_positive_dimensional_sets.iter().copied());
     }
     let tolerances = Tolerances::default();
     results
@@ -358,6 +363,8 @@ fn classified(
         .map(|result| ClassifiedPath {
             verdict: if failed.contains(&result.origin.0) {
                 Verdict::Failed
+            } else if on_sets.contains(&result.origin.0) {
+                Verdict::PositiveDimensional
             } else {
                 classify(&result, shape, &tolerances).verdict
             },

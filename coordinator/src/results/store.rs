@@ -362,6 +362,7 @@ mod tests {
             counts: Counts::default(),
             asked: None,
             certification: None,
+            local_dimension: None,
         };
         (0..count).map(result).collect()
     }

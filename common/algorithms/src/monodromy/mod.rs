@@ -230,6 +230,7 @@ impl MonodromySolve {
         let items = opening.stage.items();
         self.stages.push(StageProgress {
             id: opening.stage.id,
+            work: opening.stage.work,
             attempt: opening.stage.attempt,
             items: items.expect("stored points can be counted"),
             absorbed: false,

@@ -174,6 +174,7 @@ impl CertificationStage {
             counts: Counts::default(),
             asked: None,
             certification: Some(certification),
+            local_dimension: None,
         }
     }
 }

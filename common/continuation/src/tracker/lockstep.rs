@@ -758,6 +758,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             },
             asked: None,
             certification: None,
+            local_dimension: None,
         };
         self.ended.results.push((path.item, result));
     }

@@ -7,7 +7,9 @@ use crate::limits;
 use crate::v1;
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::{
+    AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
+};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
@@ -21,6 +23,7 @@ pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
     let work = match v1::Work::try_from(m.work) {
         Ok(v1::Work::Track) => Work::Track,
         Ok(v1::Work::Certify) => Work::Certify,
+        Ok(v1::Work::LocalDimension) => Work::LocalDimension,
         Ok(v1::Work::Unspecified) | Err(_) => {
             return Err(ProtocolError::invalid(
                 "work",
@@ -239,6 +242,7 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             .map(certification)
             .transpose()
             .map_err(|e| e.within("certification"))?,
+        local_dimension: m.local_dimension.as_ref().map(dual_space).transpose()?,
     })
 }
 
@@ -317,6 +321,23 @@ fn asked_fit(m: &v1::AskedFit) -> Result<AskedFit, ProtocolError> {
     Ok(AskedFit {
         residual: m.residual,
         correction: m.correction,
+    })
+}
+
+fn dual_space(m: &v1::LocalDimension) -> Result<LocalDimension, ProtocolError> {
+    within_limit(
+        "local_dimension.dual_dimensions",
+        m.dual_dimensions.len(),
+        limits::DUAL_DIMENSIONS,
+    )?;
+    if m.margin.is_nan() || m.margin < 0.0 {
+        let field = "local_dimension.margin";
+        return Err(ProtocolError::invalid(field, m.margin, "at least 0"));
+    }
+    Ok(LocalDimension {
+        dual_dimensions: m.dual_dimensions.clone(),
+        bound: m.bound,
+        margin: m.margin,
     })
 }
 

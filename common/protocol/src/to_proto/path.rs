@@ -18,6 +18,7 @@ pub fn stage(stage: &Stage) -> v1::Stage {
         work: match stage.work {
             Work::Track => v1::Work::Track,
             Work::Certify => v1::Work::Certify,
+            Work::LocalDimension => v1::Work::LocalDimension,
         }
         .into(),
         homotopy: Some(homotopy(&stage.homotopy)),
@@ -110,6 +111,11 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             correction: fit.correction,
         }),
         certification: r.certification.as_ref().map(certification),
+        local_dimension: r.local_dimension.as_ref().map(|found| v1::LocalDimension {
+            dual_dimensions: found.dual_dimensions.clone(),
+            bound: found.bound,
+            margin: found.margin,
+        }),
     }
 }
 

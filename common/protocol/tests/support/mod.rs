@@ -3,7 +3,9 @@
 
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::{AskedFit, Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::{
+    AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
+};
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::{Preset, Settings};
@@ -361,6 +363,11 @@ impl Draw {
                 correction: draw.number().abs(),
             }),
             certification: self.some(Self::certification),
+            local_dimension: self.some(|draw| LocalDimension {
+                dual_dimensions: draw.many(5, |draw| 1 + draw.index(9)),
+                bound: draw.0.bits(),
+                margin: draw.number().abs(),
+            }),
         }
     }
 }

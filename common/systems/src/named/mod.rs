@@ -6,7 +6,7 @@ mod singular;
 
 pub use benchmarks::{cyclic, eco, katsura, noon, reimer};
 pub use nine_point::{FourBar, NINE_POINT_SOLUTIONS, nine_point, random_four_bar};
-pub use singular::{caprasse, griewank_osborne};
+pub use singular::{caprasse, griewank_osborne, hyperbola_in_a_plane, kss, ojika_1};
 
 use crate::expression::{Expressions, NodeId};
 use crate::system::{System, VariableGroup};
@@ -120,6 +120,7 @@ mod tests {
             assert_eq!(sizes(&katsura(n)), (n + 1, n + 1));
         }
         assert_eq!(sizes(&caprasse()), (4, 4));
+        assert_eq!(sizes(&kss(5)), (5, 5));
         assert_eq!(sizes(&griewank_osborne()), (2, 2));
         assert_eq!(katsura(10).finite_solutions, Some(1024));
         assert_eq!(cyclic(5).finite_solutions, Some(70));
@@ -149,6 +150,12 @@ mod tests {
         // known, but a multiple of the first equation's must fail.
         assert!(!vanishes(&reimer(2), &real(&[(3, 4), (1, 4)])));
         assert!(vanishes(&griewank_osborne(), &real(&[(0, 1), (0, 1)])));
+        assert!(vanishes(&kss(5), &real(&[(1, 1); 5])));
+        for point in [[(1, 1), (2, 1)], [(-3, 1), (-6, 1)]] {
+            assert!(vanishes(&ojika_1(), &real(&point)));
+        }
+        let on_the_curve = real(&[(0, 1), (5, 1), (1, 5)]);
+        assert!(vanishes(&hyperbola_in_a_plane(), &on_the_curve));
         // Cyclic 4 has the curve (a, b, -a, -b) with a^2 b^2 = 1.
         assert!(vanishes(
             &cyclic(4),

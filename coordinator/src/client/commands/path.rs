@@ -144,6 +144,7 @@ fn verdict_name(verdict: Verdict) -> &'static str {
         Verdict::Failed => "failed",
         Verdict::AtInfinity => "at infinity",
         Verdict::Excess => "excess: no solution before randomisation",
+        Verdict::PositiveDimensional => "on a positive-dimensional set",
         Verdict::Singular => "singular",
         Verdict::Finite => "finite",
     }

@@ -160,6 +160,10 @@ pub fn answer(summary: &Summary) -> String {
         ),
         (false, n) => format!("{}, {} singular", counted(s.distinct, "solution"), count(n)),
     };
+    let also = s.positive_dimensional == Some(true);
+    if also && s.distinct == 0 {
+        return "no isolated solution, but a positive-dimensional solution set".to_owned();
+    }
     match s.real {
         Some(n) if n == s.distinct && n > 1 => answer.push_str(", all real"),
         Some(n) if s.distinct > 0 => {
@@ -167,12 +171,15 @@ pub fn answer(summary: &Summary) -> String {
         }
         _ => {}
     }
+    if also {
+        answer.push_str(", and a positive-dimensional set");
+    }
     answer
 }
 
 fn paths_block(lines: &mut Lines, summary: &Summary) {
     let p = &summary.paths;
-    let undecided = "not decided in this version; such paths are counted in the next class";
+    let undecided = "not decided; such paths are counted in the next class";
     let classes = [
         (
             "failed",

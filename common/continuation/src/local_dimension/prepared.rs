@@ -1,0 +1,123 @@
+//! PreparedLocalDimension: a stage that asks of stored endpoints whether they are isolated.
+
+use super::candidates::{Candidate, EXTRA, from_stored};
+use super::local_dimension;
+use crate::asked_system::AskedSystem;
+use crate::chart::Chart;
+use crate::homotopies::HomotopyKind;
+use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use crate::stage::PrepareError;
+use crate::start_points::{Digest, StartPoints, StoredPoints};
+use crate::tracker::outcome::PathOutcome;
+use crate::work::Stage;
+use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The equations that are asked, and the endpoints.
+#[derive(Debug)]
+pub struct PreparedLocalDimension {
+    asked: AskedSystem,
+    candidates: Vec<Candidate>,
+}
+
+impl PreparedLocalDimension {
+    /// Checks that stage, endpoints and system fit, and compiles.
+    pub fn new(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<Self, PrepareError> {
+        system.check()?;
+        let misfit = |what: &str| PrepareError::StartPoints(what.to_string());
+        let StartPoints::Stored { object, count } = &stage.start_points else {
+            return Err(misfit("endpoints to look at are stored"));
+        };
+        let stored = objects(*object).ok_or(PrepareError::MissingObject(*object))?;
+        if stored.len() as u64 != *count || stored.dimension != system.variable_count() + EXTRA {
+            return Err(misfit(
+                "endpoints have the system's variables and two numbers more",
+            ));
+        }
+        let (given, targets) = match &stage.homotopy {
+            HomotopyKind::StraightLine { parameters }
+            | HomotopyKind::PathVariable { parameters } => (std::slice::from_ref(parameters), 1),
+            HomotopyKind::Parameter { targets, .. } => (targets.as_slice(), targets.len() as u64),
+        };
+        let expected = system.parameters.len();
+        for values in given {
+            if values.len() != expected {
+                return Err(PrepareError::Parameters {
+                    what: "parameters of the endpoints",
+                    found: values.len(),
+                    expected,
+                });
+            }
+        }
+        let candidates: Vec<Candidate> = (0..stored.len())
+            .map(|index| from_stored(&stored, index).filter(|c| c.target < targets))
+            .collect::<Option<_>>()
+            .ok_or_else(|| misfit("an endpoint's accuracy, bound or target is none"))?;
+        let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
+        let found = degrees(system).map_err(wrong)?;
+        check_homogeneous(system, &found).map_err(wrong)?;
+        let chart = Chart::new(system, stage.seed);
+        Ok(Self {
+            asked: AskedSystem::new(system, &found, &stage.homotopy, chart, stage.seed),
+            candidates,
+        })
+    }
+
+    /// Number of endpoints.
+    pub fn items(&self) -> u64 {
+        self.candidates.len() as u64
+    }
+
+    /// Number of coordinates of the chart.
+    pub fn dimension(&self) -> usize {
+        self.asked.chart().dimension()
+    }
+
+    /// The dual spaces at these endpoints.
+    ///
+    /// # Panics
+    /// When `items` reaches beyond the stage.
+    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+        items.map(|item| self.look(item)).collect()
+    }
+
+    fn look(&self, item: u64) -> PathResult {
+        let candidate = &self.candidates[item as usize];
+        let chart = self.asked.chart();
+        let point = chart.from_variables(&candidate.values);
+        let found = point
+            .as_ref()
+            .map(|point| local_dimension(&self.asked, candidate.target, point, candidate.question));
+        // A patch that misses the point, with probability 0, leaves it undecided.
+        let mut endpoint = point.map_or_else(Vec::new, |point| chart.homogeneous(&point));
+        if endpoint.is_empty() {
+            endpoint.push(Complex64::default());
+        } else {
+            chart.normalize(&mut endpoint);
+        }
+        PathResult {
+            origin: PathIndex(item),
+            attempt: 0,
+            outcome: PathOutcome::Singular,
+            endpoint: Coordinates::Double(endpoint),
+            t: Complex64::default(),
+            residual: 0.0,
+            condition: f64::INFINITY,
+            accuracy: candidate.question.accuracy,
+            winding_number: None,
+            infinity_turns: Vec::new(),
+            precision_bits: 53,
+            counts: Counts::default(),
+            asked: None,
+            certification: None,
+            local_dimension: found,
+        }
+    }
+}

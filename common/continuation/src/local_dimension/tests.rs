@@ -1,0 +1,105 @@
+//! Known multiplicities and dimensions, at exact points and at points that are a little off.
+
+use super::*;
+use crate::chart::Chart;
+use crate::homotopies::HomotopyKind;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_systems::polynomial::degrees;
+use cognate_systems::system::System;
+
+fn read(text: &str) -> System {
+    let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
+    match cognate_systems::formats::read("test", text.as_bytes()) {
+        Ok(problem) => problem.system,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Dimensions of the dual spaces at a point given by real values, moved by about `error`.
+fn tower(system: &System, at: &[f64], bound: u64, error: f64, seed: u64) -> LocalDimension {
+    let chart = Chart::new(system, seed);
+    let values: Vec<Complex64> = at.iter().map(|&x| Complex64::new(x, 0.0)).collect();
+    let mut point = chart
+        .from_variables(&values)
+        .expect("a patch that meets it");
+    let mut random = RandomStream::new(seed, Purpose::Test, 3);
+    for z in &mut point {
+        *z += random.disc() * error;
+    }
+    let kind = HomotopyKind::StraightLine {
+        parameters: Vec::new(),
+    };
+    let found = degrees(system).expect("polynomials");
+    let asked = AskedSystem::new(system, &found, &kind, chart, seed);
+    let question = Question {
+        accuracy: error,
+        bound,
+        depth: 30,
+    };
+    local_dimension(&asked, 0, &point, question)
+}
+
+fn check(what: &str, system: &System, at: &[f64], bound: u64, expected: &[u32]) {
+    for (seed, error) in [(1, 0.0), (2, 1e-12), (3, 1e-10), (4, 1e-9), (5, 1e-8)] {
+        let found = tower(system, at, bound, error, seed);
+        assert_eq!(
+            found.dual_dimensions, expected,
+            "{what} off by {error}: {found:?}"
+        );
+        assert!(found.margin > 3.0, "{what} off by {error}: {found:?}");
+    }
+}
+
+#[test]
+fn multiple_points_stop_at_their_multiplicity() {
+    let power = read("variable_group x; function f; f = (x - 10)^6;");
+    check("(x - 10)^6", &power, &[10.0], 6, &[1, 2, 3, 4, 5, 6, 6]);
+    let griewank = read("variable_group x, y; function f, g; f = 29/16*x^3 - 2*x*y; g = y - x^2;");
+    check("Griewank-Osborne", &griewank, &[0.0, 0.0], 3, &[1, 2, 3, 3]);
+    // ojika-1 (Ojika 1987): a triple root at (1, 2), and a simple one at (-3, -6).
+    let ojika = read("variable_group x, y; function f, g; f = x^2 + y - 3; g = x + y^2/8 - 3/2;");
+    check("ojika-1", &ojika, &[1.0, 2.0], 3, &[1, 2, 3, 3]);
+    // Four quadrics that begin with order 2: Hilbert function 1, 4, 6, 4, 1.
+    let kss = read(
+        "variable_group a, b, c, d, e; function f1, f2, f3, f4, f5; S = a + b + c + d + e; \
+         f1 = a^2 + S - 2*a - 4; f2 = b^2 + S - 2*b - 4; f3 = c^2 + S - 2*c - 4; \
+         f4 = d^2 + S - 2*d - 4; f5 = e^2 + S - 2*e - 4;",
+    );
+    let expected = [1, 5, 11, 15, 16, 16];
+    check("kss-5", &kss, &[1.0; 5], 16, &expected);
+    let regular = read("variable_group x, y; function f, g; f = x^2 - y; g = x*y - 1;");
+    check("regular", &regular, &[1.0, 1.0], 1, &[1, 1]);
+}
+
+#[test]
+fn on_curves_and_surfaces_the_dimension_outgrows_every_bound() {
+    // The curve x = 0, y z = 1.
+    let curve = read("variable_group x, y, z; function f, g, h; f = x*y; g = x*z; h = y*z - 1;");
+    check("a curve", &curve, &[0.0, 2.0, 0.5], 1, &[1, 2, 3]);
+    check("a curve", &curve, &[0.0, 2.0, 0.5], 4, &[1, 2, 3, 4, 5]);
+    // A double plane: x^2 twice, in three variables.
+    let plane =
+        read("variable_group x, y, z; function f, g, h; f = x^2; g = x^2*y; h = x^2 + x^3;");
+    check("a double plane", &plane, &[0.0, 0.3, -0.7], 2, &[1, 4, 9]);
+    // Cyclic 4 on its curve (a, b, -a, -b) with a^2 b^2 = 1.
+    let cyclic = cognate_systems::named::cyclic(4).system;
+    check("cyclic-4", &cyclic, &[2.0, 0.5, -2.0, -0.5], 1, &[1, 2, 3]);
+    // Four of the curves' points are multiple in the scheme: (1, 1, -1, -1).
+    let found = tower(&cyclic, &[1.0, 1.0, -1.0, -1.0], 2, 1e-10, 3);
+    assert!(
+        found.dual_dimensions.windows(2).all(|w| w[0] < w[1]),
+        "{found:?}"
+    );
+}
+
+/// What the accuracy cannot tell apart is said to be so.
+#[test]
+fn what_lies_at_the_border_of_the_accuracy_has_a_small_margin() {
+    // Two simple roots at distance 1e-7 are a double one to an accuracy of 1e-8.
+    let near = read("variable_group x; function f; f = x*(x - 1/10000000);");
+    let found = tower(&near, &[0.0], 1, 3e-9, 1);
+    assert!(found.margin < 3.0, "{found:?}");
+    let found = tower(&near, &[0.0], 1, 1e-13, 1);
+    assert_eq!(found.dual_dimensions, [1, 1]);
+    assert!(found.margin > 3.0, "{found:?}");
+}

@@ -1,0 +1,129 @@
+//! Singular endpoints: isolated with their multiplicity, or on a positive-dimensional set.
+
+use crate::check::{Answer, SEEDS, check, complaints, solve};
+use crate::singular_endpoints::multiplicities;
+use cognate_algorithms::PlanOptions;
+use cognate_systems::named::{cyclic, hyperbola_in_a_plane, kss, ojika_1};
+use cognate_systems::system::System;
+use cognate_tests::systems::written;
+
+fn check_default(name: &str, system: &System, answer: Answer) {
+    check(name, system, &PlanOptions::default(), answer);
+}
+
+/// Ten seeds; multiplicities of all solutions, ascending, and no doubt about them.
+fn check_multiplicities(name: &str, system: &System, answer: Answer, expected: &[u64]) {
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(system, &options, &|_| None);
+        let wrong = complaints(&sets[0], &answer);
+        assert!(wrong.is_empty(), "{name}, seed {seed}:{wrong}");
+        assert_eq!(multiplicities(&sets[0]), expected, "{name}, seed {seed}");
+        // The dual space has as many dimensions as paths end there, and every point is decided.
+        for said in &sets[0].warnings {
+            let about_them = said.contains("isolated") || said.contains("multiplicit");
+            assert!(!about_them, "{name}, seed {seed}: {said}");
+        }
+    }
+}
+
+/// 17 points of 32 paths.
+#[test]
+fn kss_5_has_a_point_of_multiplicity_16() {
+    let answer = Answer {
+        paths: 32,
+        nonsingular: 16,
+        singular_paths: 16,
+        singular: Some(1),
+        ..Answer::default()
+    };
+    let mut expected = vec![1; 16];
+    expected.push(16);
+    check_multiplicities("kss-5", &kss(5).system, answer, &expected);
+}
+
+#[test]
+fn ojika_1_has_a_triple_and_a_simple_point() {
+    let answer = Answer {
+        paths: 4,
+        nonsingular: 1,
+        singular_paths: 3,
+        singular: Some(1),
+        real: Some(Some(2)),
+        ..Answer::default()
+    };
+    check_multiplicities("ojika-1", &ojika_1().system, answer, &[1, 3]);
+}
+
+/// Multiplicity and winding number 6.
+#[test]
+fn a_sixth_power_has_a_point_of_multiplicity_6() {
+    let system = written("variable_group x; function f; f = (x - 10)^6;");
+    let answer = Answer {
+        paths: 6,
+        singular_paths: 6,
+        singular: Some(1),
+        real: Some(Some(1)),
+        ..Answer::default()
+    };
+    check_multiplicities("(x - 10)^6", &system, answer, &[6]);
+    let options = PlanOptions::default();
+    let (_, sets) = solve(&system, &options, &|_| None);
+    assert_eq!(sets[0].solutions[0].cycles, [6]);
+}
+
+/// Two curves and no isolated point (Björck and Fröberg 1991): every path ends on a curve, or at
+/// infinity.
+#[test]
+fn cyclic_4_has_no_isolated_solution() {
+    let system = cyclic(4).system;
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+        let found = (paths.failed, counts.distinct, counts.positive_dimensional);
+        assert_eq!(found, (0, 0, Some(true)), "seed {seed}: {paths:?}");
+        assert!(paths.positive_dimensional > Some(0), "seed {seed}");
+        assert_eq!(paths.sum(), 24, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_hyperbola_in_a_plane_is_no_isolated_solution() {
+    let system = hyperbola_in_a_plane().system;
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+        let found = (paths.failed, counts.distinct, counts.positive_dimensional);
+        assert_eq!(found, (0, 0, Some(true)), "seed {seed}: {paths:?}");
+        assert_eq!(paths.sum(), 8, "seed {seed}");
+    }
+}
+
+/// A line, and a point beside it: x (x - 1) = 0, x (y - 2) = 0 holds on x = 0 and at (1, 2).
+#[test]
+fn a_point_beside_a_line_is_told_from_it() {
+    let system = written("variable_group x, y; function f, g; f = x*(x - 1); g = x*(y - 2);");
+    check_default(
+        "a line and a point",
+        &system,
+        Answer {
+            paths: 4,
+            nonsingular: 1,
+            positive_dimensional: 2,
+            at_infinity: 1,
+            real: Some(Some(1)),
+            ..Answer::default()
+        },
+    );
+}
