@@ -594,8 +594,11 @@ impl PathAlgorithm for MonodromySolve {
                 Phase::Arrive(solve) => {
                     let next = solve.next();
                     return match next {
-                        // The object of the first stage; repetitions name it again.
-                        Next::Open(opening) if opening.stage.attempt == 0 => {
+                        // The object of the first stage; repetitions name it again, and other
+                        // work brings its own.
+                        Next::Open(opening)
+                            if opening.stage.attempt == 0 && opening.stage.work == Work::Track =>
+                        {
                             let points = self.arriving_points();
                             Next::Open(Box::new(Opening {
                                 objects: vec![Arc::new(points)],
