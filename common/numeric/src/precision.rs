@@ -28,7 +28,7 @@ pub fn rungs(lowest: u32, highest: u32) -> impl Iterator<Item = u32> {
                 double => double,
             },
         };
-        (next <= highest).then_some(next)
+        (next > bits && next <= highest).then_some(next)
     })
 }
 
