@@ -8,6 +8,8 @@ use super::{HomotopyKind, ParameterPath};
 use crate::chart::{Chart, exact};
 use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::total_degree::TotalDegree;
+use cognate_machine_code::{Elimination, Evaluator};
+use cognate_numeric::lanes::dispatch::InstructionSet;
 use cognate_numeric::linear_algebra::lu::pivot_order;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -31,6 +33,8 @@ pub(crate) enum StartSystem {
 #[derive(Debug)]
 pub struct Homotopy {
     program: Interpreter,
+    evaluator: Evaluator,
+    elimination: Elimination,
     chart: Chart,
     path: ParameterPath,
     /// Parameters of the program at t = 1.
@@ -199,13 +203,27 @@ impl Homotopy {
                 sample(x, &p);
             }
         }
+        let program = program.with_row_order(&pivot_order(&samples));
+        let instructions = InstructionSet::detect();
         Self {
-            program: program.with_row_order(&pivot_order(&samples)),
+            evaluator: Evaluator::new(program.clone(), instructions),
+            elimination: Elimination::new(dimension, instructions),
+            program,
             chart,
             path: ParameterPath { arc },
             start,
             targets,
         }
+    }
+
+    /// The same program, as machine code where this machine allows it.
+    pub fn evaluator(&self) -> &Evaluator {
+        &self.evaluator
+    }
+
+    /// Elimination of matrices [J | H | H_t] of this homotopy.
+    pub fn elimination(&self) -> &Elimination {
+        &self.elimination
     }
 
     /// The program of H and its derivatives.

@@ -19,11 +19,11 @@ use crate::predictor::hermite::{POINTS, weights};
 use crate::refine::Refiner;
 use crate::stage::PreparedStage;
 use crate::step_control::next_step;
-use cognate_numeric::linear_algebra::lu::eliminate;
+use cognate_machine_code::Evaluator;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::{Complex, Mask, Real};
-use cognate_systems::evaluation::{Evaluate, Interpreter};
+use cognate_systems::evaluation::Evaluate;
 use num_complex::Complex64;
 
 /// A step is accepted when the second Newton correction is at most this part of the first.
@@ -139,7 +139,7 @@ pub(super) struct Lockstep<'a, R: Real> {
     settings: Settings,
     batch: Batch<R>,
     lanes: Vec<Lane>,
-    scratch: <Interpreter as Evaluate<R>>::Scratch,
+    scratch: <Evaluator as Evaluate<R>>::Scratch,
     matrix: Matrix<R>,
     p: Vec<Complex<R>>,
     dp: Vec<Complex<R>>,
@@ -180,7 +180,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             settings: room.settings(),
             batch: Batch::new(context, n, parameters),
             lanes: vec![Lane::default(); R::WIDTH],
-            scratch: Evaluate::<R>::scratch(homotopy.program(), context),
+            scratch: Evaluate::<R>::scratch(homotopy.evaluator(), context),
             matrix: Matrix::zeros(context, n, n + 2),
             p: vec![Complex::zero(context); parameters],
             dp: vec![Complex::zero(context); parameters],
@@ -301,22 +301,26 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let mut size = control(0.0);
         for (round, correction) in corrections.iter_mut().enumerate() {
             if round == 0 {
-                homotopy.program().jacobian(
+                homotopy.evaluator().jacobian(
                     &batch.candidate,
                     &self.p,
                     &mut self.matrix,
                     &mut self.scratch,
                 );
-                eliminate::<R, 1>(&mut self.matrix, &mut batch.exchanges);
+                homotopy
+                    .elimination()
+                    .eliminate::<R, 1>(&mut self.matrix, &mut batch.exchanges);
             } else {
-                homotopy.program().linearize(
+                homotopy.evaluator().linearize(
                     &batch.candidate,
                     &self.p,
                     &self.dp,
                     &mut self.matrix,
                     &mut self.scratch,
                 );
-                eliminate::<R, 2>(&mut self.matrix, &mut batch.exchanges);
+                homotopy
+                    .elimination()
+                    .eliminate::<R, 2>(&mut self.matrix, &mut batch.exchanges);
             }
             size = control(LEAST_NORM * LEAST_NORM);
             for i in 0..n {
