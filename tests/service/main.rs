@@ -5,6 +5,7 @@ mod bad_input;
 mod certificates;
 mod coordinator_restarted;
 mod lease_expired;
+mod monodromy;
 mod report_repeated;
 mod stranger;
 mod submit_to_result;

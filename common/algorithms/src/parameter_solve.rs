@@ -2,21 +2,36 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::retried_stage::RetriedStage;
-use crate::{Certifiable, Next, PathAlgorithm, Progress};
+use crate::{Certifiable, Next, Opening, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::work::{Stage, StageId};
-use cognate_solutions::classification::Tolerances;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::{Tolerances, Verdict, classify};
+use cognate_solutions::path_crossing::radius;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
+use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Many targets in one stage: item i starts at start point `i % starts` and
 /// goes to target `i / starts`. Crossings are looked for within each target.
+///
+/// With a symmetry group the images of what was found are solutions too. Those
+/// that no path arrived at belong to paths that failed: they are followed on
+/// the spot in the place of these (Wampler, Morgan, Sommese 1992 switch to
+/// another member of the orbit where one runs far out).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterSolve {
     paths: RetriedStage,
+    /// The symmetry of the family, where there is any.
+    group: SymmetryGroup,
+    /// Targets that were looked at for what the symmetry says is missing.
+    completed: usize,
 }
 
 impl ParameterSolve {
@@ -25,7 +40,11 @@ impl ParameterSolve {
     /// # Panics
     /// When it is no parameter homotopy, or has no target.
     pub fn new(first: Stage, system: &System, tolerances: Tolerances) -> Self {
-        Self::with_shape(first, &PointShape::of(system), tolerances)
+        let solve = Self::with_shape(first, &PointShape::of(system), tolerances);
+        match SymmetryGroup::of(system) {
+            Ok(group) => solve.with_group(group),
+            Err(_) => solve,
+        }
     }
 
     /// The same, where only the shape of the system's points is at hand.
@@ -39,7 +58,15 @@ impl ParameterSolve {
         let count = targets.len() as u64;
         Self {
             paths: RetriedStage::with_shape(first, shape.clone(), tolerances, count),
+            group: SymmetryGroup::trivial(),
+            completed: 0,
         }
+    }
+
+    /// The same with a symmetry group of the family.
+    #[must_use]
+    pub fn with_group(self, group: SymmetryGroup) -> Self {
+        Self { group, ..self }
     }
 
     /// The same with another limit of repetitions.
@@ -55,9 +82,88 @@ impl ParameterSolve {
     }
 }
 
+impl ParameterSolve {
+    fn targets(&self) -> &[Vec<Complex64>] {
+        match &self.paths.first().homotopy {
+            HomotopyKind::Parameter { targets, .. } => targets,
+            _ => unreachable!("checked when it was made"),
+        }
+    }
+
+    /// A stage that stays at one target: in the place of paths that failed it starts at what the
+    /// symmetry says is missing.
+    fn completion(&self, target: usize) -> Option<Opening> {
+        if self.group.is_trivial() {
+            return None;
+        }
+        let (shape, tolerances) = (self.paths.shape(), self.paths.tolerances());
+        let results = self.paths.results_of(target);
+        let mut failed = Vec::new();
+        let mut found: Vec<(Vec<Complex64>, f64)> = Vec::new();
+        for result in results {
+            match classify(result, shape, tolerances).verdict {
+                Verdict::Finite => found.push((
+                    shape.to_variables(result.endpoint.to_double()),
+                    radius(result, tolerances),
+                )),
+                Verdict::Failed => failed.push(result.origin.0),
+                _ => {}
+            }
+        }
+        if failed.is_empty() || found.is_empty() {
+            return None;
+        }
+        let found: Vec<(&[Complex64], f64)> = found.iter().map(|(v, r)| (&v[..], *r)).collect();
+        let group = self.group.seen_at(&found, shape).ok()?;
+        let missing = group.missing(&found, shape, self.paths.first().seed);
+        failed.truncate(missing.len());
+        if failed.is_empty() {
+            return None;
+        }
+        let dimension = found[0].0.len();
+        let mut coordinates = vec![Complex64::default(); results.len() * dimension];
+        for (path, point) in failed.iter().zip(missing) {
+            let place = *path as usize % results.len() * dimension;
+            coordinates[place..place + dimension].copy_from_slice(&point);
+        }
+        let points = Arc::new(StoredPoints {
+            dimension,
+            coordinates,
+        });
+        let stage = Stage {
+            homotopy: HomotopyKind::Parameter {
+                start: self.targets()[target].clone(),
+                targets: self.targets().to_vec(),
+            },
+            start_points: StartPoints::Selected {
+                base: Box::new(points.as_start()),
+                indices: failed,
+            },
+            // Other patches: what lay badly in the first may lie well here.
+            seed: RandomStream::new(self.paths.first().seed, Purpose::Loop, target as u64).bits(),
+            ..self.paths.first().clone()
+        };
+        Some(Opening {
+            stage,
+            objects: vec![points],
+        })
+    }
+}
+
 impl PathAlgorithm for ParameterSolve {
     fn next(&mut self) -> Next {
-        self.paths.next_stage()
+        loop {
+            match self.paths.next_stage() {
+                Next::Done if self.completed < self.targets().len() => {
+                    let target = self.completed;
+                    self.completed += 1;
+                    if let Some(opening) = self.completion(target) {
+                        return self.paths.open_last(opening);
+                    }
+                }
+                next => return next,
+            }
+        }
     }
 
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
@@ -77,13 +183,98 @@ impl PathAlgorithm for ParameterSolve {
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        let HomotopyKind::Parameter { targets, .. } = &self.paths.first().homotopy else {
-            unreachable!("checked when it was made");
-        };
-        targets
+        self.targets()
             .iter()
             .enumerate()
             .map(|(k, parameters)| self.paths.solution_set(k, system, parameters, false))
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run_locally::drive;
+    use cognate_continuation::path_result::PathResult;
+    use cognate_continuation::stage::PreparedStage;
+    use cognate_continuation::start_points::Digest;
+    use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+    use cognate_continuation::tracker::settings::Settings;
+    use cognate_continuation::work::Work;
+    use std::collections::HashMap;
+
+    /// x^4 = p with x and i x alike: from p = 1 to 16 and to i.
+    fn solve() -> (System, ParameterSolve, Arc<StoredPoints>) {
+        let text = r#"{"variables": ["x"], "parameters": ["p"], "equations": ["x^4 - p"],
+            "symmetry": [{"map": {"x": "I*x"}}]}"#;
+        let system = match cognate_systems::formats::read("test", text.as_bytes()) {
+            Ok(problem) => problem.system,
+            Err(error) => panic!("{error}"),
+        };
+        let number = |re, im| Complex64::new(re, im);
+        let points = Arc::new(StoredPoints {
+            dimension: 1,
+            coordinates: vec![
+                number(1.0, 0.0),
+                number(0.0, 1.0),
+                number(-1.0, 0.0),
+                number(0.0, -1.0),
+            ],
+        });
+        let first = Stage {
+            id: StageId(0),
+            work: Work::Track,
+            homotopy: HomotopyKind::Parameter {
+                start: vec![number(1.0, 0.0)],
+                targets: vec![vec![number(16.0, 0.0)], vec![number(0.0, 1.0)]],
+            },
+            start_points: points.as_start(),
+            settings: Settings::default(),
+            seed: 3,
+            attempt: 0,
+        };
+        let solve = ParameterSolve::new(first, &system, Tolerances::default());
+        (system, solve, points)
+    }
+
+    /// Runs it with a tracker that loses these paths whenever they are followed from the start.
+    fn run(lost: &[u64]) -> (Vec<SolutionSet>, usize) {
+        let (system, mut solve, points) = solve();
+        let mut objects = HashMap::from([(points.digest(), Arc::clone(&points))]);
+        let mut stages = 0;
+        let done: Result<(), std::convert::Infallible> = drive(&mut solve, &mut |opening| {
+            let made = opening.objects.iter();
+            objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+            let find = |digest: Digest| objects.get(&digest).cloned();
+            let prepared = PreparedStage::new(&system, &opening.stage, &find).unwrap();
+            let mut results: Vec<PathResult> = prepared.track(0..prepared.items(), 8);
+            stages += 1;
+            if opening.stage.start_points.object() == Some(points.digest()) {
+                for result in results.iter_mut().filter(|r| lost.contains(&r.origin.0)) {
+                    result.outcome = PathOutcome::Failed(Failure::TooManySteps);
+                }
+            }
+            Ok(results)
+        });
+        assert_eq!(done, Ok(()));
+        (solve.solution_sets(&system), stages)
+    }
+
+    #[test]
+    fn what_the_symmetry_names_takes_the_place_of_paths_that_failed() {
+        let (clean, stages) = run(&[]);
+        assert_eq!(stages, 1);
+        let (completed, stages) = run(&[1, 2, 7]);
+        // Three repetitions, then one completion for each target.
+        assert_eq!(stages, 1 + 3 + 2);
+        for (clean, completed) in clean.iter().zip(&completed) {
+            assert!(clean.settled() && completed.settled());
+            assert_eq!((completed.paths.total, completed.paths.finite), (4, 4));
+            assert_eq!(completed.counts.distinct, 4);
+            assert_eq!(completed.classes.complete, Some(1));
+        }
+        // Nothing is left to go on from.
+        let (none, _) = run(&[0, 1, 2, 3]);
+        assert_eq!((none[0].paths.failed, none[1].paths.failed), (4, 0));
     }
 }

@@ -115,6 +115,42 @@ impl RetriedStage {
         &self.results
     }
 
+    /// The last results of one target's paths so far.
+    pub fn results_of(&self, target: usize) -> &[PathResult] {
+        let size = self.paths_per_target as usize;
+        let all = self.results.get(target * size..(target + 1) * size);
+        all.unwrap_or(&[])
+    }
+
+    /// How its points are laid out.
+    pub fn shape(&self) -> &PointShape {
+        &self.shape
+    }
+
+    /// By what its verdicts are reached.
+    pub fn tolerances(&self) -> &Tolerances {
+        &self.tolerances
+    }
+
+    /// Opens a stage of another making, after all repetitions: its results stand in the place of
+    /// those of the paths that it names as origins, and none is tracked again.
+    pub fn open_last(&mut self, opening: Opening) -> Next {
+        let number = self.stages.len();
+        let stage = Stage {
+            id: StageId(self.first.id.0 + number as u32),
+            attempt: self.max_retries.max(number as u16) + 1,
+            ..opening.stage
+        };
+        self.stages.push(StageProgress {
+            id: stage.id,
+            work: stage.work,
+            attempt: stage.attempt,
+            items: stage.items().expect("selected paths can be counted"),
+            absorbed: false,
+        });
+        Next::Open(Box::new(Opening { stage, ..opening }))
+    }
+
     /// What is wanted next.
     pub fn next_stage(&mut self) -> Next {
         if self.stages.iter().any(|stage| !stage.absorbed) {
@@ -342,6 +378,9 @@ impl RetriedStage {
                 stage.items
             ),
             Some(stage) if stage.attempt == 0 => format!("{what}: tracking {} paths", stage.items),
+            Some(stage) if stage.attempt > self.max_retries => {
+                format!("{what}: completing {} paths by symmetry", stage.items)
+            }
             Some(stage) => format!(
                 "{what}: tracking {} paths again, more carefully ({} of {})",
                 stage.items, stage.attempt, self.max_retries

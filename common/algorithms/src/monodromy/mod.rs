@@ -494,7 +494,8 @@ impl MonodromySolve {
             start: base.parameters.clone(),
             targets: self.targets.clone(),
         };
-        let solve = ParameterSolve::with_shape(stage, &self.shape, self.tolerances.clone());
+        let solve = ParameterSolve::with_shape(stage, &self.shape, self.tolerances.clone())
+            .with_group(self.group.clone());
         self.warn_of_the_end();
         self.phase = Phase::Arrive(Box::new(solve.with_max_retries(self.max_retries)));
     }
@@ -535,8 +536,9 @@ impl MonodromySolve {
         let most = more.map(|vertex| vertex.points.len()).max().unwrap_or(0);
         if most > known && counts.stop != Some(Stop::Count) {
             warnings.push(format!(
-                "other generic parameters have {most} classes of solutions, the base {known}: \
-                 solutions are missing"
+                "at other generic parameters {most} classes of solutions were counted, at the base \
+                 {known}: some are missing, or one was counted twice where a map of the symmetry \
+                 is badly conditioned"
             ));
         }
         self.warnings.extend(warnings);

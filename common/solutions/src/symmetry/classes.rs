@@ -8,9 +8,6 @@ use crate::summary::ClassCounts;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
-/// Solutions at which the group is looked for: a special one shows only a part of it.
-const TRIED: usize = 32;
-
 /// Gives every solution its class, and counts them; a reason in words where that cannot be done.
 /// A system without generators has no classes.
 pub fn assign(
@@ -27,23 +24,6 @@ pub fn assign(
         .iter()
         .map(|s| s.variables.0.iter().map(|(_, z)| *z).collect())
         .collect();
-    let words = |error: super::SymmetryError| format!("there are no classes: {error}");
-    let mut group = SymmetryGroup::of(system).map_err(words)?;
-    let mut closed = Err(String::new());
-    for values in values.iter().take(TRIED) {
-        let mut here = group.clone();
-        match here.close(values, &shape) {
-            Ok(()) => {
-                if closed.is_err() || here.order() > group.order() {
-                    group = here;
-                }
-                closed = Ok(());
-            }
-            Err(error) if closed.is_err() => closed = Err(words(error)),
-            Err(_) => {}
-        }
-    }
-    closed?;
     let radius = |s: &Solution| {
         let (factor, floor) = match s.singular {
             true => (
@@ -59,6 +39,9 @@ pub fn assign(
         .zip(&*solutions)
         .map(|(values, s)| (values.as_slice(), radius(s)))
         .collect();
+    let words = |error: super::SymmetryError| format!("there are no classes: {error}");
+    let group = SymmetryGroup::of(system).map_err(words)?;
+    let group = group.seen_at(&points, &shape).map_err(words)?;
     let orbits = group.orbits(&points, &shape, seed);
     let whole = orbits.iter().filter(|orbit| {
         let (values, _) = points[orbit[0]];

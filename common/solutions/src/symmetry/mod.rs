@@ -26,6 +26,9 @@ const NUDGE: f64 = 1e-7;
 /// one of its poles says nothing.
 const MOST_MAGNIFIED: f64 = 1e5;
 
+/// Solutions at which a group is looked for.
+const TRIED: usize = 32;
+
 /// Why a group cannot be followed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SymmetryError {
@@ -118,6 +121,56 @@ impl SymmetryGroup {
         }
         self.words = words;
         Ok(())
+    }
+
+    /// The group as these solutions show it: the largest that one of them leads to. A special
+    /// solution, which some element fixes, shows only a part.
+    pub fn seen_at(
+        &self,
+        points: &[(&[Complex64], f64)],
+        shape: &PointShape,
+    ) -> Result<Self, SymmetryError> {
+        let mut best: Option<Self> = None;
+        let mut refused = None;
+        for (values, _) in points.iter().take(TRIED) {
+            let mut here = self.clone();
+            match here.close(values, shape) {
+                Ok(()) if best.as_ref().is_none_or(|b| b.order() < here.order()) => {
+                    best = Some(here);
+                }
+                Ok(()) => {}
+                Err(error) => refused = Some(error),
+            }
+        }
+        match (best, refused) {
+            (Some(group), _) => Ok(group),
+            (None, Some(error)) => Err(error),
+            (None, None) => Ok(self.clone()),
+        }
+    }
+
+    /// Images of these points that are not among them, each once: with a true symmetry of a
+    /// system, solutions that were not found.
+    pub fn missing(
+        &self,
+        points: &[(&[Complex64], f64)],
+        shape: &PointShape,
+        seed: u64,
+    ) -> Vec<Vec<Complex64>> {
+        let mut values: Vec<Vec<Complex64>> = points.iter().map(|(v, _)| v.to_vec()).collect();
+        let mut radii: Vec<f64> = points.iter().map(|(_, radius)| *radius).collect();
+        for (point, radius) in points {
+            for image in self.images(point, shape).into_iter().flatten().skip(1) {
+                if image.magnification <= MOST_MAGNIFIED {
+                    values.push(image.values);
+                    radii.push(radius * 2.0 * image.magnification);
+                }
+            }
+        }
+        let all: Vec<(&[Complex64], f64)> = values.iter().map(Vec::as_slice).zip(radii).collect();
+        let orbits = Self::trivial().orbits(&all, shape, seed);
+        let new = orbits.iter().filter(|orbit| orbit[0] >= points.len());
+        new.map(|orbit| values[orbit[0]].clone()).collect()
     }
 
     fn apply(&self, word: &[u16], values: &[Complex64]) -> Option<Vec<Complex64>> {
@@ -291,6 +344,17 @@ mod tests {
             .map(|k| (0..4).map(|j| k + 5 * j).collect())
             .collect();
         assert_eq!(orbits, expected);
+        // Of the last orbit one is taken away, of the first two.
+        let some: Vec<(&[Complex64], f64)> = (2..19).map(|k| (all[k].as_slice(), 1e-10)).collect();
+        let missing = group.missing(&some, &shape, 3);
+        let near = |a: &[Complex64], b: &[Complex64]| {
+            let (a, b) = (shape.to_coordinates(a), shape.to_coordinates(b));
+            shape.distance(&a, &b) < 1e-12
+        };
+        assert_eq!(missing.len(), 3);
+        for gone in [0, 1, 19] {
+            assert!(missing.iter().any(|point| near(point, &all[gone])));
+        }
     }
 
     #[test]

@@ -1,0 +1,106 @@
+//! A family solved by loops, kept, and solved again from what was kept: as a person types it.
+
+use cognate_tests::cluster::Cluster;
+use serde_json::Value;
+use std::process::Output;
+
+/// Under signs and exchange the 8 solutions are 2 classes of 4.
+const FAMILY: &str = r#"{"variables": ["x", "y"], "parameters": ["p", "q", "r"],
+    "equations": ["x^4 + p*x^2*y^2 + y^4 - q", "x*y - r"]}"#;
+const SYMMETRY: &str =
+    r#"[{"permutation": {"x": "y", "y": "x"}}, {"map": {"x": "-x", "y": "-y"}}]"#;
+/// x^4 + y^4 = 17, x y = 2: (2, 1), (1, 2) and their negatives are real.
+const WANTED: &str = r#"{"p": [0, 0], "q": [17, 0], "r": [2, 0]}"#;
+
+fn summary(output: &Output) -> Value {
+    let (out, errors) = (&output.stdout, String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{errors}");
+    serde_json::from_slice(out).expect("one JSON object, nothing else")
+}
+
+#[test]
+fn a_family_is_solved_once_and_kept() {
+    let cluster = Cluster::with_workers(2);
+    for (name, text) in [
+        ("family.json", FAMILY),
+        ("symmetry.json", SYMMETRY),
+        ("wanted.json", WANTED),
+    ] {
+        std::fs::write(cluster.folder().join(name), text).unwrap();
+    }
+    // On the cluster.
+    let submit = [
+        "submit",
+        "family.json",
+        "--start",
+        "monodromy",
+        "--symmetry",
+        "symmetry.json",
+    ];
+    let job = cluster.command(&submit);
+    let job = String::from_utf8_lossy(&job.stdout).trim().to_string();
+    assert_eq!(cluster.command(&["watch", &job]).status.code(), Some(0));
+    let results = ["results", &job, "--output", "kept", "--format", "json"];
+    let found = summary(&cluster.command(&results));
+    assert_eq!(found["problem"]["start"], "monodromy");
+    assert_eq!(found["paths"]["total"], 8, "{found:#}");
+    assert_eq!(found["solutions"]["nonsingular"], 8);
+    let loops = &found["monodromy"]["loops"];
+    assert_eq!(
+        (&loops["solutions"], &loops["classes"]),
+        (&8.into(), &2.into())
+    );
+    assert_eq!(loops["stop"], "idle-loops");
+    assert!(loops["tracked"].as_u64() > Some(20), "{loops:#}");
+    assert_eq!(found["classes"]["count"], 2);
+    assert_eq!(found["classes"]["complete"], 2);
+    let explained = cluster.command(&["explain", &job]);
+    let explained = String::from_utf8_lossy(&explained.stdout).into_owned();
+    assert!(
+        explained.contains("monodromy: 8 solutions in 2 classes"),
+        "{explained}"
+    );
+
+    // From what was kept to the wanted parameters, in a solve of its own.
+    let again = cluster.command(&[
+        "solve",
+        "family.json",
+        "--start-solutions",
+        "kept/solutions.points",
+        "--start-parameters",
+        "kept/parameters.json",
+        "--target-parameters",
+        "wanted.json",
+        "--format",
+        "json",
+    ]);
+    let again = summary(&again);
+    assert_eq!(again["solutions"]["nonsingular"], 8, "{again:#}");
+    assert_eq!(again["solutions"]["real"], 4);
+    assert_eq!(again["monodromy"], Value::Null);
+    cluster.stop();
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_its_reason() {
+    let cluster = Cluster::with_workers(0);
+    std::fs::write(cluster.folder().join("family.json"), FAMILY).unwrap();
+    let plain = r#"{"variables": ["x"], "equations": ["x^2 - 2"]}"#;
+    std::fs::write(cluster.folder().join("plain.json"), plain).unwrap();
+    for (arguments, reason) in [
+        (
+            &["solve", "plain.json", "--start", "monodromy"][..],
+            "no parameters",
+        ),
+        (
+            &["solve", "family.json", "--idle-loops", "7"],
+            "only goes with --start monodromy",
+        ),
+    ] {
+        let output = cluster.command(arguments);
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{errors}");
+        assert!(errors.contains(reason), "{errors}");
+    }
+    cluster.stop();
+}
