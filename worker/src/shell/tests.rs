@@ -290,7 +290,7 @@ fn lost_replies_lose_no_chunk() {
 fn leases_are_renewed_while_every_thread_tracks() {
     // More threads than cores, and chunks that take much longer than a lease on any machine.
     let cores = Machine::detect().cores;
-    let variables = 13 + cores.div_ceil(2).ilog2() as usize;
+    let variables = 14 + cores.div_ceil(2).ilog2() as usize;
     let coordinator = Arc::new(Coordinator::new(variables, 2, Duration::from_millis(400)));
     let busy = Config {
         threads: 2 * cores,
