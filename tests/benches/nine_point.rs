@@ -1,6 +1,6 @@
 //! Nine-point synthesis from one generic member of the family to another: the tracker's rate.
 //!
-//! `cargo bench -p cognate-tests --bench nine_point`. Every figure is CPU time of the threads that
+//! `cargo bench -p cognate-tests --bench nine_point [-- widths|threads|targets]`. Every figure is CPU time of the threads that
 //! track, all sides of a ratio in turns within this run, the best of the rounds counts. What it
 //! gave, and where: `nine_point.md`.
 
@@ -198,9 +198,10 @@ fn steps(results: &[PathResult]) -> f64 {
 /// Ten targets, each with all representatives, and each again with a hundred times tighter steps.
 fn targets(family: &Family, peak: f64) -> Result<(), Failure> {
     println!(
-        "\n{:>6} {:>6} {:>8} {:>7} {:>6} {:>10} {:>8} {:>9} {:>9} {:>8} {:>10} {:>9}",
+        "\n{:>6} {:>6} {:>6} {:>8} {:>7} {:>6} {:>10} {:>8} {:>9} {:>9} {:>8} {:>10} {:>9}",
         "target",
         "paths",
+        "higher",
         "regular",
         "failed",
         "twice",
@@ -240,12 +241,13 @@ fn targets(family: &Family, peak: f64) -> Result<(), Failure> {
             .iter()
             .filter(|r| matches!(r.outcome, PathOutcome::Failed(_)))
             .count();
+        let higher = results.iter().filter(|r| r.precision_bits > 53).count();
         let count = results.len() as f64;
         let [evaluation, elimination] = flops_of_a_step(&stage);
         let flops = steps(&results) * (evaluation + elimination) / seconds;
         rates.push(count / seconds);
         println!(
-            "{target:>6} {:>6} {:>8} {failed:>7} {:>6} {same:>10} {differ:>8} {:>9.1} {:>9.0} {:>8.1} {:>10.1} {:>9.0}",
+            "{target:>6} {:>6} {higher:>6} {:>8} {failed:>7} {:>6} {same:>10} {differ:>8} {:>9.1} {:>9.0} {:>8.1} {:>10.1} {:>9.0}",
             results.len(),
             points.len(),
             family.duplicates(&points),
@@ -335,7 +337,18 @@ fn main() -> Result<(), Failure> {
         "a stage is prepared in {:.1} ms; flops of a step: {evaluation} evaluation, {elimination} elimination",
         1e3 * (cpu_seconds()? - before)
     );
-    widths(&family)?;
-    threads(&family)?;
-    targets(&family, peak)
+    let only = std::env::args()
+        .nth(1)
+        .filter(|word| !word.starts_with("--"));
+    let wanted = |part: &str| only.as_ref().is_none_or(|only| only == part);
+    if wanted("widths") {
+        widths(&family)?;
+    }
+    if wanted("threads") {
+        threads(&family)?;
+    }
+    if wanted("targets") {
+        targets(&family, peak)?;
+    }
+    Ok(())
 }

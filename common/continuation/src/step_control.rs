@@ -5,7 +5,7 @@
 //! met the target is h (target/e)^(1/q). Roots are taken as chains of square
 //! roots, which are correctly rounded: nothing from libm decides a step.
 
-use crate::predictor::hermite::POINTS;
+use crate::predictor::hermite::{POINTS, at_least};
 use cognate_numeric::scalar::{Mask, Real};
 
 /// The error aimed at, as a part of the largest that is accepted.
@@ -17,7 +17,7 @@ const SHRINKAGE: (f64, f64) = (0.1, 0.5);
 
 /// `h` for the next step. `error` is the size of the first Newton correction, `limit` the largest accepted.
 ///
-/// `known[k]`: whether the predictor had a point k + 1; `may_grow` is false after a rejection.
+/// `known[k]`: whether the predictor could use point k + 1; `may_grow` is false after a rejection.
 #[inline(always)]
 pub fn next_step<C: Real<Context = (), Control = C>>(
     h: &C,
@@ -44,8 +44,8 @@ pub fn next_step<C: Real<Context = (), Control = C>>(
     sixth.sqrt();
     sixth.mul(&eighth);
     let mut factor = half;
-    for (known, root) in known.iter().zip([&quarter, &sixth, &eighth]) {
-        factor.select(*known, root);
+    for (enough, root) in at_least(known).iter().zip([&quarter, &sixth, &eighth]) {
+        factor.select(*enough, root);
     }
     factor.mul(&C::from_f64((), 0.95));
 

@@ -5,7 +5,7 @@
 //! taken in blocks, so that many sums grow side by side and share an operand.
 
 use crate::encoder::VectorSet;
-use crate::executable::{Arrays, Executable, as_lanes_mut, is_there};
+use crate::executable::{Arrays, Executable, as_lanes_mut, vector_set};
 use crate::registers::assemble;
 use crate::routine::{OUTPUT, Operation, Pair, Routine, Step, Sum, Value};
 use cognate_numeric::lanes::Lanes;
@@ -44,13 +44,8 @@ struct Programs<const W: usize>([OnceLock<Option<Vec<Executable<W>>>>; 2]);
 impl Elimination {
     /// For matrices of n rows on this instruction set; by the loop where there is no code.
     pub fn new(n: usize, instruction_set: InstructionSet) -> Self {
-        let set = match instruction_set {
-            InstructionSet::Avx512 => Some(VectorSet::Avx512),
-            InstructionSet::Avx2 => Some(VectorSet::Avx2),
-            InstructionSet::Neon | InstructionSet::Software => None,
-        };
-        let code = set
-            .filter(|&set| is_there(set) && (1..=MOST_ROWS).contains(&n))
+        let code = vector_set(instruction_set)
+            .filter(|_| (1..=MOST_ROWS).contains(&n))
             .map(|set| {
                 Arc::new(Code {
                     set,

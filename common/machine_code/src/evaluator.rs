@@ -4,7 +4,7 @@
 //! made for 8 and 16 lanes, for each program when it is first used.
 
 use crate::encoder::VectorSet;
-use crate::executable::{Arrays, Executable, as_lanes, as_lanes_mut, is_there};
+use crate::executable::{Arrays, Executable, as_lanes, as_lanes_mut, vector_set};
 use crate::lower::{Constants, lower};
 use crate::registers::assemble;
 use cognate_numeric::lanes::Lanes;
@@ -82,17 +82,12 @@ impl Evaluator {
     /// Machine code for this instruction set, if this machine has it and allows code to be made;
     /// else it interprets.
     pub fn new(interpreter: Interpreter, instruction_set: InstructionSet) -> Self {
-        let set = match instruction_set {
-            InstructionSet::Avx512 => Some(VectorSet::Avx512),
-            InstructionSet::Avx2 => Some(VectorSet::Avx2),
-            InstructionSet::Neon | InstructionSet::Software => None,
-        };
         let flops = |program| -> usize {
             let assignments = interpreter.assignments(program);
             assignments.iter().map(|a| a.operation.flops()).sum()
         };
-        let code = set
-            .filter(|&set| is_there(set) && flops(Program::Linearize) <= MOST_FLOPS)
+        let code = vector_set(instruction_set)
+            .filter(|_| flops(Program::Linearize) <= MOST_FLOPS)
             .map(|set| {
                 Arc::new(Code {
                     set,

@@ -32,6 +32,17 @@ pub(crate) fn as_lanes_mut<const W: usize, R: Real>(
     })
 }
 
+/// The code to make for this instruction set; `None` where there is none, or this machine lacks
+/// the instructions.
+pub(crate) fn vector_set(instruction_set: InstructionSet) -> Option<VectorSet> {
+    let set = match instruction_set {
+        InstructionSet::Avx512 => VectorSet::Avx512,
+        InstructionSet::Avx2 => VectorSet::Avx2,
+        InstructionSet::Neon | InstructionSet::Software => return None,
+    };
+    is_there(set).then_some(set)
+}
+
 /// Whether this machine runs code of this set.
 pub(crate) fn is_there(set: VectorSet) -> bool {
     let best = InstructionSet::detect();

@@ -19,6 +19,9 @@ use num_complex::Complex64;
 pub const VERTICES: u32 = 16;
 /// Ratio of successive radii.
 const SHRINKAGE: f64 = 0.125;
+/// Turns after which a path that has not closed is taken further in, twice as many each time: more
+/// often branch points lie inside the radius than the winding number is so large.
+const FIRST_TURNS: u32 = 4;
 /// A power sum counts as 0 below this part of the largest it could be: sheets that end closer
 /// together than about 1e-6 are told apart by a smaller radius only.
 const COALESCED: f64 = 1e-12;
@@ -71,6 +74,8 @@ pub struct Cauchy {
     vertex: u32,
     turns: u32,
     total_turns: u32,
+    /// At how many radii the path did not close.
+    unclosed: u32,
     noise: f64,
     infinity: Vec<Winding>,
     previous: Option<(u32, Vec<Complex64>)>,
@@ -94,13 +99,14 @@ pub(crate) fn distance(x: &[Complex64], y: &[Complex64]) -> f64 {
 impl Cauchy {
     /// Forgets the path before.
     pub fn clear(&mut self) {
-        self.previous = None;
+        self.forget();
         self.total_turns = 0;
     }
 
     /// Forgets the turns, not how many they were.
     pub fn forget(&mut self) {
         self.previous = None;
+        self.unclosed = 0;
     }
 
     /// All turns made for this path.
@@ -185,7 +191,9 @@ impl Cauchy {
         let size = norm(point);
         let closed = (1e-9f64).max(100.0 * self.noise);
         if distance(point, &self.start) > closed * size {
-            if self.turns >= settings.max_winding_number {
+            let patience = FIRST_TURNS << self.unclosed.min(16);
+            if self.turns >= patience.min(settings.max_winding_number) {
+                self.unclosed += 1;
                 self.previous = None;
                 return self.inward(SHRINKAGE, settings);
             }

@@ -21,6 +21,7 @@ use crate::stage::PreparedStage;
 use crate::step_control::next_step;
 use cognate_machine_code::Evaluator;
 use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::precision::{DOUBLE, unit_roundoff};
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::{Complex, Mask, Real};
 use cognate_systems::evaluation::Evaluate;
@@ -35,6 +36,11 @@ const ARRIVED: f64 = 1e-7;
 /// A refinement is accepted when its second correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
 
+/// Part of the way left below which a step speaks of a singularity beside the path: towards one
+/// at its end, steps are a third of the way or so.
+const PASSING: f64 = 0.1;
+/// Part of the endgame's first radius at which the turns begin in any case.
+const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
 /// So many rejections since the last accepted step that only noise explains send a path to the
@@ -44,18 +50,23 @@ const STARVED: u32 = 2;
 /// is not for want of digits.
 const ENDGAME_BITS: u32 = 212;
 
-/// The paths of all lanes: coordinates in the chart, the newest point first.
+/// The paths of all lanes: coordinates in the chart.
+///
+/// The points stand in a ring. Every step fills the oldest slot: in lanes that moved with the new
+/// point, in all others with a copy of the point where they still are, and the slot that was
+/// copied no longer counts there. So nothing is shifted, and which points count in a lane is known
+/// from its own steps alone.
 struct Batch<R: Real> {
     x: [Vec<Complex<R>>; POINTS],
     tangent: [Vec<Complex<R>>; POINTS],
     t: [Complex<R::Control>; POINTS],
-    candidate: Vec<Complex<R>>,
-    candidate_tangent: Vec<Complex<R>>,
+    /// In which lanes a slot's point counts; where a path is, always.
+    known: [R::Mask; POINTS],
+    /// The slot where the paths are.
+    newest: usize,
     target: Complex<R::Control>,
     /// Wanted length of the next step.
     h: R::Control,
-    /// Lanes with at least two, three, ... points behind them.
-    known: [R::Mask; POINTS - 1],
     /// Lanes whose next step has length 0.
     refine: R::Mask,
     /// Lanes whose last step was not rejected.
@@ -73,17 +84,40 @@ impl<R: Real> Batch<R> {
             x: std::array::from_fn(|_| points()),
             tangent: std::array::from_fn(|_| points()),
             t: std::array::from_fn(|_| Complex::from_f64((), 1.0, 0.0)),
-            candidate: points(),
-            candidate_tangent: points(),
+            known: [R::Mask::splat(false); POINTS],
+            newest: 0,
             target: Complex::from_f64((), 1.0, 0.0),
             h: control(0.0),
-            known: [R::Mask::splat(false); POINTS - 1],
             refine: R::Mask::splat(true),
             may_grow: R::Mask::splat(true),
             a: vec![Complex::zero(context); parameters],
             b: vec![Complex::zero(context); parameters],
             exchanges: control(0.0),
         }
+    }
+
+    /// The slot with the points of so many steps ago.
+    #[inline(always)]
+    fn slot(&self, age: usize) -> usize {
+        (self.newest + age) % POINTS
+    }
+
+    /// Where the paths are.
+    fn here(&self) -> &[Complex<R>] {
+        &self.x[self.newest]
+    }
+
+    /// Where a path is, in t.
+    fn t(&self, lane: usize) -> Complex64 {
+        self.t[self.newest].lane(lane)
+    }
+
+    /// The slot of the last point behind a path.
+    fn before(&self, lane: usize) -> usize {
+        (1..POINTS)
+            .map(|age| self.slot(age))
+            .find(|&slot| self.known[slot].lane(lane))
+            .expect("the path has moved")
     }
 
     /// The points behind a lane no longer belong to where it goes.
@@ -96,24 +130,29 @@ impl<R: Real> Batch<R> {
     fn read(
         &self,
         lane: usize,
-        back: usize,
+        slot: usize,
         point: &mut Vec<Complex64>,
         tangent: &mut Vec<Complex64>,
     ) {
         point.clear();
-        point.extend(self.x[back].iter().map(|z| z.lane(lane)));
+        point.extend(self.x[slot].iter().map(|z| z.lane(lane)));
         tangent.clear();
-        tangent.extend(self.tangent[back].iter().map(|z| z.lane(lane)));
+        tangent.extend(self.tangent[slot].iter().map(|z| z.lane(lane)));
+    }
+
+    fn read_here(&self, lane: usize, point: &mut Vec<Complex64>, tangent: &mut Vec<Complex64>) {
+        self.read(lane, self.newest, point, tangent);
     }
 
     fn write(&mut self, lane: usize, t: Complex64, point: &[Complex64], tangent: &[Complex64]) {
-        for (z, value) in self.x[0].iter_mut().zip(point) {
+        let slot = self.newest;
+        for (z, value) in self.x[slot].iter_mut().zip(point) {
             z.set_lane(lane, *value);
         }
-        for (z, value) in self.tangent[0].iter_mut().zip(tangent) {
+        for (z, value) in self.tangent[slot].iter_mut().zip(tangent) {
             z.set_lane(lane, *value);
         }
-        self.t[0].set_lane(lane, t);
+        self.t[slot].set_lane(lane, t);
         self.forget_history(lane);
     }
 
@@ -252,13 +291,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
     #[inline(always)]
     fn step(&mut self) {
         let settings = &self.settings;
-        let n = self.batch.candidate.len();
+        let n = self.room.homotopy.dimension();
         let control = |v: f64| R::Control::from_f64((), v);
 
         // Where to: a step of length h towards the target, or the target itself.
         let batch = &mut self.batch;
         let mut way = batch.target.clone();
-        way.sub(&batch.t[0]);
+        let newest = batch.newest;
+        way.sub(&batch.t[newest]);
         let mut remaining = way.norm_sqr();
         remaining.sqrt();
         let reaches = remaining.less_equal(&batch.h);
@@ -267,24 +307,38 @@ impl<'a, R: Real> Lockstep<'a, R> {
         tried.select(batch.refine, &control(0.0));
         let mut ratio = batch.h.clone();
         ratio.div(&remaining);
-        let mut t = batch.t[0].clone();
+        let mut t = batch.t[newest].clone();
         way.scale(&ratio);
         t.add(&way);
         t.select(reaches, &batch.target);
-        t.select(batch.refine, &batch.t[0]);
+        t.select(batch.refine, &batch.t[newest]);
 
-        // Predict.
-        let w = weights(&batch.t, &t, &batch.known);
+        // Predict, from the point itself where the step has length 0.
+        let slots: [usize; POINTS] = std::array::from_fn(|age| batch.slot(age));
+        let counts: [R::Mask; POINTS - 1] = std::array::from_fn(|k| batch.known[slots[k + 1]]);
+        let moving = batch.refine.not();
+        let w = weights(
+            &std::array::from_fn(|age| batch.t[slots[age]].clone()),
+            &t,
+            &std::array::from_fn(|k| counts[k].and(moving)),
+        );
+        let next = slots[POINTS - 1];
+        let mut candidate = std::mem::take(&mut batch.x[next]);
+        let mut candidate_tangent = std::mem::take(&mut batch.tangent[next]);
         for i in 0..n {
-            let mut sum = Complex::<R>::zero(self.context);
-            for k in 0..POINTS {
-                let weight = Complex::from_control(self.context, &w.point[k]);
-                sum.mul_add(&weight, &batch.x[k][i]);
-                let weight = Complex::from_control(self.context, &w.tangent[k]);
-                sum.mul_add(&weight, &batch.tangent[k][i]);
+            let weight = Complex::from_control(self.context, &w.point[POINTS - 1]);
+            let mut sum = Complex::zero(self.context);
+            sum.set_product(&weight, &candidate[i]);
+            let weight = Complex::from_control(self.context, &w.tangent[POINTS - 1]);
+            sum.mul_add(&weight, &candidate_tangent[i]);
+            for age in (0..POINTS - 1).rev() {
+                let slot = slots[age];
+                let weight = Complex::from_control(self.context, &w.tangent[age]);
+                sum.mul_add(&weight, &batch.tangent[slot][i]);
+                let weight = Complex::from_control(self.context, &w.point[age]);
+                sum.mul_add(&weight, &batch.x[slot][i]);
             }
-            sum.select(batch.refine, &batch.x[0][i]);
-            batch.candidate[i].set(&sum);
+            candidate[i].set(&sum);
         }
 
         // Newton; then Newton and tangent from one factorisation.
@@ -302,7 +356,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         for (round, correction) in corrections.iter_mut().enumerate() {
             if round == 0 {
                 homotopy.evaluator().jacobian(
-                    &batch.candidate,
+                    &candidate,
                     &self.p,
                     &mut self.matrix,
                     &mut self.scratch,
@@ -312,7 +366,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     .eliminate::<R, 1>(&mut self.matrix, &mut batch.exchanges);
             } else {
                 homotopy.evaluator().linearize(
-                    &batch.candidate,
+                    &candidate,
                     &self.p,
                     &self.dp,
                     &mut self.matrix,
@@ -326,12 +380,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
             for i in 0..n {
                 let delta = self.matrix.at(i, n);
                 correction.max(&delta.norm_sqr().control());
-                batch.candidate[i].sub(delta);
-                size.max(&batch.candidate[i].norm_sqr().control());
+                candidate[i].sub(delta);
+                size.max(&candidate[i].norm_sqr().control());
             }
         }
         for i in 0..n {
-            let tangent = &mut batch.candidate_tangent[i];
+            let tangent = &mut candidate_tangent[i];
             tangent.set(self.matrix.at(i, n + 1));
             tangent.neg();
         }
@@ -365,7 +419,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .and(first.less_equal(&control(START_ERROR)))
             .and(batch.refine);
         let accepted = moved.or(refined);
-        let wanted = next_step(&batch.h, first, &limit, &batch.known, moved, batch.may_grow);
+        let wanted = next_step(&batch.h, first, &limit, &counts, moved, batch.may_grow);
         // A step that only reached its target says little about longer ones: keep the wish.
         let mut h = wanted;
         h.min(&control(settings.max_step));
@@ -374,28 +428,26 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let refining = batch.refine;
         batch.may_grow = moved.or(refining);
 
-        // Move: the points behind shift by one.
-        for i in 0..n {
-            for k in (1..POINTS).rev() {
-                let (newer, older) = batch.x.split_at_mut(k);
-                older[0][i].select(moved, &newer[k - 1][i]);
-                let (newer, older) = batch.tangent.split_at_mut(k);
-                older[0][i].select(moved, &newer[k - 1][i]);
+        // Move: what stays where it is stands in the new slot, and no longer in the old one.
+        let stays = accepted.not();
+        if stays.any() {
+            for i in 0..n {
+                candidate[i].select(stays, &batch.x[newest][i]);
+                candidate_tangent[i].select(stays, &batch.tangent[newest][i]);
             }
-            batch.x[0][i].select(accepted, &batch.candidate[i]);
-            batch.tangent[0][i].select(accepted, &batch.candidate_tangent[i]);
         }
-        for k in (1..POINTS).rev() {
-            let (newer, older) = batch.t.split_at_mut(k);
-            older[0].select(moved, &newer[k - 1]);
-        }
-        batch.t[0].select(moved, &t);
-        for k in (1..POINTS - 1).rev() {
-            batch.known[k] = batch.known[k].or(moved.and(batch.known[k - 1]));
-        }
-        batch.known[0] = batch.known[0].or(moved);
+        batch.x[next] = candidate;
+        batch.tangent[next] = candidate_tangent;
+        let mut there = batch.t[newest].clone();
+        there.select(moved, &t);
+        batch.t[next] = there;
+        batch.known[newest] = moved;
+        batch.known[next] = R::Mask::splat(false);
+        batch.newest = next;
 
-        let small = 0.01 * settings.predictor_tolerance;
+        // Larger corrections than these are not noise.
+        let small = 0.01 * settings.predictor_tolerance * unit_roundoff(self.room.bits)
+            / unit_roundoff(DOUBLE);
         // What only single paths know: a glance at each, and more where something happened.
         for lane in 0..R::WIDTH {
             if self.lanes[lane].phase == Phase::Idle {
@@ -426,7 +478,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 path.last_rejected = step.correction;
             }
             if let Some(observer) = &mut self.observer {
-                let point: Vec<_> = self.batch.x[0].iter().map(|z| z.lane(lane)).collect();
+                let point: Vec<_> = self.batch.here().iter().map(|z| z.lane(lane)).collect();
                 let event = StepEvent {
                     phase: path.phase.name(),
                     t: t.lane(lane),
@@ -447,17 +499,19 @@ impl<'a, R: Real> Lockstep<'a, R> {
     fn attend(&mut self, lane: usize, step: &Step) {
         let settings = &self.settings;
         let phase = self.lanes[lane].phase;
-        let t = self.batch.t[0].lane(lane);
+        let t = self.batch.t(lane);
         let h = self.batch.h.lane(lane);
         let steps = self.lanes[lane].steps + self.lanes[lane].rejections;
         if steps > settings.max_steps {
-            self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+            self.batch
+                .read_here(lane, &mut self.point, &mut self.tangent);
             return self.fail_and_refill(lane, t, Failure::TooManySteps);
         }
         match phase {
             Phase::Idle => {}
             Phase::Starting => {
-                self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                self.batch
+                    .read_here(lane, &mut self.point, &mut self.tangent);
                 if !step.accepted {
                     return self.give_up(lane, t, Failure::InvalidStartPoint);
                 }
@@ -470,31 +524,40 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 self.lanes[lane].phase = Phase::Approaching;
             }
             Phase::Approaching => {
+                // Steps far shorter than the way that is left speak of a singularity beside the
+                // path, not at its end: it is passed by before the turns begin.
+                let radius = settings.endgame_radius;
+                let passing = h < PASSING * t.re && t.re > PASSED * radius;
+                let at_end = t.re <= radius && !passing && !(step.accepted && h >= t.re);
                 if step.arrived {
                     self.lanes[lane].phase = Phase::Arriving;
                     self.batch.refine(lane);
-                } else if self.room.beyond && (step.size > FAR || t.re <= settings.endgame_radius) {
-                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                } else if self.room.beyond && (step.size > FAR || at_end) {
+                    self.batch
+                        .read_here(lane, &mut self.point, &mut self.tangent);
                     self.leave(lane, t, Door::Beyond);
                 } else if step.accepted
                     && self.room.down
                     && self.lanes[lane].may_go_down()
                     && t.re > 10.0 * settings.endgame_radius
                 {
-                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                    self.batch
+                        .read_here(lane, &mut self.point, &mut self.tangent);
                     self.leave(lane, t, Door::Down);
-                } else if t.re <= settings.endgame_radius && !(step.accepted && h >= t.re) {
+                } else if at_end {
                     self.lanes[lane].phase = Phase::Settling;
                     self.batch.refine(lane);
                 } else if self.lanes[lane].starved >= STARVED
                     || h < settings.min_step * t.re.max(settings.endgame_radius)
                 {
-                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                    self.batch
+                        .read_here(lane, &mut self.point, &mut self.tangent);
                     self.give_up(lane, t, Failure::StepTooSmall);
                 }
             }
             Phase::Arriving => {
-                self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                self.batch
+                    .read_here(lane, &mut self.point, &mut self.tangent);
                 self.tangent.clone_from(&self.point);
                 let report = self
                     .refiner
@@ -509,8 +572,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     return self.finish(lane, PathOutcome::Regular, report, None, Vec::new());
                 }
                 // Back to the last point before 0, from where the turns begin.
-                self.batch.read(lane, 1, &mut self.point, &mut self.tangent);
-                let before = self.batch.t[1].lane(lane);
+                let slot = self.batch.before(lane);
+                let before = self.batch.t[slot].lane(lane);
+                self.batch
+                    .read(lane, slot, &mut self.point, &mut self.tangent);
                 if self.room.beyond {
                     return self.leave(lane, before, Door::Beyond);
                 }
@@ -539,12 +604,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 } else if self.lanes[lane].starved >= STARVED
                     || h < settings.min_step.max(1e-9 * t.norm_sqr().sqrt())
                 {
-                    self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                    self.batch
+                        .read_here(lane, &mut self.point, &mut self.tangent);
                     self.give_up(lane, t, Failure::StepTooSmall);
                 }
             }
             Phase::Settling | Phase::Sampling => {
-                self.batch.read(lane, 0, &mut self.point, &mut self.tangent);
+                self.batch
+                    .read_here(lane, &mut self.point, &mut self.tangent);
                 if !step.accepted {
                     return self.give_up(lane, t, Failure::EndgameUnsettled);
                 }
@@ -643,7 +710,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 );
             }
             cauchy::Next::Unsettled => {
-                let t = self.batch.t[0].lane(lane);
+                let t = self.batch.t(lane);
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
@@ -655,7 +722,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         if R::WIDTH == 1 {
             self.room
                 .homotopy
-                .homogenizing(self.context, &self.batch.x[0])
+                .homogenizing(self.context, self.batch.here())
         } else {
             let native = |z: &Complex64| Complex { re: z.re, im: z.im };
             let point: Vec<Complex<f64>> = self.point.iter().map(native).collect();
