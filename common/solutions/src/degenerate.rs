@@ -2,7 +2,8 @@
 //!
 //! An expression counts as 0 where its value is within the error that the
 //! solution's own error can make in it: each value is computed together with a
-//! bound on its size when every variable is as large as its group's largest.
+//! bound on its error, when every variable may be off as far as its group's
+//! largest (running error analysis; Higham, Accuracy and Stability, section 3.3).
 
 use crate::classification::{Tolerances, error_bound};
 use crate::field::{Field, ManyBits, evaluate};
@@ -13,7 +14,7 @@ use cognate_systems::system::{DegenerateSet, System};
 use num_complex::Complex64;
 use rug::Complex;
 
-/// Values with a bound beside each.
+/// Values with a bound on the error beside each.
 struct Bounded(ManyBits);
 
 type Value = (Complex, f64);
@@ -27,8 +28,7 @@ fn size(z: &Complex) -> f64 {
 impl Bounded {
     /// A number that is exactly known.
     fn known(value: Complex) -> Value {
-        let bound = size(&value);
-        (value, bound)
+        (value, 0.0)
     }
 
     fn double(&self, z: Complex64) -> Complex {
@@ -49,7 +49,8 @@ impl Field for Bounded {
         (self.0.negate(&a.0), a.1)
     }
     fn multiply(&self, a: &Value, b: &Value) -> Value {
-        (self.0.multiply(&a.0, &b.0), a.1 * b.1)
+        let error = size(&a.0) * b.1 + a.1 * (size(&b.0) + b.1);
+        (self.0.multiply(&a.0, &b.0), error)
     }
     fn divide(&self, a: &Value, b: &Value) -> Option<Value> {
         // Denominators contain no variable.
@@ -77,6 +78,11 @@ pub fn lies_in(
         DegenerateSet::Equations(nodes) => nodes,
     };
     let field = Bounded(ManyBits(128));
+    let error = error_bound(
+        accuracy,
+        tolerances.degenerate_factor,
+        tolerances.degenerate_floor,
+    );
     let mut variables: Vec<Value> = values
         .iter()
         .map(|&z| Bounded::known(field.double(z)))
@@ -86,7 +92,7 @@ pub fn lies_in(
         // The homogenising coordinate of an affine group is 1 here.
         let scale = largest(&members).max(if group.homogeneous { 0.0 } else { 1.0 });
         for &v in &group.variables {
-            variables[v].1 = scale;
+            variables[v].1 = error * scale;
         }
     }
     let parameters: Vec<Value> = parameters
@@ -97,14 +103,9 @@ pub fn lies_in(
     else {
         return false;
     };
-    let error = error_bound(
-        accuracy,
-        tolerances.degenerate_factor,
-        tolerances.degenerate_floor,
-    );
     results
         .iter()
-        .all(|(value, bound)| bound.is_finite() && size(value) <= error * bound)
+        .all(|(value, error)| error.is_finite() && size(value) <= *error)
 }
 
 /// How many of some solutions, given with their errors, lie in each named set.
@@ -193,5 +194,11 @@ mod tests {
             1e-14
         ));
         assert!(inside(&system, [(1e6, 0.0), (0.0, 1e6), (1.0, 0.0)], 1e-14));
+        // Beside a variable that is far larger, too: here x^2 + y^2 = 5e-8, known to 1e-9 or so.
+        assert!(!inside(
+            &system,
+            [(1e-4, 0.0), (2e-4, 0.0), (1e4, 0.0)],
+            1e-14
+        ));
     }
 }
