@@ -1,6 +1,6 @@
 //! Nine-point synthesis from one generic member of the family to another: the tracker's rate.
 //!
-//! `cargo bench -p cognate-tests --bench nine_point [-- widths|threads|targets]`. Every figure is CPU time of the threads that
+//! `cargo bench -p cognate-tests --bench nine_point [-- widths|threads|rotations|targets]`. Every figure is CPU time of the threads that
 //! track, all sides of a ratio in turns within this run, the best of the rounds counts. What it
 //! gave, and where: `nine_point.md`.
 
@@ -11,16 +11,18 @@ use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_machine_code::Elimination;
 use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch};
 use cognate_numeric::linear_algebra::lu;
+use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
-use cognate_numeric::scalar::Real;
+use cognate_numeric::scalar::{Complex, Real};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::symmetry::SymmetryGroup;
-use cognate_systems::evaluation::Program;
+use cognate_systems::evaluation::{Evaluate, Program};
 use cognate_systems::formats::points::read_parameters;
-use cognate_systems::named::nine_point;
+use cognate_systems::named::{nine_point, nine_point_with_rotations, rotations};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::path::Path;
@@ -322,6 +324,116 @@ fn threads(family: &Family) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Eliminates the same matrices again and again.
+struct Eliminate<'a> {
+    elimination: &'a Elimination,
+    matrix: &'a Matrix<Lanes<8>>,
+    count: usize,
+}
+
+impl Job for Eliminate<'_> {
+    type Output = f64;
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let mut exchanges = <Lanes<8> as Real>::from_f64((), 0.0);
+        let mut work = self.matrix.clone();
+        for _ in 0..self.count {
+            for (work, entry) in work.entries.iter_mut().zip(&self.matrix.entries) {
+                *work = *entry;
+            }
+            self.elimination
+                .eliminate::<Lanes<8>, 2>(&mut work, &mut exchanges);
+        }
+        (0..8).map(|lane| exchanges.lane(lane)).sum()
+    }
+}
+
+/// The same problem with 24 unknowns, of which each equation has few: elimination by lists
+/// beside the loop over all entries, and whole paths.
+fn rotations_as_unknowns(family: &Family) -> Result<(), Failure> {
+    let system = nine_point_with_rotations().system;
+    let starts = &family.starts;
+    let lifted = (0..starts.len()).flat_map(|k| {
+        let point = starts.point(k);
+        [point.to_vec(), rotations(point, &family.parameters)].concat()
+    });
+    let lifted = Arc::new(StoredPoints {
+        dimension: 24,
+        coordinates: lifted.collect(),
+    });
+    let mut random = RandomStream::new(1, Purpose::Test, 1);
+    let targets = vec![family.parameters.iter().map(|_| random.unit()).collect()];
+    let stage = Stage {
+        id: StageId(0),
+        work: Work::Track,
+        homotopy: HomotopyKind::Parameter {
+            start: family.parameters.clone(),
+            targets,
+        },
+        start_points: StartPoints::Stored {
+            object: Digest([0; 32]),
+            count: lifted.len() as u64,
+        },
+        settings: Settings::default(),
+        seed: 1,
+        attempt: 0,
+    };
+    let stage = PreparedStage::new(&system, &stage, &|_| Some(Arc::clone(&lifted)))?;
+    // The Jacobians of eight start points, their rows as each way prefers them.
+    let program = stage.homotopy().program();
+    let mut scratch = Evaluate::<f64>::scratch(program, ());
+    let native = |z: &Complex64| Complex { re: z.re, im: z.im };
+    let p: Vec<_> = family.parameters.iter().map(native).collect();
+    let mut samples = Vec::new();
+    for k in 0..8 {
+        let x: Vec<_> = lifted.point(500 * k).iter().map(native).collect();
+        let mut matrix = Matrix::<f64>::zeros((), 24, 26);
+        program.linearize(&x, &p, &p, &mut matrix, &mut scratch);
+        samples.push(matrix);
+    }
+    let in_lanes = |order: &[usize]| {
+        let mut all = Matrix::<Lanes<8>>::zeros((), 24, 26);
+        for (lane, sample) in samples.iter().enumerate() {
+            for (i, &row) in order.iter().enumerate() {
+                for j in 0..26 {
+                    let z = sample.at(row, j);
+                    all.at_mut(i, j).set_lane(lane, Complex64::new(z.re, z.im));
+                }
+            }
+        }
+        all
+    };
+    let natural: Vec<usize> = (0..24).collect();
+    let all_entries = Elimination::new(24, InstructionSet::detect());
+    let sides = [
+        (stage.homotopy().elimination(), in_lanes(&natural)),
+        (&all_entries, in_lanes(&lu::pivot_order(&samples))),
+    ];
+    let mut least = [f64::INFINITY; 2];
+    let count = 2000;
+    for _ in 0..ROUNDS {
+        for ((elimination, matrix), least) in sides.iter().zip(&mut least) {
+            let before = cpu_seconds()?;
+            std::hint::black_box(dispatch(Eliminate {
+                elimination,
+                matrix,
+                count,
+            }));
+            *least = f64::min(*least, cpu_seconds()? - before);
+        }
+    }
+    let [lists, all] = least.map(|s| 1e9 * s / (8 * count) as f64);
+    println!(
+        "elimination with 24 unknowns, ns a path: lists {lists:.0}, all entries {all:.0}; ratio {:.2}",
+        all / lists
+    );
+    let seconds = best(|| {
+        std::hint::black_box(stage.track(0..SHARE, 8));
+    })?;
+    println!("paths/s with 24 unknowns: {:.0}", SHARE as f64 / seconds);
+    Ok(())
+}
+
 fn main() -> Result<(), Failure> {
     println!("instruction set: {}", InstructionSet::detect().name());
     let peak = peak()?;
@@ -346,6 +458,9 @@ fn main() -> Result<(), Failure> {
     }
     if wanted("threads") {
         threads(&family)?;
+    }
+    if wanted("rotations") {
+        rotations_as_unknowns(&family)?;
     }
     if wanted("targets") {
         targets(&family, peak)?;

@@ -5,7 +5,12 @@ use cognate_algorithms::monodromy::counts::Stop;
 use cognate_algorithms::plan::{GivenStart, StartChoice};
 use cognate_algorithms::run_locally::run_locally;
 use cognate_algorithms::{PlanOptions, plan};
-use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::stage::PreparedStage;
+use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -14,7 +19,9 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::formats;
-use cognate_systems::named::{NINE_POINT_SOLUTIONS, nine_point, random_four_bar};
+use cognate_systems::named::{
+    NINE_POINT_SOLUTIONS, nine_point, nine_point_with_rotations, random_four_bar, rotations,
+};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::path::PathBuf;
@@ -215,6 +222,67 @@ fn the_family_is_whole() {
     let first: Vec<Complex64> = points.point(0).to_vec();
     twice.coordinates[8 * 6..8 * 7].copy_from_slice(&first);
     assert!(faults(&twice, &parameters)[0].starts_with("8651 orbits under nothing"));
+}
+
+/// With the rotations as unknowns each equation has few of the 24: what is eliminated by lists
+/// ends where the eight equations end.
+#[test]
+fn rotations_as_unknowns_end_at_the_same_linkages() {
+    let points = StoredPoints::from_bytes(&bytes(&format!("{FAMILY}/solutions.points")));
+    let points = points.expect("points");
+    let text = bytes(&format!("{FAMILY}/parameters.json"));
+    let names = nine_point().system.parameters;
+    let start = match formats::points::read_parameters("parameters.json", &text, &names) {
+        Ok(sets) => sets[0].clone(),
+        Err(error) => panic!("{error}"),
+    };
+    let few: Vec<&[Complex64]> = (0..points.len())
+        .step_by(61)
+        .map(|k| points.point(k))
+        .collect();
+    let target = random_point(16, 4);
+    let endpoints = |system: &System, dimension: usize, starts: Vec<Complex64>| {
+        let stored = Arc::new(StoredPoints {
+            dimension,
+            coordinates: starts,
+        });
+        let stage = Stage {
+            id: StageId(0),
+            work: Work::Track,
+            homotopy: HomotopyKind::Parameter {
+                start: start.clone(),
+                targets: vec![target.clone()],
+            },
+            start_points: StartPoints::Stored {
+                object: stored.digest(),
+                count: stored.len() as u64,
+            },
+            settings: Settings::default(),
+            seed: 4,
+            attempt: 0,
+        };
+        let find = |_| Some(Arc::clone(&stored));
+        let prepared = PreparedStage::new(system, &stage, &find).expect("a stage");
+        let results = prepared.track(0..prepared.items(), 16);
+        let ends = results.iter().map(|r| {
+            assert_eq!(r.outcome, PathOutcome::Regular, "{:?}", r.origin);
+            let y = r.endpoint.to_double();
+            y[1..9].iter().map(|z| z / y[0]).collect::<Vec<Complex64>>()
+        });
+        ends.collect::<Vec<_>>()
+    };
+    let short = endpoints(&nine_point().system, 8, few.concat());
+    let lifted = few
+        .iter()
+        .flat_map(|x| [x.to_vec(), rotations(x, &start)].concat());
+    let long = endpoints(&nine_point_with_rotations().system, 24, lifted.collect());
+    assert_eq!(short.len(), 142);
+    for (k, (a, b)) in short.iter().zip(&long).enumerate() {
+        let size = a.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).norm_sqr() < 1e-16 * size, "{k}: {a} {b}");
+        }
+    }
 }
 
 /// Half a minute of tracking: run with `-- --ignored`.

@@ -1,4 +1,5 @@
-//! Elimination: `linear_algebra::lu::eliminate` as straight-line code for one size, the same bits.
+//! Elimination: `linear_algebra::lu::eliminate` as straight-line code for one size, the same bits;
+//! by lists where a large matrix has few entries.
 //!
 //! A routine for each column: the row of the last pivot, then the column and a look at its own
 //! pivot. A lane whose pivot is small exchanges rows between two routines, as there. Rows are
@@ -12,12 +13,13 @@ use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::dispatch::InstructionSet;
 use cognate_numeric::linear_algebra::lu;
 use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::linear_algebra::sparse::SparseElimination;
 use cognate_numeric::scalar::Real;
 use std::sync::{Arc, OnceLock};
 
 /// Larger matrices are eliminated by the loop. Code that is far longer than the first-level cache
 /// comes too slowly: at n = 14 it is 1.6 times as fast as the loop, at n = 24 no more.
-const MOST_ROWS: usize = 18;
+pub const MOST_ROWS: usize = 18;
 
 /// Room for values that find no register: the size of the own pivot, and a few more.
 const SPILLS: usize = 8;
@@ -27,6 +29,7 @@ const SPILLS: usize = 8;
 pub struct Elimination {
     n: usize,
     code: Option<Arc<Code>>,
+    sparse: Option<Arc<SparseElimination>>,
 }
 
 #[derive(Debug)]
@@ -53,7 +56,20 @@ impl Elimination {
                     sixteen: Programs::default(),
                 })
             });
-        Self { n, code }
+        Self {
+            n,
+            code,
+            sparse: None,
+        }
+    }
+
+    /// For matrices of n rows of which few entries differ from 0, in places that are known.
+    pub fn sparse(n: usize, elimination: SparseElimination) -> Self {
+        Self {
+            n,
+            code: None,
+            sparse: Some(Arc::new(elimination)),
+        }
     }
 
     /// Bytes of machine code for 8 lanes and 2 right-hand sides, which is made if need be.
@@ -63,8 +79,7 @@ impl Elimination {
         Some(routines.iter().map(Executable::len).sum())
     }
 
-    /// What `lu::eliminate` does, for a matrix of the size that this was made for; `RHS` is 1 or
-    /// 2.
+    /// What `lu::eliminate` does, for a matrix that this was made for; `RHS` is 1 or 2.
     ///
     /// # Panics
     /// When the matrix has another size.
@@ -79,6 +94,9 @@ impl Elimination {
             a.rows() == self.n && a.columns() == self.n + 2,
             "the matrix has the size that the elimination was made for"
         );
+        if let Some(sparse) = &self.sparse {
+            return sparse.eliminate::<R, RHS>(a, exchanges);
+        }
         if !self.run::<8, R>(|code| &code.eight, RHS, a, exchanges)
             && !self.run::<16, R>(|code| &code.sixteen, RHS, a, exchanges)
         {

@@ -101,21 +101,36 @@ pub fn exchange<R: Real>(
     columns: usize,
     lane: usize,
 ) {
-    let k = rows.start;
-    let mut best = (k, -1.0);
+    let column = rows.start;
+    exchange_in(entries, stride, rows, column, columns, lane);
+}
+
+/// Brings, of these rows, the one with the largest entry of this column to the place of the first,
+/// in one lane; `columns` is how many columns a row has.
+#[inline(always)]
+pub(super) fn exchange_in<R: Real>(
+    entries: &mut [Complex<R>],
+    stride: usize,
+    rows: Range<usize>,
+    column: usize,
+    columns: usize,
+    lane: usize,
+) {
+    let first = rows.start;
+    let mut best = (first, -1.0);
     for i in rows {
-        let entry = &entries[i * stride + k];
+        let entry = &entries[i * stride + column];
         let (re, im) = (entry.re.lane(lane), entry.im.lane(lane));
         let size = re * re + im * im;
         if size > best.1 {
             best = (i, size);
         }
     }
-    if best.0 == k {
+    if best.0 == first {
         return;
     }
     let (above, below) = entries.split_at_mut(best.0 * stride);
-    let upper = &mut above[k * stride..k * stride + columns];
+    let upper = &mut above[first * stride..first * stride + columns];
     for (upper, lower) in upper.iter_mut().zip(below) {
         upper.swap_lane(lower, lane);
     }

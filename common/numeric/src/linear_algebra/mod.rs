@@ -1,11 +1,11 @@
-//! Small dense linear algebra for any scalar and any width.
+//! Small linear algebra for any scalar and any width.
 //!
 //! Systems of mechanisms have some tens of unknowns; at that size general
-//! libraries spend their time on blocking and dispatch. Larger matrices belong
-//! to a library.
+//! libraries spend their time on blocking and dispatch.
 
 pub mod condition;
 pub mod inverse;
 pub mod lu;
 pub mod matrix;
+pub mod sparse;
 pub mod svd;

@@ -7,7 +7,7 @@
 use super::{Evaluate, Shape};
 use crate::expression::{Expressions, NodeId};
 use crate::straight_line_program::assignments::Assignments;
-use crate::straight_line_program::instruction::{Assignment, FREQUENT, Operation, Terms};
+use crate::straight_line_program::instruction::{Assignment, FREQUENT, Operand, Operation, Terms};
 use crate::straight_line_program::schedule::{Scheduling, schedule};
 use crate::straight_line_program::{Index, Layout, StraightLineProgram, Target};
 use cognate_numeric::linear_algebra::matrix::Matrix;
@@ -239,6 +239,29 @@ impl Interpreter {
         let pool = &self.0.assignments.pool;
         [&self.0.constants, &self.0.singles]
             .map(|numbers| numbers.iter().map(|&c| pool.round(c, ())).collect())
+    }
+
+    /// Which entries of J may differ from 0, row after row.
+    pub fn pattern(&self) -> Vec<Vec<bool>> {
+        let shape = self.shape();
+        let [constants, _] = self.constants();
+        let mut pattern = vec![vec![false; shape.variables]; shape.equations];
+        for assignment in &self.0.assignments.linearize {
+            let Some(entry) = assignment.output else {
+                continue;
+            };
+            let (i, j) = (
+                entry as usize / (shape.variables + 2),
+                entry as usize % (shape.variables + 2),
+            );
+            let zero = matches!(assignment.operation, Operation::Sum(_))
+                && matches!(assignment.operands[..], [Operand::Constant(c)]
+                    if constants[c as usize].norm_sqr() == 0.0);
+            if let Some(may) = pattern[i].get_mut(j) {
+                *may |= !zero;
+            }
+        }
+        pattern
     }
 
     /// Real operations of one `linearize` of one path.

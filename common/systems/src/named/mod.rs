@@ -5,7 +5,10 @@ mod nine_point;
 mod singular;
 
 pub use benchmarks::{cyclic, eco, katsura, noon, reimer};
-pub use nine_point::{FourBar, NINE_POINT_SOLUTIONS, nine_point, random_four_bar};
+pub use nine_point::{
+    FourBar, NINE_POINT_SOLUTIONS, nine_point, nine_point_with_rotations, random_four_bar,
+    rotations,
+};
 pub use singular::{caprasse, griewank_osborne, hyperbola_in_a_plane, kss, ojika_1};
 
 use crate::expression::{Expressions, NodeId};

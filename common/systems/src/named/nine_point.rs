@@ -17,6 +17,41 @@ struct Dyad {
     kappa: NodeId,
 }
 
+/// The dyad (x, a) moved by (d, D): n = a X, N = A x, u = x - a, U = X - A.
+#[derive(Clone, Copy)]
+struct Arm {
+    x: NodeId,
+    xx: NodeId,
+    n: NodeId,
+    nn: NodeId,
+    u: NodeId,
+    uu: NodeId,
+}
+
+impl Arm {
+    fn new(e: &mut Expressions, x: NodeId, xx: NodeId, a: NodeId, aa: NodeId) -> Self {
+        Self {
+            x,
+            xx,
+            n: e.multiply(a, xx),
+            nn: e.multiply(aa, x),
+            u: e.subtract(x, a),
+            uu: e.subtract(xx, aa),
+        }
+    }
+
+    fn dyad(self, e: &mut Expressions, d: NodeId, dd: NodeId) -> Dyad {
+        let p = e.multiply(dd, self.x);
+        let alpha = e.subtract(p, self.nn);
+        let p = e.multiply(d, self.xx);
+        let beta = e.subtract(p, self.n);
+        let (p, q) = (e.multiply(dd, self.u), e.multiply(d, self.uu));
+        let (p, ddd) = (e.add(p, q), e.multiply(d, dd));
+        let kappa = e.add(p, ddd);
+        Dyad { alpha, beta, kappa }
+    }
+}
+
 /// The problem in isotropic coordinates, with the first point at the origin: 8 equations of
 /// degree 7 in x, X, a, A, y, Y, b, B; parameters d_j, D_j, the other eight points.
 ///
@@ -31,26 +66,13 @@ pub fn nine_point() -> Named {
     let [x, xx, a, aa, y, yy, b, bb] = v[..] else {
         unreachable!("eight variables")
     };
-    let (n, nn) = (e.multiply(a, xx), e.multiply(aa, x));
-    let (m, mm) = (e.multiply(b, yy), e.multiply(bb, y));
-    let [xa, xxaa, yb, yybb] = [(x, a), (xx, aa), (y, b), (yy, bb)].map(|(p, q)| e.subtract(p, q));
+    let one = Arm::new(&mut e, x, xx, a, aa);
+    let two = Arm::new(&mut e, y, yy, b, bb);
     let mut equations = Vec::new();
     let mut degenerate = std::collections::BTreeMap::new();
     for j in 0..8 {
         let (d, dd) = (e.parameter(2 * j), e.parameter(2 * j + 1));
-        let ddd = e.multiply(d, dd);
-        let mut dyad = |x: NodeId, xx: NodeId, n: NodeId, nn: NodeId, u: NodeId, uu: NodeId| {
-            let p = e.multiply(dd, x);
-            let alpha = e.subtract(p, nn);
-            let p = e.multiply(d, xx);
-            let beta = e.subtract(p, n);
-            let (p, q) = (e.multiply(dd, u), e.multiply(d, uu));
-            let p = e.add(p, q);
-            let kappa = e.add(p, ddd);
-            Dyad { alpha, beta, kappa }
-        };
-        let one = dyad(x, xx, n, nn, xa, xxaa);
-        let two = dyad(y, yy, m, mm, yb, yybb);
+        let (one, two) = (one.dyad(&mut e, d, dd), two.dyad(&mut e, d, dd));
         let mut determinant = |p: NodeId, q: NodeId, r: NodeId, s: NodeId| {
             let (pq, rs) = (e.multiply(p, q), e.multiply(r, s));
             e.subtract(pq, rs)
@@ -102,6 +124,78 @@ pub fn nine_point() -> Named {
         with_multiplicity: None,
         source: "Roth, Freudenstein 1963; Wampler, Morgan, Sommese 1992",
     }
+}
+
+/// The same problem before the rotations g_j = gamma_j, G_j of the coupler are eliminated: 24
+/// equations of which each has few unknowns, the first eight of them those of [`nine_point`].
+pub fn nine_point_with_rotations() -> Named {
+    let mut e = Expressions::new();
+    let v: Vec<NodeId> = (0..24).map(|i| e.variable(i)).collect();
+    let one = Arm::new(&mut e, v[0], v[1], v[2], v[3]);
+    let two = Arm::new(&mut e, v[4], v[5], v[6], v[7]);
+    let (mut equations, mut equation_names) = (Vec::new(), Vec::new());
+    let mut variables: Vec<String> = ["x", "X", "a", "A", "y", "Y", "b", "B"]
+        .map(String::from)
+        .into();
+    let mut parameters = Vec::new();
+    for j in 0..8u32 {
+        let (d, dd) = (e.parameter(2 * j), e.parameter(2 * j + 1));
+        let (g, gg) = (v[8 + 2 * j as usize], v[9 + 2 * j as usize]);
+        for arm in [one, two] {
+            let dyad = arm.dyad(&mut e, d, dd);
+            let (p, q) = (e.multiply(dyad.alpha, g), e.multiply(dyad.beta, gg));
+            let sum = e.add(p, q);
+            equations.push(e.add(sum, dyad.kappa));
+        }
+        // (1 + gamma)(1 + Gamma) = 1.
+        let (p, q) = (e.multiply(g, gg), e.add(g, gg));
+        equations.push(e.add(p, q));
+        let j = j + 1;
+        equation_names.extend([format!("one{j}"), format!("two{j}"), format!("turn{j}")]);
+        variables.extend([format!("g{j}"), format!("G{j}")]);
+        parameters.extend([format!("d{j}"), format!("D{j}")]);
+    }
+    let system = System {
+        expressions: e,
+        variables,
+        parameters,
+        groups: vec![VariableGroup {
+            variables: (0..24).collect(),
+            homogeneous: false,
+        }],
+        equations,
+        equation_names,
+        ..System::default()
+    };
+    if let Err(error) = system.check() {
+        panic!("a named system is a system: {error}");
+    }
+    Named {
+        system,
+        finite_solutions: None,
+        with_multiplicity: None,
+        source: "Wampler, Morgan, Sommese 1992",
+    }
+}
+
+/// The rotations gamma_1, Gamma_1, ... that belong to a solution of [`nine_point`].
+pub fn rotations(variables: &[Complex64], parameters: &[Complex64]) -> Vec<Complex64> {
+    let dyad = |v: &[Complex64], d: Complex64, dd: Complex64| {
+        let (alpha, beta) = (dd * v[0] - v[3] * v[0], d * v[1] - v[2] * v[1]);
+        (alpha, beta, dd * (v[0] - v[2]) + d * (v[1] - v[3]) + d * dd)
+    };
+    parameters
+        .chunks_exact(2)
+        .flat_map(|d| {
+            let (alpha, beta, kappa) = dyad(&variables[..4], d[0], d[1]);
+            let (alpha2, beta2, kappa2) = dyad(&variables[4..8], d[0], d[1]);
+            let k = alpha * beta2 - alpha2 * beta;
+            [
+                (beta * kappa2 - beta2 * kappa) / k,
+                (alpha2 * kappa - alpha * kappa2) / k,
+            ]
+        })
+        .collect()
 }
 
 /// A linkage with nine points on its coupler curve: a solution of [`nine_point`] and its
