@@ -21,7 +21,8 @@
 
 use cognate_algorithms::run_locally::run_locally;
 use cognate_algorithms::{PlanOptions, plan};
-use cognate_systems::formats::{self, Format};
+use cognate_systems::formats::{self, FileSettings, Format};
+use cognate_systems::named::{cyclic, eco, katsura, noon};
 use std::path::Path;
 use std::process::Command;
 
@@ -64,18 +65,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = tempfile::tempdir()?;
     println!("system            paths  distinct  tracking CPU s  paths/s   phc -b CPU s   ratio");
-    for (name, file) in [
-        ("katsura-10", "deploy/examples/katsura_10.bertini"),
-        (
-            "Stewart-Gough",
-            "tests/systems/stewart_gough_dietmaier/system.bertini",
-        ),
-        ("noon-5", "deploy/examples/noon_5.bertini"),
-        ("cyclic-5", "deploy/examples/cyclic_5.bertini"),
+    let file = "tests/systems/stewart_gough_dietmaier/system.bertini";
+    let platform = formats::read(file, &std::fs::read(root.join(file))?)?.system;
+    let file = "tests/systems/six_revolute_manseur_doty_tm8/system.bertini";
+    let arm = formats::read(file, &std::fs::read(root.join(file))?)?.system;
+    let only: Option<String> = std::env::args().nth(1).filter(|a| !a.starts_with('-'));
+    for (name, system) in [
+        ("katsura-10", katsura(10).system),
+        ("Stewart-Gough", platform),
+        ("6R", arm),
+        ("noon-5", noon(5).system),
+        ("cyclic-5", cyclic(5).system),
+        ("cyclic-7", cyclic(7).system),
+        ("eco-8", eco(8).system),
     ] {
+        if only.as_ref().is_some_and(|only| only != name) {
+            continue;
+        }
         // One PHCpack file, which both read.
-        let problem = formats::read(file, &std::fs::read(root.join(file))?)?;
-        let text = formats::write(Format::Phcpack, &problem.system, &problem.settings)?;
+        let text = formats::write(Format::Phcpack, &system, &FileSettings::default())?;
         let input = folder.path().join("input.phc");
         std::fs::write(&input, &text)?;
         let system = formats::read("input.phc", text.as_bytes())?.system;

@@ -2,15 +2,19 @@
 
 use crate::check::{Answer, check};
 use cognate_algorithms::PlanOptions;
+use cognate_algorithms::plan::StartChoice;
 use cognate_systems::named::{Named, cyclic, katsura, noon};
 
-/// Regular finite solutions, and all other paths at infinity.
+/// By total degree: regular finite solutions, and all other paths at infinity.
 pub fn check_named(name: &str, named: &Named, paths: u64, finite: u64) {
     assert_eq!(named.finite_solutions, Some(finite));
     check(
         name,
         &named.system,
-        &PlanOptions::default(),
+        &PlanOptions {
+            start: StartChoice::TotalDegree,
+            ..PlanOptions::default()
+        },
         Answer {
             paths,
             nonsingular: finite,

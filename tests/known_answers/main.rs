@@ -11,5 +11,6 @@ mod mechanisms;
 mod nine_point;
 mod overdetermined;
 mod parameter_homotopies;
+mod polyhedral;
 mod singular_endpoints;
 mod start_costs;

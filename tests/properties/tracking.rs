@@ -1,6 +1,7 @@
 //! A path's result is pure: not a function of width, neighbours, chunk or instruction set, and
 //! the same bits on every day: a golden hash notices a change of compiler or order of operations.
 
+use cognate_algorithms::plan::StartChoice;
 use cognate_algorithms::{Next, PathAlgorithm, PlanOptions, plan};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::stage::PreparedStage;
@@ -11,10 +12,11 @@ use cognate_systems::formats;
 use cognate_tests::builders::{example, katsura};
 use std::path::Path;
 
-/// The first stage of a problem, by the default plan and seed 7.
-fn first_stage(text: &str) -> PreparedStage {
+/// The first stage of a problem, by seed 7.
+fn first_stage(start: StartChoice, text: &str) -> PreparedStage {
     let problem = formats::read("golden", text.as_bytes()).expect("a system");
     let options = PlanOptions {
+        start,
         seed: 7,
         ..PlanOptions::default()
     };
@@ -25,17 +27,29 @@ fn first_stage(text: &str) -> PreparedStage {
     PreparedStage::new(&plan.system, &opening.stage, &|_| None).expect("a stage to track")
 }
 
-/// Problems by name: regular, multihomogeneous, with paths to infinity and to singular ends.
-fn problems() -> Vec<(&'static str, String)> {
+/// Problems by name: regular, multihomogeneous, with paths to infinity and to singular ends,
+/// from mixed cells.
+fn problems() -> Vec<(&'static str, StartChoice, String)> {
+    use StartChoice::{Auto, Polyhedral, TotalDegree};
     let double_root = "variable_group x, y;\nfunction f, g;\nf = (x - 1)^2 + y^3;\ng = x*y - y;";
     vec![
-        ("katsura_6", katsura(6)),
-        ("three_rpr", example("three_rpr.bertini")),
-        ("stewart_gough", example("stewart_gough_dietmaier.bertini")),
-        ("cyclic_5", example("cyclic_5.bertini")),
+        ("katsura_6", Auto, katsura(6)),
+        ("three_rpr", Auto, example("three_rpr.bertini")),
+        (
+            "stewart_gough",
+            Auto,
+            example("stewart_gough_dietmaier.bertini"),
+        ),
+        ("cyclic_5", TotalDegree, example("cyclic_5.bertini")),
         (
             "double_root",
+            Auto,
             format!("CONFIG\nEND;\nINPUT\n{double_root}\nEND;\n"),
+        ),
+        (
+            "cyclic_5_polyhedral",
+            Polyhedral,
+            example("cyclic_5.bertini"),
         ),
     ]
 }
@@ -49,8 +63,8 @@ fn hash(results: &[PathResult]) -> String {
 
 #[test]
 fn results_do_not_depend_on_how_they_are_had() {
-    for (name, text) in problems() {
-        let stage = first_stage(&text);
+    for (name, start, text) in problems() {
+        let stage = first_stage(start, &text);
         let end = stage.items().min(ITEMS);
         let expected = stage.track(0..end, 16);
         assert_eq!(expected.len() as u64, end);
@@ -74,7 +88,7 @@ fn results_do_not_depend_on_how_they_are_had() {
         for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
             check(set.name(), stage.track_on(set, 0..end, 8));
         }
-        let again = first_stage(&text);
+        let again = first_stage(start, &text);
         check("preparing the stage again", again.track(0..end, 16));
     }
 }
@@ -86,8 +100,8 @@ fn chunks_have_their_golden_hashes() {
          # A change here is a change of results: NUMERICS_REVISION in numeric/src/lib.rs must grow with it.\n\
          numerics revision {NUMERICS_REVISION}\n"
     );
-    for (name, text) in problems() {
-        let stage = first_stage(&text);
+    for (name, start, text) in problems() {
+        let stage = first_stage(start, &text);
         let end = stage.items().min(ITEMS);
         found += &format!("{name} 0..{end} {}\n", hash(&stage.track(0..end, 8)));
     }

@@ -4,6 +4,7 @@ use crate::certified_solve::{Certifiable, CertifiedSolve};
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
+use crate::polyhedral_solve::PolyhedralSolve;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
@@ -26,6 +27,8 @@ pub enum AnyAlgorithm {
     Monodromy(Box<MonodromySolve>),
     /// Any of them, and the proof of what it found.
     Certified(Box<CertifiedSolve>),
+    /// All isolated solutions of one system, from mixed cells.
+    Polyhedral(Box<PolyhedralSolve>),
 }
 
 /// Why a snapshot cannot be read.
@@ -71,6 +74,9 @@ impl AnyAlgorithm {
             Self::Certified(solve) => {
                 Self::Certified(Box::new(solve.with_max_retries(max_retries)))
             }
+            Self::Polyhedral(solve) => {
+                Self::Polyhedral(Box::new(solve.with_max_retries(max_retries)))
+            }
         }
     }
 
@@ -80,6 +86,7 @@ impl AnyAlgorithm {
             Self::Parameter(solve) => solve,
             Self::Monodromy(solve) => &**solve,
             Self::Certified(solve) => &**solve,
+            Self::Polyhedral(solve) => &**solve,
         }
     }
 
@@ -88,13 +95,23 @@ impl AnyAlgorithm {
         match self {
             Self::Monodromy(solve) => Some(&**solve),
             Self::Certified(solve) => solve.solve().monodromy(),
-            Self::ZeroDimensional(_) | Self::Parameter(_) => None,
+            Self::ZeroDimensional(_) | Self::Parameter(_) | Self::Polyhedral(_) => None,
         }
     }
 
     /// How loops have come along, in a solve by monodromy.
     pub fn loops(&self) -> Option<&LoopCounts> {
         self.monodromy().map(MonodromySolve::counts)
+    }
+
+    /// The last results of all paths by the numbers that people see, where a stage counts its
+    /// paths by others.
+    pub fn renumbered_results(&self) -> Option<Vec<PathResult>> {
+        match self {
+            Self::Polyhedral(solve) => Some(solve.results()),
+            Self::Certified(solve) => solve.solve().renumbered_results(),
+            Self::ZeroDimensional(_) | Self::Parameter(_) | Self::Monodromy(_) => None,
+        }
     }
 
     /// The stage whose paths the answer counts; stages before it only prepared it.
@@ -109,6 +126,7 @@ impl AnyAlgorithm {
             Self::Parameter(solve) => solve,
             Self::Monodromy(solve) => &mut **solve,
             Self::Certified(solve) => &mut **solve,
+            Self::Polyhedral(solve) => &mut **solve,
         }
     }
 }

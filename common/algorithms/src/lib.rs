@@ -14,6 +14,7 @@ pub mod opening;
 pub mod parameter_solve;
 pub mod plan;
 pub mod plan_error;
+pub mod polyhedral_solve;
 pub mod progress;
 pub mod retried_stage;
 pub mod run_locally;

@@ -5,12 +5,14 @@ use crate::certified_solve::CertifiedSolve;
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
+use crate::polyhedral_solve::PolyhedralSolve;
 use crate::retried_stage::MAX_RETRIES;
-use crate::start_costs::{StartKind, Starts, check_equations, checked_degrees};
+use crate::start_costs::{StartKind, Starts, check_equations, checked_degrees, mixed_volume};
 use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_continuation::start_systems::polyhedral::generic::SOLVING_OPERATIONS;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Tolerances;
@@ -21,6 +23,9 @@ use serde::{Deserialize, Serialize};
 
 /// Most paths of one solve: all results are held in memory, about 300 bytes a path.
 pub const MAX_PATHS: u64 = 4_000_000;
+
+/// Most operations that choosing a start spends on a mixed volume: about a second.
+const CHOOSING_OPERATIONS: u64 = 500_000_000;
 
 /// Which start is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,6 +42,8 @@ pub enum StartChoice {
     Given,
     /// Loops in the space of parameters, from given start solutions or one that is found.
     Monodromy,
+    /// From mixed cells.
+    Polyhedral,
 }
 
 /// Start solutions that are stored as an object.
@@ -195,12 +202,21 @@ fn plan_start_system(
         return Err(PlanError::StartParametersAlone);
     }
     let parameters = one_target(system, options)?;
-    let starts = Starts::of(system, options.seed)?;
+    if choice == StartChoice::Polyhedral {
+        return plan_polyhedral(system, parameters, "asked for".to_string(), options);
+    }
+    let mut starts = Starts::of(system, options.seed)?;
+    if choice == StartChoice::Auto {
+        starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
+    }
     let (kind, why) = match choice {
         StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
         StartChoice::Multihomogeneous => (StartKind::Multihomogeneous, "asked for".to_string()),
-        StartChoice::Auto | StartChoice::Given | StartChoice::Monodromy => starts.choose()?,
+        _ => starts.choose()?,
     };
+    if kind == StartKind::Polyhedral {
+        return plan_polyhedral(system, parameters, why, options);
+    }
     let (tracked, start_points) = match kind {
         StartKind::TotalDegree => {
             let (tracked, start, _) = starts.total_degree?;
@@ -213,6 +229,49 @@ fn plan_start_system(
     };
     let homotopy = HomotopyKind::StraightLine { parameters };
     Ok(finish(tracked, homotopy, start_points, kind, why, options))
+}
+
+/// From the mixed cells of a system with as many equations as unknowns.
+fn plan_polyhedral(
+    system: &System,
+    parameters: Vec<Complex64>,
+    why: String,
+    options: &PlanOptions,
+) -> Result<Plan, PlanError> {
+    checked_degrees(system)?;
+    check_equations(system)?;
+    let start = StartKind::Polyhedral;
+    let volume = mixed_volume(system, SOLVING_OPERATIONS).map_err(PlanError::NoMixedCells)?;
+    match volume {
+        0 => {
+            let why = "the mixed volume is 0: a system with these monomials has no isolated \
+                       solution unless its coefficients are special";
+            return Err(PlanError::NoMixedCells(why.into()));
+        }
+        number if number > MAX_PATHS => {
+            let number = Some(number);
+            return Err(PlanError::TooManyPaths { start, number });
+        }
+        _ => {}
+    }
+    let first = Stage {
+        id: StageId(0),
+        work: Work::Track,
+        homotopy: HomotopyKind::Toric,
+        start_points: StartPoints::MixedCells { count: volume },
+        settings: options.settings.clone(),
+        seed: options.seed,
+        attempt: 0,
+    };
+    let tolerances = options.tolerances.clone();
+    let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
+    Ok(Plan {
+        system: system.clone(),
+        algorithm: AnyAlgorithm::Polyhedral(Box::new(solve)).with_max_retries(options.max_retries),
+        start,
+        paths: volume,
+        why,
+    })
 }
 
 fn check_given(system: &System, start: &GivenStart) -> Result<(), PlanError> {

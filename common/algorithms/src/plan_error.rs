@@ -132,6 +132,9 @@ pub enum PlanError {
         /// How many groups.
         groups: usize,
     },
+    /// Mixed cells cannot be had.
+    #[error("the polyhedral start cannot be used: {0}")]
+    NoMixedCells(String),
     /// A product of projective spaces has no total degree.
     #[error("a total-degree start needs one homogeneous group or only affine ones")]
     TotalDegreeNeedsOneGroup,

@@ -61,6 +61,8 @@ pub struct RetriedStage {
     singular_points: Vec<Vec<u64>>,
     /// That stage is to be opened.
     isolation_wanted: bool,
+    /// Paths that belong to this stage and never began: lost in the one before.
+    lost: u64,
 }
 
 impl RetriedStage {
@@ -95,6 +97,7 @@ impl RetriedStage {
             wanted: None,
             singular_points: Vec::new(),
             isolation_wanted: false,
+            lost: 0,
         }
     }
 
@@ -108,6 +111,39 @@ impl RetriedStage {
     /// The stage that comes first.
     pub fn first(&self) -> &Stage {
         &self.first
+    }
+
+    /// The stage that comes after all of this one: the same system, tolerances and limit of
+    /// repetitions.
+    /// `lost`: paths that did not arrive where the new stage begins.
+    pub fn followed_by(&self, first: Stage, lost: u64) -> Self {
+        let items = first
+            .items()
+            .expect("a plan has only stages whose paths can be counted");
+        Self {
+            first: Stage {
+                id: StageId(self.first.id.0 + self.stages.len() as u32),
+                attempt: 0,
+                ..first
+            },
+            paths_per_target: items,
+            results: Vec::new(),
+            targets: vec![TargetBook::default()],
+            stages: Vec::new(),
+            wanted: None,
+            singular_points: Vec::new(),
+            isolation_wanted: false,
+            lost,
+            ..self.clone()
+        }
+    }
+
+    /// The verdicts on the last results of all paths so far.
+    pub fn decisions(&self) -> Vec<Decision> {
+        self.results
+            .iter()
+            .map(|result| classify(result, &self.shape, &self.tolerances))
+            .collect()
     }
 
     /// The last results of all paths so far.
@@ -215,9 +251,12 @@ impl RetriedStage {
     fn question(&self, accuracy: f64, target: u64, paths: u64) -> Question {
         let book = &self.targets[target as usize];
         // Paths of which the end is not known may all belong there.
-        let lost = book.verdicts.failed + book.crossings.paths().count() as u64;
+        let lost = self.lost + book.verdicts.failed + book.crossings.paths().count() as u64;
         // Other homotopies may leave out paths, and then fewer than the multiplicity end there.
-        let complete = matches!(self.first.homotopy, HomotopyKind::StraightLine { .. });
+        let complete = matches!(
+            self.first.homotopy,
+            HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. }
+        );
         Question {
             accuracy,
             bound: if complete { paths + lost } else { u64::MAX },
@@ -281,7 +320,9 @@ impl RetriedStage {
         self.wanted = (!suspects.is_empty() && attempt < self.max_retries).then_some(suspects);
         if self.wanted.is_none() {
             self.singular_points = self.find_singular_points();
-            self.isolation_wanted = !self.singular_points.is_empty();
+            // The end of a toric homotopy is another system than the one that is asked.
+            let asked = self.first.homotopy != HomotopyKind::Toric;
+            self.isolation_wanted = asked && !self.singular_points.is_empty();
         }
     }
 
@@ -433,18 +474,34 @@ impl RetriedStage {
             .results
             .get(target * size..(target + 1) * size)
             .unwrap_or(&[]);
+        let history = self.history(target, complete_start);
+        self.set_of(system, parameters, results, &history)
+    }
+
+    /// What was done for the paths of one target.
+    pub fn history(&self, target: usize, complete_start: bool) -> History {
         let book = &self.targets[target];
-        let history = History {
+        History {
             retracked: book.retracked,
             crossings_found: book.crossings.found(),
             crossings_resolved: book.crossings.resolved(),
             complete_start,
-        };
+        }
+    }
+
+    /// The solution set of these results, with the tolerances of this stage.
+    pub fn set_of(
+        &self,
+        system: &System,
+        parameters: &[Complex64],
+        results: &[PathResult],
+        history: &History,
+    ) -> SolutionSet {
         SolutionSet::new(
             system,
             parameters,
             results,
-            &history,
+            history,
             &self.tolerances,
             self.first.seed,
         )

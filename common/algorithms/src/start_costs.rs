@@ -23,6 +23,8 @@ pub enum StartKind {
     Given,
     /// Loops in the space of parameters.
     Monodromy,
+    /// Twice as many as the mixed volume: from mixed cells to a generic system, and on.
+    Polyhedral,
 }
 
 impl std::fmt::Display for StartKind {
@@ -32,6 +34,7 @@ impl std::fmt::Display for StartKind {
             Self::Multihomogeneous => "multihomogeneous",
             Self::Given => "given",
             Self::Monodromy => "monodromy",
+            Self::Polyhedral => "polyhedral",
         })
     }
 }
@@ -91,6 +94,8 @@ pub struct Starts {
     pub multihomogeneous: Result<(System, StartPoints, u64), PlanError>,
     /// Whether the groups are not the file's.
     pub found: Option<FoundGroups>,
+    /// The mixed volume, where it was asked for, or why it is not known.
+    pub mixed_volume: Option<Result<u64, String>>,
 }
 
 /// What is known of groups that were found.
@@ -121,10 +126,29 @@ impl Starts {
             total_degree: total_degree(system, &degrees),
             multihomogeneous,
             found,
+            mixed_volume: None,
             combined: (system.equation_count() > system.dimension())
                 .then(|| (system.equation_count(), system.dimension())),
             degrees,
         })
+    }
+
+    /// The same with the mixed volume, where it might make a difference and that many operations
+    /// suffice to count it.
+    #[must_use]
+    pub fn with_mixed_volume(mut self, system: &System, operations: u64) -> Self {
+        let few = |count: u64| !polyhedral_is_cheaper(1, count);
+        let fewest = [
+            self.total_degree.as_ref().map_or(u64::MAX, |t| t.2),
+            self.multihomogeneous.as_ref().map_or(u64::MAX, |m| m.2),
+        ];
+        if !fewest.into_iter().any(few) {
+            let paths = fewest.into_iter().min().unwrap_or(u64::MAX);
+            // No more than a fraction of what following them would take.
+            let operations = operations.min(paths.saturating_mul(50_000));
+            self.mixed_volume = Some(mixed_volume(system, operations));
+        }
+        self
     }
 
     fn groups(&self) -> usize {
@@ -133,7 +157,23 @@ impl Starts {
 
     /// The cheaper one, and why, in words.
     pub fn choose(&self) -> Result<(StartKind, String), PlanError> {
-        let (kind, why) = self.cheaper()?;
+        let bezout = self.cheaper();
+        let fewest = match &bezout {
+            Ok((StartKind::TotalDegree, _)) => self.total_degree.as_ref().map_or(0, |t| t.2),
+            Ok(_) => self.multihomogeneous.as_ref().map_or(0, |m| m.2),
+            Err(_) => u64::MAX,
+        };
+        if let Some(Ok(volume)) = self.mixed_volume
+            && polyhedral_is_cheaper(volume, fewest)
+        {
+            let otherwise = match &bezout {
+                Ok((kind, _)) => format!("{fewest} by the {kind} start"),
+                Err(error) => error.to_string(),
+            };
+            let why = format!("mixed volume {volume}, each path in two legs; {otherwise}");
+            return Ok((StartKind::Polyhedral, why));
+        }
+        let (kind, why) = bezout?;
         let why = match self.combined {
             Some((equations, unknowns)) => {
                 let s = if unknowns == 1 { "" } else { "s" };
@@ -206,15 +246,16 @@ impl StartCosts {
         let degrees = checked_degrees(system)?;
         let mut notes = BTreeMap::new();
         notes.insert("linear_product".into(), "not in this version".into());
-        let mixed_volume = match mixed_volume(system, COUNTING_OPERATIONS) {
-            Ok(number) => Some(number),
-            Err(why) => {
-                notes.insert("mixed_volume".into(), why);
-                None
-            }
-        };
+        let counted = mixed_volume(system, COUNTING_OPERATIONS);
+        if let Err(why) = &counted {
+            notes.insert("mixed_volume".into(), why.clone());
+        }
+        let mixed_volume = counted.clone().ok();
         // Degrees of combinations are the same for almost every seed.
-        let starts = Starts::of(system, 0);
+        let starts = Starts::of(system, 0).map(|starts| Starts {
+            mixed_volume: Some(counted),
+            ..starts
+        });
         let mut number = |name: &str, number: Result<u64, PlanError>| match number {
             Ok(number) => Some(number),
             // A number is a number, even where it is too large or too small to be used.
@@ -278,7 +319,7 @@ impl StartCosts {
 }
 
 /// The mixed volume that bounds the isolated solutions in C^n, or why it is not known.
-fn mixed_volume(system: &System, operations: u64) -> Result<u64, String> {
+pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, String> {
     if system.groups.iter().any(|group| group.homogeneous) {
         return Err("not counted for homogeneous groups".into());
     }
@@ -289,6 +330,14 @@ fn mixed_volume(system: &System, operations: u64) -> Result<u64, String> {
     mixed_cells(&affine_supports(&supports), 0, operations)
         .map(|found| found.mixed_volume)
         .map_err(|error| error.to_string())
+}
+
+/// Whether two legs for each of `volume` paths cost less than one for each of `count`.
+///
+/// Paths of a total-degree start that end at infinity are the dear ones, and a polyhedral start
+/// has few of them; so the second leg is not counted in full.
+fn polyhedral_is_cheaper(volume: u64, count: u64) -> bool {
+    count > 16 && volume.saturating_add(volume / 2) < count
 }
 
 /// Names of the variables, group by group.

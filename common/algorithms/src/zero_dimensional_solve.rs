@@ -26,7 +26,7 @@ impl ZeroDimensionalSolve {
     /// The solve that begins with this stage.
     ///
     /// # Panics
-    /// For a parameter homotopy: that has targets of its own.
+    /// For a parameter homotopy, which has targets of its own, and for a polyhedral one.
     pub fn new(first: Stage, system: &System, tolerances: Tolerances) -> Self {
         let (parameters, complete_start) = match &first.homotopy {
             HomotopyKind::StraightLine { parameters } => (parameters.clone(), true),
@@ -39,6 +39,9 @@ impl ZeroDimensionalSolve {
             }
             HomotopyKind::Parameter { .. } => {
                 panic!("a parameter homotopy is planned as a parameter solve")
+            }
+            HomotopyKind::Toric | HomotopyKind::Generic { .. } => {
+                panic!("a polyhedral homotopy is planned as a polyhedral solve")
             }
         };
         Self {

@@ -75,7 +75,8 @@ impl AskedSystem {
         let coordinates = chart.nodes(&mut out);
         let zero = Complex64::default();
         let (parameters, targets): (Vec<NodeId>, _) = match kind {
-            HomotopyKind::StraightLine { parameters } => {
+            HomotopyKind::Toric => (Vec::new(), vec![Vec::new()]),
+            HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
                 let values = parameters.iter().map(|&z| exact(&mut out, z)).collect();
                 (values, vec![Vec::new()])
             }

@@ -121,6 +121,23 @@ impl<'a, S: Real> Refiner<'a, S> {
         })
     }
 
+    /// Largest |H_i| at the point that was evaluated last, where the homotopy says so scaled to
+    /// coordinates of size 1: a point far out in its patch has large values and large errors.
+    #[inline(always)]
+    fn residual(&self) -> f64 {
+        let n = self.x.len();
+        let point: Vec<Complex64> = self.x.iter().map(|z| z.lane(0)).collect();
+        let scales = self.homotopy.row_scales(&point);
+        if scales.is_empty() {
+            return largest(&self.matrix, n);
+        }
+        let sizes = (0..n).map(|i| self.matrix.at(i, n).norm_sqr().lane(0).sqrt() / scales[i]);
+        sizes.fold(
+            0.0,
+            |m, size| if size > m || size.is_nan() { size } else { m },
+        )
+    }
+
     #[inline(always)]
     fn iterate(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {
         let n = point.len();
@@ -143,7 +160,7 @@ impl<'a, S: Real> Refiner<'a, S> {
             self.homotopy
                 .program()
                 .jacobian(&self.x, &self.p, &mut self.matrix, &mut self.scratch);
-            report.residual = largest(&self.matrix, n);
+            report.residual = self.residual();
             if round >= most {
                 break; // the matrix of the last point stands for the condition number
             }

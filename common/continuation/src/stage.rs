@@ -7,13 +7,14 @@ use crate::homotopies::{Homotopy, HomotopyKind};
 use crate::path_result::PathResult;
 use crate::start_points::{DamagedPoints, Digest, StartPoints, StoredPoints};
 use crate::start_systems::multihomogeneous::Multihomogeneous;
+use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
 use crate::start_systems::total_degree::TotalDegree;
 use crate::tracker::observer::{Recorder, StepEvent};
 use crate::tracker::rooms;
 use crate::tracker::settings::Settings;
 use crate::work::{Stage, Work};
 use cognate_numeric::lanes::dispatch::InstructionSet;
-use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees};
+use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees, supports};
 use cognate_systems::system::{System, SystemError};
 use cognate_systems::transform::randomize;
 use num_complex::Complex64;
@@ -74,6 +75,7 @@ enum Points {
 struct Beyond {
     system: System,
     degrees: Degrees,
+    start_system: Option<StartSystem>,
     homotopy: OnceLock<Homotopy>,
 }
 
@@ -128,7 +130,10 @@ impl PreparedStage {
             }
         };
         match &stage.homotopy {
-            HomotopyKind::StraightLine { parameters } => fits("parameters", parameters)?,
+            HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
+                fits("parameters", parameters)?;
+            }
+            HomotopyKind::Toric => {}
             HomotopyKind::PathVariable { parameters } => {
                 fits("parameters", parameters)?;
                 if system.path_variable.is_none() {
@@ -167,7 +172,10 @@ impl PreparedStage {
         };
         // Between two generic members of a family almost all paths stay near: they are tracked in
         // the system's own coordinates, and go on in projective patches where they run far out.
-        let affine = matches!(stage.homotopy, HomotopyKind::Parameter { .. });
+        let affine = matches!(
+            stage.homotopy,
+            HomotopyKind::Parameter { .. } | HomotopyKind::Toric | HomotopyKind::Generic { .. }
+        );
         let chart = if affine {
             Chart::affine(system, stage.seed)
         } else {
@@ -184,6 +192,12 @@ impl PreparedStage {
             .items()
             .ok_or_else(|| PrepareError::StartPoints("they are more than fit in 64 bits".into()))?;
         let straight = matches!(stage.homotopy, HomotopyKind::StraightLine { .. });
+        let toric = matches!(stage.homotopy, HomotopyKind::Toric);
+        let of_generic = matches!(stage.homotopy, HomotopyKind::Generic { .. });
+        let generic = match toric || of_generic {
+            true => Some(generic_system(system, overdetermined, stage.seed)?),
+            false => None,
+        };
         let points = match base {
             StartPoints::TotalDegree { degrees } => {
                 let fits = chart.group_count() == 1
@@ -227,12 +241,26 @@ impl PreparedStage {
                         system.variable_count()
                     )));
                 }
-                if straight {
+                if straight || toric {
                     return Err(PrepareError::StartPoints(
                         "stored points start a parameter homotopy or a user homotopy".into(),
                     ));
                 }
                 Points::Stored(stored)
+            }
+            StartPoints::MixedCells { count } => {
+                let generic = generic.clone().filter(|_| toric).ok_or_else(|| {
+                    PrepareError::StartPoints("mixed cells start a toric homotopy".into())
+                })?;
+                let start = ToricStart::new(generic, stage.seed)
+                    .map_err(|error| PrepareError::StartPoints(error.to_string()))?;
+                if start.count() != *count {
+                    return Err(PrepareError::StartPoints(format!(
+                        "the mixed volume is {}, not {count}",
+                        start.count()
+                    )));
+                }
+                Points::Made(StartSystem::Toric(Arc::new(start)))
             }
             StartPoints::Selected { .. } => {
                 return Err(PrepareError::StartPoints(
@@ -253,14 +281,14 @@ impl PreparedStage {
             }
         }
         let start_system = match &points {
-            Points::Made(made) => Some(made),
-            Points::Stored(_) => None,
+            Points::Made(made) => Some(made.clone()),
+            Points::Stored(_) => generic.map(StartSystem::Generic),
         };
         let homotopy = Homotopy::new(
             system,
             &of_system,
             &stage.homotopy,
-            start_system,
+            start_system.as_ref(),
             chart.clone(),
             &sample(&points, &chart),
             stage.seed,
@@ -268,6 +296,7 @@ impl PreparedStage {
         let beyond = affine.then(|| Beyond {
             system: system.clone(),
             degrees: of_system,
+            start_system,
             homotopy: OnceLock::new(),
         });
         Ok(Self {
@@ -302,7 +331,7 @@ impl PreparedStage {
                 &beyond.system,
                 &beyond.degrees,
                 &self.stage.homotopy,
-                None,
+                beyond.start_system.as_ref(),
                 chart,
                 &begins,
                 self.stage.seed,
@@ -328,6 +357,10 @@ impl PreparedStage {
         let origin = self.stage.origin(item);
         match self.stage.homotopy {
             HomotopyKind::Parameter { .. } => (origin, origin / self.starts),
+            HomotopyKind::Toric => match &self.points {
+                Points::Made(StartSystem::Toric(s)) => (origin, s.cell(origin) as u64),
+                _ => (origin, 0),
+            },
             _ => (origin, 0),
         }
     }
@@ -338,6 +371,8 @@ impl PreparedStage {
         match &self.points {
             Points::Made(StartSystem::TotalDegree(s)) => s.point(chart, origin),
             Points::Made(StartSystem::Multihomogeneous(s)) => s.point(chart, origin),
+            Points::Made(StartSystem::Toric(s)) => chart.from_variables(&s.point(origin)),
+            Points::Made(StartSystem::Generic(_)) => None,
             Points::Stored(points) => {
                 let index = usize::try_from(origin % self.starts).ok()?;
                 chart.from_variables(points.point(index))
@@ -400,6 +435,23 @@ fn sample(points: &Points, chart: &Chart) -> Vec<Vec<Complex64>> {
     (0..count)
         .filter_map(|k| chart.from_variables(points.point(k * points.len() / count)))
         .collect()
+}
+
+/// The generic system with the monomials of a square one in affine groups.
+fn generic_system(
+    system: &System,
+    overdetermined: bool,
+    seed: u64,
+) -> Result<GenericSystem, PrepareError> {
+    if overdetermined || system.groups.iter().any(|group| group.homogeneous) {
+        return Err(PrepareError::StartPoints(
+            "mixed cells are for as many equations as unknowns, in affine groups".into(),
+        ));
+    }
+    let supports = supports(system).ok_or_else(|| {
+        PrepareError::StartPoints("the equations are too large to be multiplied out".into())
+    })?;
+    Ok(GenericSystem::new(&supports, seed))
 }
 
 #[cfg(test)]

@@ -42,6 +42,11 @@ pub enum StartPoints {
         /// The chosen indices, ascending.
         indices: Vec<u64>,
     },
+    /// The solutions of the binomial systems of the mixed cells: made from the index.
+    MixedCells {
+        /// The mixed volume.
+        count: u64,
+    },
 }
 
 /// Points as an object: the variables of the system in order, one point after the other.
@@ -166,7 +171,7 @@ impl StartPoints {
                 degrees,
                 dimensions,
             } => crate::start_systems::multihomogeneous::bezout_number(degrees, dimensions),
-            Self::Stored { count, .. } => Some(*count),
+            Self::Stored { count, .. } | Self::MixedCells { count } => Some(*count),
             Self::Selected { indices, .. } => Some(indices.len() as u64),
         }
     }
@@ -176,7 +181,9 @@ impl StartPoints {
         match self {
             Self::Stored { object, .. } => Some(*object),
             Self::Selected { base, .. } => base.object(),
-            Self::TotalDegree { .. } | Self::Multihomogeneous { .. } => None,
+            Self::TotalDegree { .. } | Self::Multihomogeneous { .. } | Self::MixedCells { .. } => {
+                None
+            }
         }
     }
 

@@ -26,9 +26,30 @@ pub fn roots_of_unity(degree: u32) -> Vec<Complex64> {
         .collect()
 }
 
+/// The number of modulus 1 at an angle of `turn` / 2^128 of a full turn.
+pub fn on_the_circle(turn: u128) -> Complex64 {
+    let quarter = 1 << 126;
+    if turn.is_multiple_of(quarter) {
+        return roots_of_unity(4)[(turn / quarter) as usize];
+    }
+    let pi = Float::with_val(200, Constant::Pi);
+    let angle = Float::with_val(200, Float::with_val(200, turn) * pi) >> 127u32;
+    let (sine, cosine) = angle.sin_cos(Float::new(200));
+    Complex64::new(cosine.to_f64(), sine.to_f64())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn angles_are_turns() {
+        let i = on_the_circle(1 << 126);
+        assert_eq!(i, Complex64::new(0.0, 1.0));
+        let eighth = on_the_circle(1 << 125);
+        assert_eq!(eighth, roots_of_unity(8)[1]);
+        assert!(on_the_circle(u128::MAX).im < 0.0);
+    }
 
     #[test]
     fn powers_are_one() {

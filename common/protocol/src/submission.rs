@@ -73,6 +73,8 @@ pub enum StartKind {
     Given,
     /// Loops in the space of parameters.
     Monodromy,
+    /// Mixed cells.
+    Polyhedral,
 }
 
 /// The arithmetic asked for.

@@ -6,6 +6,7 @@
 
 mod support;
 
+use cognate_protocol::submission::{Options, StartKind};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use prost::Message;
 use std::fmt::Write;
@@ -82,7 +83,10 @@ fn canonical_system() {
 
 #[test]
 fn options() {
-    let options = Draw::new(3).options();
+    let options = Options {
+        start: StartKind::Given,
+        ..Draw::new(3).options()
+    };
     let message = to_proto::problem::options(&options);
     let bytes = golden(
         "options.txt",

@@ -97,20 +97,19 @@ pub enum Format {
 /// Where the paths begin, as typed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Start {
-    /// The cheapest of total degree and multihomogeneous; given where start solutions are
+    /// The cheapest of total degree, multihomogeneous and polyhedral; given where start solutions are
     #[default]
     Auto,
     /// As many paths as the product of the degrees
     TotalDegree,
-    /// Fewer paths, by the file's variable groups (or --groups)
+    /// Fewer paths, by the file's variable groups (or --groups), or by the best ones
     Multihomogeneous,
     /// From known solutions: --start-solutions
     Given,
     /// Not in this version
     #[value(hide = true)]
     LinearProduct,
-    /// Not in this version
-    #[value(hide = true)]
+    /// As many paths as the mixed volume of the equations' monomials
     Polyhedral,
     /// Not in this version
     #[value(hide = true)]

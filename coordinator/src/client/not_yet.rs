@@ -29,13 +29,13 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
 fn problem(a: &ProblemArguments) -> Option<String> {
     let start = match a.start {
         Start::LinearProduct => Some("--start linear-product"),
-        Start::Polyhedral => Some("--start polyhedral"),
         Start::Regeneration => Some("--start regeneration"),
         Start::Auto
         | Start::TotalDegree
         | Start::Multihomogeneous
         | Start::Given
-        | Start::Monodromy => None,
+        | Start::Monodromy
+        | Start::Polyhedral => None,
     };
     let flags = [
         (a.deflate, "--deflate (deflation of singular solutions)"),

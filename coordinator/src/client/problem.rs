@@ -101,7 +101,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (Start::Given, None) => {
             return Err(wrong("--start given", "needs --start-solutions FILE"));
         }
-        (Start::TotalDegree | Start::Multihomogeneous, Some(_)) => {
+        (Start::TotalDegree | Start::Multihomogeneous | Start::Polyhedral, Some(_)) => {
             return Err(wrong(
                 "--start-solutions",
                 "only go with --start given, monodromy or auto",
@@ -110,6 +110,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (Start::TotalDegree, None) => StartKind::TotalDegree,
         (Start::Multihomogeneous, None) => StartKind::Multihomogeneous,
         (Start::Monodromy, _) => StartKind::Monodromy,
+        (Start::Polyhedral, None) => StartKind::Polyhedral,
         (_, Some(_)) => StartKind::Given,
         // What is not in this version was refused before.
         (_, None) => StartKind::Auto,

@@ -7,6 +7,7 @@ use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
 use crate::results::summary::{SOLUTIONS, Summary};
 use cognate_algorithms::AnyAlgorithm;
+use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
@@ -49,6 +50,7 @@ fn purpose(stage: &Stage) -> String {
     match stage.attempt {
         _ if stage.work == Work::Certify => "certifying".to_owned(),
         _ if stage.work == Work::LocalDimension => "whether singular endpoints are isolated".into(),
+        0 if stage.homotopy == HomotopyKind::Toric => "tracking to a generic system".to_owned(),
         0 => "tracking".to_owned(),
         attempt => format!("tracking again, more carefully ({attempt})"),
     }
@@ -189,6 +191,9 @@ impl Coordinator {
                         "the state of job {job} cannot be read: {error}"
                     ))
                 })?;
+                if let Some(results) = algorithm.renumbered_results() {
+                    return Ok(classified(results, &sets, &PointShape::of(&system)));
+                }
                 algorithm.counted_stage()
             }
         };

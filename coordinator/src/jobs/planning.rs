@@ -108,6 +108,7 @@ pub fn plan_options(
             StartKind::Multihomogeneous => StartChoice::Multihomogeneous,
             StartKind::Given => StartChoice::Given,
             StartKind::Monodromy => StartChoice::Monodromy,
+            StartKind::Polyhedral => StartChoice::Polyhedral,
         },
         start_points,
         start_parameters,

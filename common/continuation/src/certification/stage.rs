@@ -43,7 +43,11 @@ pub fn certified_system(system: &System, seed: u64) -> Result<System, PrepareErr
 /// The parameters at the end of a homotopy, target by target.
 pub fn parameters_at_targets(homotopy: &HomotopyKind, system: &System) -> Vec<Vec<Complex64>> {
     match homotopy {
-        HomotopyKind::StraightLine { parameters } => vec![parameters.clone()],
+        HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
+            vec![parameters.clone()]
+        }
+        // It ends at another system.
+        HomotopyKind::Toric => vec![vec![Complex64::new(0.0, 0.0); system.parameters.len()]],
         HomotopyKind::Parameter { targets, .. } => targets.clone(),
         HomotopyKind::PathVariable { parameters } => {
             let mut parameters = parameters.clone();

@@ -7,6 +7,7 @@
 
 pub mod parameter_path;
 pub mod prepare;
+pub mod toric_path;
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -33,6 +34,14 @@ pub enum HomotopyKind {
     /// A homotopy of the user's own: the system's path variable is t.
     PathVariable {
         /// Values of the system's other parameters, at their places; the path variable's own is ignored.
+        parameters: Vec<Complex64>,
+    },
+    /// From the binomial systems of the mixed cells to the generic system with the monomials of
+    /// F (and a constant, where a solution can have a coordinate 0).
+    Toric,
+    /// `(1-t) F + t gamma G` with that generic system G, whose solutions are stored.
+    Generic {
+        /// Values of the system's parameters, if it has any.
         parameters: Vec<Complex64>,
     },
 }

@@ -6,6 +6,7 @@
 //! with probability one meets no singularity (survey, section 6.2; Morgan and
 //! Sommese, Coefficient-parameter polynomial continuation, 1989).
 
+use super::toric_path::ToricPath;
 use cognate_numeric::scalar::{Complex, Real};
 use num_complex::Complex64;
 
@@ -14,6 +15,8 @@ use num_complex::Complex64;
 pub struct ParameterPath {
     /// `gamma`; `None` for the straight segment.
     pub arc: Option<Complex64>,
+    /// `a` are coefficients and `b` weights: [`ToricPath`].
+    pub toric: Option<ToricPath>,
 }
 
 impl ParameterPath {
@@ -28,6 +31,9 @@ impl ParameterPath {
         p: &mut [Complex<R>],
         dp: &mut [Complex<R>],
     ) {
+        if let Some(toric) = &self.toric {
+            return toric.at(context, t, a, b, p, dp);
+        }
         let t = Complex::<R>::from_control(context, t);
         let (phi, derivative) = match self.arc {
             None => (t, Complex::from_f64(context, 1.0, 0.0)),
@@ -61,7 +67,7 @@ mod tests {
     #[test]
     fn ends_are_met_and_the_derivative_agrees_with_differences() {
         for arc in [None, Some(Complex64::new(0.6, -0.8))] {
-            let path = ParameterPath { arc };
+            let path = ParameterPath { arc, toric: None };
             let at = |t: f64| {
                 let (mut p, mut dp) = ([Complex::zero(())], [Complex::zero(())]);
                 let t = Complex { re: t, im: 0.0 };

@@ -4,9 +4,11 @@
 //! join the start system, put the rows into the order in which elimination
 //! wants them, compile. All of it is a pure function of system, kind and seed.
 
+use super::toric_path::ToricPath;
 use super::{HomotopyKind, ParameterPath};
 use crate::chart::{Chart, exact};
 use crate::start_systems::multihomogeneous::Multihomogeneous;
+use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
 use crate::start_systems::total_degree::TotalDegree;
 use cognate_machine_code::elimination::MOST_ROWS;
 use cognate_machine_code::{Elimination, Evaluator};
@@ -23,12 +25,16 @@ use cognate_systems::polynomial::Degrees;
 use cognate_systems::system::System;
 use cognate_systems::transform::homogenize;
 use num_complex::Complex64;
+use std::sync::Arc;
+use std::vec::IntoIter;
 
 /// The start system of a straight-line homotopy.
 #[derive(Clone, Debug)]
 pub(crate) enum StartSystem {
     TotalDegree(TotalDegree),
     Multihomogeneous(Multihomogeneous),
+    Toric(Arc<ToricStart>),
+    Generic(GenericSystem),
 }
 
 /// A homotopy ready to be tracked: every one is a program F(z; p(t)).
@@ -43,6 +49,11 @@ pub struct Homotopy {
     start: Vec<Complex64>,
     /// Parameters of the program at t = 0, for each target.
     targets: Vec<Vec<Complex64>>,
+    /// Where paths begin in mixed cells: a target is the path's cell.
+    toric: Option<Arc<ToricStart>>,
+    /// Degree of each row of the program in each group; none where residuals are taken as they
+    /// are, wherever in its patch a point lies.
+    row_degrees: Vec<Vec<u32>>,
 }
 
 /// The power of two that brings `size` between 1/2 and 1.
@@ -59,14 +70,14 @@ fn power_of_two_scale(size: f64) -> i32 {
     exponent
 }
 
-/// Scales each equation by a power of two, so that its values at points of the patch are about 1.
-pub(crate) fn normalize(
-    out: &mut Expressions,
-    equations: &mut [NodeId],
+/// The powers of two that bring the values of each equation at random points to about 1.
+fn scales(
+    out: &Expressions,
+    equations: &[NodeId],
     dimension: usize,
     parameters: &[Complex64],
     stream: &mut RandomStream,
-) {
+) -> Vec<i32> {
     const PROBES: usize = 4;
     let mut sizes = vec![0.0f64; equations.len()];
     for _ in 0..PROBES {
@@ -75,12 +86,52 @@ pub(crate) fn normalize(
             Real::max(size, &value.norm_sqr().sqrt());
         }
     }
-    for (equation, size) in equations.iter_mut().zip(sizes) {
-        let exponent = power_of_two_scale(size);
+    sizes.into_iter().map(power_of_two_scale).collect()
+}
+
+/// Multiplies each equation by a power of two.
+fn scale(out: &mut Expressions, equations: &mut [NodeId], exponents: &[i32]) {
+    for (equation, &exponent) in equations.iter_mut().zip(exponents) {
         let scale = Rational::from(1) << exponent;
         let scale = out.constant(ComplexRational::real(scale));
         *equation = out.multiply(scale, *equation);
     }
+}
+
+/// Scales each equation by a power of two, so that its values at points of the patch are about 1.
+pub(crate) fn normalize(
+    out: &mut Expressions,
+    equations: &mut [NodeId],
+    dimension: usize,
+    parameters: &[Complex64],
+    stream: &mut RandomStream,
+) {
+    let exponents = scales(out, equations, dimension, parameters, stream);
+    scale(out, equations, &exponents);
+}
+
+/// Scales of a system and of the generic one with its monomials, which stand for one homotopy in
+/// every chart: they are taken in the system's own coordinates.
+fn scales_beside_generic(
+    system: &System,
+    degrees: &Degrees,
+    parameters: &[Complex64],
+    generic: &GenericSystem,
+    seed: u64,
+) -> [Vec<i32>; 2] {
+    let chart = Chart::affine(system, seed);
+    let mut out = Expressions::new();
+    let coordinates = chart.nodes(&mut out);
+    let values: Vec<NodeId> = parameters.iter().map(|&z| exact(&mut out, z)).collect();
+    let asked = homogenize(system, degrees, &mut out, &coordinates, &values);
+    let start = generic.constant_equations(system, &degrees.by_group, &mut out, &coordinates);
+    let mut stream = RandomStream::new(seed, Purpose::Probe, 1);
+    [asked, start].map(|equations| scales(&out, &equations, chart.dimension(), &[], &mut stream))
+}
+
+/// `base^exponent` by multiplication: the same bits everywhere.
+fn power(base: f64, exponent: u32) -> f64 {
+    (0..exponent).fold(1.0, |product, _| product * base)
 }
 
 /// A random unit complex number at least 30 degrees off the real axis.
@@ -115,13 +166,13 @@ const LEAST_SPARSE: usize = MOST_ROWS + 1;
 /// Lists serve where they save at least this part of the operations.
 const SAVED: f64 = 0.4;
 
-/// The program with its rows in the order that elimination prefers for matrices like these, and
-/// the elimination.
+/// The program with its rows in the order that elimination prefers for matrices like these,
+/// the elimination, and the order.
 fn arrange(
     program: &Interpreter,
     samples: &[Matrix<f64>],
     instructions: InstructionSet,
-) -> (Interpreter, Elimination) {
+) -> (Interpreter, Elimination, Vec<usize>) {
     let n = program.shape().variables;
     if n >= LEAST_SPARSE {
         let pattern = program.pattern();
@@ -130,12 +181,14 @@ fn arrange(
         let sparse = SparseElimination::new(&rows, &order.columns);
         if sparse.flops() as f64 <= (1.0 - SAVED) * flops(n as u64, 2) as f64 {
             let program = program.with_row_order(&order.rows);
-            return (program, Elimination::sparse(n, sparse));
+            return (program, Elimination::sparse(n, sparse), order.rows);
         }
     }
+    let order = pivot_order(samples);
     (
-        program.with_row_order(&pivot_order(samples)),
+        program.with_row_order(&order),
         Elimination::new(n, instructions),
+        order,
     )
 }
 
@@ -156,9 +209,10 @@ impl Homotopy {
         let coordinates = chart.nodes(&mut out);
         let count = system.parameters.len();
         let parameter_nodes: Vec<NodeId> = match kind {
-            HomotopyKind::StraightLine { parameters } => {
+            HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
                 parameters.iter().map(|&z| exact(&mut out, z)).collect()
             }
+            HomotopyKind::Toric => Vec::new(),
             HomotopyKind::Parameter { .. } => (0..count).map(|k| out.parameter(k as u32)).collect(),
             HomotopyKind::PathVariable { parameters } => (0..count)
                 .map(|k| {
@@ -170,26 +224,59 @@ impl Homotopy {
                 })
                 .collect(),
         };
-        let mut equations = homogenize(system, degrees, &mut out, &coordinates, &parameter_nodes);
+        let toric = match (kind, start_system) {
+            (HomotopyKind::Toric, Some(StartSystem::Toric(toric))) => Some(Arc::clone(toric)),
+            _ => None,
+        };
+        let mut equations = match &toric {
+            Some(toric) => {
+                let mut number = 0..;
+                let parameter = |out: &mut Expressions| out.parameter(number.next().unwrap_or(0));
+                let generic = toric.generic();
+                generic.equations(system, &degrees.by_group, &mut out, &coordinates, parameter)
+            }
+            None => homogenize(system, degrees, &mut out, &coordinates, &parameter_nodes),
+        };
         let dimension = chart.dimension();
         let mut probe = RandomStream::new(seed, Purpose::Probe, 0);
         let one = Complex64::new(1.0, 0.0);
         let zero = Complex64::default();
         let at_start: Vec<Complex64> = match kind {
-            HomotopyKind::StraightLine { .. } => Vec::new(),
+            HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. } => Vec::new(),
+            HomotopyKind::Toric => toric
+                .iter()
+                .flat_map(|toric| toric.generic().coefficients())
+                .collect(),
             HomotopyKind::Parameter { start, .. } => start.clone(),
             HomotopyKind::PathVariable { .. } => vec![one],
         };
-        normalize(&mut out, &mut equations, dimension, &at_start, &mut probe);
+        let shared_scales = match (kind, start_system) {
+            (HomotopyKind::Generic { parameters }, Some(StartSystem::Generic(generic))) => Some(
+                scales_beside_generic(system, degrees, parameters, generic, seed),
+            ),
+            _ => None,
+        };
+        match &shared_scales {
+            Some([asked, _]) => scale(&mut out, &mut equations, asked),
+            None => normalize(&mut out, &mut equations, dimension, &at_start, &mut probe),
+        }
 
         let (arc, start, targets) = match kind {
-            HomotopyKind::StraightLine { .. } => {
+            HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. } => {
                 let mut starts = match start_system {
+                    Some(StartSystem::Generic(s)) => {
+                        s.constant_equations(system, &degrees.by_group, &mut out, &coordinates)
+                    }
                     Some(StartSystem::TotalDegree(s)) => s.equations(&mut out, &coordinates[0]),
                     Some(StartSystem::Multihomogeneous(s)) => s.equations(&mut out, &coordinates),
-                    None => panic!("a straight-line homotopy has a start system"),
+                    Some(StartSystem::Toric(_)) | None => {
+                        panic!("a straight-line homotopy has a start system")
+                    }
                 };
-                normalize(&mut out, &mut starts, dimension, &[], &mut probe);
+                match &shared_scales {
+                    Some([_, start]) => scale(&mut out, &mut starts, start),
+                    None => normalize(&mut out, &mut starts, dimension, &[], &mut probe),
+                }
                 let (of_target, of_start) = (out.parameter(0), out.parameter(1));
                 for (equation, start) in equations.iter_mut().zip(starts) {
                     let f = out.multiply(of_target, *equation);
@@ -197,6 +284,16 @@ impl Homotopy {
                     *equation = out.add(f, g);
                 }
                 let gamma = generic_unit(seed, Purpose::Gamma);
+                if shared_scales.is_some() {
+                    // Both together as this chart would have them.
+                    normalize(
+                        &mut out,
+                        &mut equations,
+                        dimension,
+                        &[one, gamma],
+                        &mut probe,
+                    );
+                }
                 (None, vec![zero, gamma], vec![vec![one, zero]])
             }
             HomotopyKind::Parameter { start, targets } => {
@@ -204,6 +301,7 @@ impl Homotopy {
                 (Some(gamma), start.clone(), targets.clone())
             }
             HomotopyKind::PathVariable { .. } => (None, vec![one], vec![vec![zero]]),
+            HomotopyKind::Toric => (None, at_start.clone(), vec![at_start.clone()]),
         };
 
         // The order in which elimination meets the rows: from points where the paths begin, or
@@ -235,13 +333,25 @@ impl Homotopy {
             }
         }
         let instructions = InstructionSet::detect();
-        let (program, elimination) = arrange(&program, &samples, instructions);
+        let (program, elimination, order) = arrange(&program, &samples, instructions);
+        let polyhedral = matches!(kind, HomotopyKind::Toric | HomotopyKind::Generic { .. });
+        let row_degrees = match polyhedral {
+            true => order.iter().map(|&i| degrees.by_group[i].clone()).collect(),
+            false => Vec::new(),
+        };
         Self {
             evaluator: Evaluator::new(program.clone(), instructions),
             elimination,
             program,
             chart,
-            path: ParameterPath { arc },
+            path: ParameterPath {
+                arc,
+                toric: toric.as_ref().map(|toric| ToricPath {
+                    exponent: toric.time_exponent(),
+                }),
+            },
+            toric,
+            row_degrees,
             start,
             targets,
         }
@@ -282,19 +392,43 @@ impl Homotopy {
         self.start.len()
     }
 
-    /// `a` and `b` of p(t) = a + phi(t) b on the way to this target.
-    pub(crate) fn ends(
-        &self,
-        target: u64,
-    ) -> (
-        impl Iterator<Item = Complex64> + use<'_>,
-        impl Iterator<Item = Complex64> + use<'_>,
-    ) {
+    /// `a` and `b` of p(t) = a + phi(t) b on the way to this target; of a toric homotopy
+    /// coefficients and weights, and the target is the path's cell.
+    pub(crate) fn ends(&self, target: u64) -> (IntoIter<Complex64>, IntoIter<Complex64>) {
+        if let Some(toric) = &self.toric {
+            let weights = toric.weights(target as usize).into_iter();
+            let weights: Vec<_> = weights.map(|w| Complex64::new(w, 0.0)).collect();
+            return (self.start.clone().into_iter(), weights.into_iter());
+        }
         let target = &self.targets[target as usize];
-        (
-            target.iter().copied(),
-            self.start.iter().zip(target).map(|(s, t)| s - t),
-        )
+        let way: Vec<_> = self.start.iter().zip(target).map(|(s, t)| s - t).collect();
+        (target.clone().into_iter(), way.into_iter())
+    }
+
+    /// How much larger each row can be at this point than where the largest coordinate of every
+    /// group is 1; none where that is not asked.
+    pub(crate) fn row_scales(&self, point: &[Complex64]) -> Vec<f64> {
+        if self.row_degrees.is_empty() {
+            return Vec::new();
+        }
+        let coordinates = self.chart.homogeneous(point);
+        let mut begin = 0;
+        let sizes: Vec<f64> = (0..self.chart.group_count())
+            .map(|g| {
+                let end = begin + self.chart.group_size(g);
+                let group = &coordinates[begin..end];
+                begin = end;
+                let largest = group.iter().fold(1.0f64, |m, z| m.max(z.norm_sqr()));
+                largest.sqrt()
+            })
+            .collect();
+        let scale = |degrees: &Vec<u32>| {
+            let powers = sizes.iter().zip(degrees);
+            powers.fold(1.0, |product, (size, &degree)| {
+                product * power(*size, degree)
+            })
+        };
+        self.row_degrees.iter().map(scale).collect()
     }
 
     /// Values of the homogenising coordinates at a point of the chart, of one lane: formed with

@@ -43,7 +43,11 @@ impl PreparedLocalDimension {
         }
         let (given, targets) = match &stage.homotopy {
             HomotopyKind::StraightLine { parameters }
+            | HomotopyKind::Generic { parameters }
             | HomotopyKind::PathVariable { parameters } => (std::slice::from_ref(parameters), 1),
+            HomotopyKind::Toric => {
+                return Err(misfit("a toric homotopy ends at another system"));
+            }
             HomotopyKind::Parameter { targets, .. } => (targets.as_slice(), targets.len() as u64),
         };
         let expected = system.parameters.len();

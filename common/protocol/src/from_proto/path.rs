@@ -76,6 +76,10 @@ fn homotopy(m: &v1::Homotopy) -> Result<HomotopyKind, ProtocolError> {
         Kind::StraightLine(h) => HomotopyKind::StraightLine {
             parameters: values("straight_line.parameters", &h.parameters)?,
         },
+        Kind::Toric(v1::Toric {}) => HomotopyKind::Toric,
+        Kind::Generic(h) => HomotopyKind::Generic {
+            parameters: values("generic.parameters", &h.parameters)?,
+        },
         Kind::PathVariable(h) => HomotopyKind::PathVariable {
             parameters: values("path_variable.parameters", &h.parameters)?,
         },
@@ -139,6 +143,7 @@ fn start_points(m: &v1::StartPoints) -> Result<StartPoints, ProtocolError> {
             object: digest("stored.object", &p.object)?,
             count: p.count,
         },
+        Kind::MixedCells(p) => StartPoints::MixedCells { count: p.count },
         Kind::Selected(p) => {
             let base = required("selected.base", p.base.as_deref())?;
             // A selection of a selection would let a message recurse as deep as it likes.

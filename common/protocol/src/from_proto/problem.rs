@@ -88,6 +88,7 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             Ok(v1::StartKind::Multihomogeneous) => StartKind::Multihomogeneous,
             Ok(v1::StartKind::Given) => StartKind::Given,
             Ok(v1::StartKind::Monodromy) => StartKind::Monodromy,
+            Ok(v1::StartKind::Polyhedral) => StartKind::Polyhedral,
             Err(_) => {
                 return Err(ProtocolError::invalid(
                     "start",

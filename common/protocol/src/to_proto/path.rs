@@ -47,6 +47,10 @@ fn homotopy(homotopy: &HomotopyKind) -> v1::Homotopy {
                     })
                     .collect(),
             }),
+            HomotopyKind::Toric => Kind::Toric(v1::Toric {}),
+            HomotopyKind::Generic { parameters } => Kind::Generic(v1::Generic {
+                parameters: complexes(parameters),
+            }),
             HomotopyKind::PathVariable { parameters } => Kind::PathVariable(v1::PathVariable {
                 parameters: complexes(parameters),
             }),
@@ -77,6 +81,7 @@ fn start_points(points: &StartPoints) -> v1::StartPoints {
                 object: digest(*object),
                 count: *count,
             }),
+            StartPoints::MixedCells { count } => Kind::MixedCells(v1::MixedCells { count: *count }),
             StartPoints::Selected { base, indices } => Kind::Selected(Box::new(v1::Selected {
                 base: Some(Box::new(start_points(base))),
                 indices: indices.clone(),

@@ -34,6 +34,7 @@ pub fn options(options: &Options) -> v1::Options {
             StartKind::Multihomogeneous => v1::StartKind::Multihomogeneous,
             StartKind::Given => v1::StartKind::Given,
             StartKind::Monodromy => v1::StartKind::Monodromy,
+            StartKind::Polyhedral => v1::StartKind::Polyhedral,
         }
         .into(),
         groups: options

@@ -200,7 +200,9 @@ impl Draw {
                 StartKind::TotalDegree,
                 StartKind::Multihomogeneous,
                 StartKind::Given,
-            ][self.below(4)],
+                StartKind::Monodromy,
+                StartKind::Polyhedral,
+            ][self.below(6)],
             groups: self.some(|draw| {
                 vec![
                     vec!["x".to_owned()],
@@ -261,7 +263,8 @@ impl Draw {
 
     /// A stage that passes the checks.
     pub fn stage(&mut self) -> Stage {
-        let base = match self.below(3) {
+        let base = match self.below(4) {
+            3 => StartPoints::MixedCells { count: 1000 },
             0 => StartPoints::TotalDegree {
                 degrees: vec![2, 3, 1 + self.index(9)],
             },
@@ -280,7 +283,11 @@ impl Draw {
         Stage {
             id: StageId(self.index(5)),
             work: Work::Track,
-            homotopy: match self.below(3) {
+            homotopy: match self.below(5) {
+                3 => HomotopyKind::Toric,
+                4 => HomotopyKind::Generic {
+                    parameters: values(self),
+                },
                 0 => HomotopyKind::StraightLine {
                     parameters: values(self),
                 },

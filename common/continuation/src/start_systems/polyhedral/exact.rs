@@ -38,7 +38,7 @@ pub(super) trait Exact:
     fn compare_fractions(a: &Self, b: &Self, c: &Self, d: &Self) -> Ordering;
 
     /// The number, where it fits.
-    fn to_i64(&self) -> Option<i64>;
+    fn to_i128(&self) -> Option<i128>;
 }
 
 impl Exact for i64 {
@@ -74,8 +74,8 @@ impl Exact for i64 {
         (i128::from(*a) * i128::from(*d)).cmp(&(i128::from(*c) * i128::from(*b)))
     }
 
-    fn to_i64(&self) -> Option<i64> {
-        Some(*self)
+    fn to_i128(&self) -> Option<i128> {
+        Some(i128::from(*self))
     }
 }
 
@@ -109,8 +109,8 @@ impl Exact for i128 {
         )
     }
 
-    fn to_i64(&self) -> Option<i64> {
-        i64::try_from(*self).ok()
+    fn to_i128(&self) -> Option<i128> {
+        Some(*self)
     }
 }
 
@@ -137,8 +137,8 @@ impl Exact for Integer {
         Integer::from(a * d).cmp(&Integer::from(c * b))
     }
 
-    fn to_i64(&self) -> Option<i64> {
-        Integer::to_i64(self)
+    fn to_i128(&self) -> Option<i128> {
+        Integer::to_i128(self)
     }
 }
 

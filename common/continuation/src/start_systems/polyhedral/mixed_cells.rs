@@ -28,6 +28,9 @@ pub struct MixedCell {
     pub edges: Vec<[u32; 2]>,
     /// Its volume: how many solutions its binomial system has.
     pub volume: u64,
+    /// Its inner normal times its volume: volume times lifting plus this is
+    /// smallest, over each support, at the ends of the edge.
+    pub normal: Vec<i128>,
 }
 
 /// All mixed cells of one generic lifting.
@@ -286,12 +289,49 @@ impl Tuple {
 
     fn finished<T: Exact>(&self, cell: &Cell<T>) -> Result<MixedCell, Stop> {
         let too_large = Stop::Error(MixedCellsError::TooLarge);
-        let volume = cell.volume.to_i64().ok_or(too_large)? as u64;
+        let volume = cell.volume.to_i128().and_then(|v| u64::try_from(v).ok());
+        let volume = volume.ok_or(too_large)?;
         let mut edges = vec![[0; 2]; self.n];
         for (support, &[a, b]) in self.supports.iter().zip(&cell.edges) {
             edges[support.given] = [a.min(b) as u32, a.max(b) as u32];
         }
-        Ok(MixedCell { edges, volume })
+        let rest = self.slopes(cell)?;
+        // Small enough that no height above the cell overflows.
+        let small = |v: &i128| v.unsigned_abs() < 1 << 96;
+        let normal = rest.iter().map(|r| (-r.clone()).to_i128().filter(small));
+        let normal: Option<Vec<i128>> = normal.collect();
+        Ok(MixedCell {
+            edges,
+            volume,
+            normal: normal.ok_or(Stop::Error(MixedCellsError::TooLarge))?,
+        })
+    }
+
+    /// Slopes, times its volume, of the hyperplane through the lifted edges of a cell.
+    fn slopes<T: Exact>(&self, cell: &Cell<T>) -> Result<Vec<T>, Stop> {
+        let n = self.n;
+        let rise: Vec<i64> = (0..n)
+            .map(|i| {
+                let lifting = &self.points(i, cell.stage).lifting;
+                lifting[cell.edges[i][1]] - lifting[cell.edges[i][0]]
+            })
+            .collect();
+        cell.inverse
+            .chunks(n)
+            .map(|row| {
+                let mut sum = T::from(0);
+                for (entry, &rise) in row.iter().zip(&rise) {
+                    if !entry.leaves_room_for(rise) {
+                        return Err(Stop::Overflow);
+                    }
+                    sum = sum + entry.clone() * T::from(rise);
+                }
+                match sum.leaves_room_for(self.reach) {
+                    true => Ok(sum),
+                    false => Err(Stop::Overflow),
+                }
+            })
+            .collect()
     }
 
     /// Into the stage: the edge of its simplex grows to the simplex of its degree.
@@ -324,27 +364,8 @@ impl Tuple {
         let rising = |place: usize| i64::from(place >= real);
         let [alpha, beta] = cell.edges[k];
         let slope = rising(beta) - rising(alpha);
-        // Heights of the hyperplane: volume times its slopes, at rest and by the corners' rise.
-        let rise: Vec<i64> = (0..n)
-            .map(|i| {
-                let lifting = &self.points(i, k).lifting;
-                lifting[cell.edges[i][1]] - lifting[cell.edges[i][0]]
-            })
-            .collect();
-        let mut rest = vec![zero(); n];
-        for (j, rest) in rest.iter_mut().enumerate() {
-            let mut sum = zero();
-            for (entry, &rise) in cell.inverse[j * n..(j + 1) * n].iter().zip(&rise) {
-                if !entry.leaves_room_for(rise) {
-                    return Err(Stop::Overflow);
-                }
-                sum = sum + entry.clone() * T::from(rise);
-            }
-            if !sum.leaves_room_for(self.reach) {
-                return Err(Stop::Overflow);
-            }
-            *rest = sum;
-        }
+        // The hyperplane's slopes, times the volume, at rest and by the corners' rise.
+        let rest = self.slopes(cell)?;
         let moving: Vec<T> = (0..n)
             .map(|j| cell.inverse[j * n + k].clone() * T::from(slope))
             .collect();

@@ -4,6 +4,7 @@
 //! Sturmfels, A polyhedral method for solving sparse polynomial systems (1995).
 
 mod exact;
+pub mod generic;
 pub mod mixed_cells;
 mod zero_coordinates;
 
