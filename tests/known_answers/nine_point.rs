@@ -283,6 +283,43 @@ fn rotations_as_unknowns_end_at_the_same_linkages() {
             assert!((a - b).norm_sqr() < 1e-16 * size, "{k}: {a} {b}");
         }
     }
+
+/// One solution of each class, from all of them: of six the one whose largest coordinate is the
+/// smallest. What `cognate synthesize` carries. UPDATE_GOLDEN=1 writes it again.
+#[test]
+fn the_representatives_are_one_of_each_class() {
+    let points = StoredPoints::from_bytes(&bytes(&format!("{FAMILY}/solutions.points")));
+    let points = points.expect("points");
+    let system = nine_point().system;
+    let shape = PointShape::of(&system);
+    let mut group = SymmetryGroup::of(&system).expect("rational maps");
+    group
+        .close(points.point(0), &shape)
+        .expect("a finite group");
+    let listed: Vec<(&[Complex64], f64)> =
+        (0..points.len()).map(|k| (points.point(k), 1e-9)).collect();
+    let size = |k: usize| {
+        let sizes = points.point(k).iter().map(|z| z.norm_sqr());
+        sizes.fold(0.0, f64::max)
+    };
+    let orbits = group.orbits(&listed, &shape, 1);
+    let chosen = orbits.iter().map(|orbit| {
+        let best = orbit.iter().min_by(|&&j, &&k| size(j).total_cmp(&size(k)));
+        *best.expect("an orbit has members")
+    });
+    let made = StoredPoints {
+        dimension: 8,
+        coordinates: chosen.flat_map(|k| points.point(k).to_vec()).collect(),
+    };
+    assert_eq!(made.len(), 1442);
+    let name = format!("{FAMILY}/representatives.points");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(deployed(&name), made.to_bytes()).expect("the folder is writable");
+    }
+    assert!(
+        bytes(&name) == made.to_bytes(),
+        "{name}: UPDATE_GOLDEN=1 writes it again"
+    );
 }
 
 /// Half a minute of tracking: run with `-- --ignored`.

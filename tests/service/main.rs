@@ -6,6 +6,7 @@ mod certificates;
 mod coordinator_restarted;
 mod lease_expired;
 mod monodromy;
+mod nine_points;
 mod report_repeated;
 mod stranger;
 mod submit_to_result;

@@ -300,15 +300,15 @@ fn section<'a>(readme: &'a str, heading: &str) -> &'a str {
     &text[..end]
 }
 
-/// The order of the house: the line of the drawing that begins with `numeric`, then the coordinator
-/// and the tests.
+/// The order of the house: the line of the drawing that begins with `numeric`, then what stands below it:
+/// kinematics, the coordinator and the tests.
 fn drawn_order(readme: &str) -> Vec<String> {
     let line = readme
         .lines()
         .find(|line| line.trim_start().starts_with("numeric ◄"))
         .expect("README.md has the drawing, a line `numeric ◄ systems ◄ ...`");
     let mut order: Vec<String> = line.split('◄').map(|name| name.trim().to_owned()).collect();
-    order.extend(["coordinator".to_owned(), "tests".to_owned()]);
+    order.extend(["kinematics", "coordinator", "tests"].map(str::to_owned));
     order
 }
 

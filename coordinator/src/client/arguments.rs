@@ -67,9 +67,9 @@ pub enum Command {
     Jobs(Listing),
     /// All workers of a coordinator
     Workers(Listing),
-    /// Mechanisms as systems (not in this version)
-    #[command(hide = true)]
-    Synthesize(Refused),
+    /// From points to all linkages that pass them
+    #[command(subcommand)]
+    Synthesize(Synthesize),
     /// As many workers in Slurm as the backlog asks for (not in this version)
     #[command(hide = true)]
     Fleet(Refused),
@@ -256,6 +256,66 @@ pub struct Solve {
     /// Where the answer goes.
     #[command(flatten)]
     pub output: OutputArguments,
+}
+
+/// `cognate synthesize`.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Synthesize {
+    /// Every four-bar linkage whose coupler point passes nine given points
+    NinePoint(NinePoint),
+}
+
+/// How linkages are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum SynthesisFormat {
+    /// A table for people
+    #[default]
+    Table,
+    /// One JSON object on standard output, nothing else there
+    Json,
+    /// A row for each linkage
+    Csv,
+}
+
+/// `cognate synthesize nine-point`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize nine-point points.csv
+  cognate synthesize nine-point points.csv --certify --output linkages
+  cognate synthesize nine-point points.csv --format json | jq '.curves[0].linkages[0]'
+
+points.csv has a header x,y and nine rows; any units. JSON: {\"points\": [[x, y], ...]}.")]
+pub struct NinePoint {
+    /// Nine points: CSV with a header x,y or JSON; - is standard input
+    pub file: PathBuf,
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
+    pub precision: PrecisionChoice,
+    /// Proofs that the linkages are there, that they differ, that they are real
+    #[arg(long)]
+    pub certify: bool,
+    /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
+    #[arg(long, value_name = "URL", help_heading = "Service")]
+    pub coordinator: Option<String>,
+    /// Local worker processes
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
+    pub workers: u32,
+    /// Threads of each worker [default: cores / workers]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
+    pub threads: Option<u32>,
+    /// How the linkages are shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: SynthesisFormat,
+    /// Also write summary.json, linkages.csv, linkages.html and a DXF drawing of each linkage here
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
 }
 
 /// `cognate info`.

@@ -12,6 +12,7 @@ pub mod error;
 pub mod not_yet;
 pub mod output;
 pub mod problem;
+pub mod synthesis;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -51,9 +52,10 @@ fn in_runtime(command: Command) -> Result<Exit, ClientError> {
         .map_err(|e| ClientError::Local(format!("the runtime could not be started: {e}")))?;
     runtime.block_on(async {
         match command {
-            // These two stop in an orderly way of their own.
+            // These stop in an orderly way of their own.
             Command::Coordinator(a) => commands::coordinator::run(&a).await,
             Command::Solve(a) => commands::solve::run(&a).await,
+            Command::Synthesize(a) => commands::synthesize::run(&a).await,
             other => tokio::select! {
                 ended = one_shot(other) => ended,
                 () = interrupted() => Err(ClientError::Interrupted),

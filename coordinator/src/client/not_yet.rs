@@ -1,6 +1,8 @@
 //! What belongs to the command line but not to this version: refused with its name, before anything starts.
 
-use super::arguments::{Command, Coordinator, ProblemArguments, ServiceArguments, Start, Worker};
+use super::arguments::{
+    Command, Coordinator, ProblemArguments, ServiceArguments, Start, Synthesize, Worker,
+};
 use super::error::ClientError;
 use crate::intake::MOST_BITS;
 use cognate_protocol::submission::PrecisionChoice;
@@ -17,7 +19,7 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         Command::Coordinator(c) => coordinator(c),
         Command::Worker(c) => worker(c),
         Command::Info(_) => None,
-        Command::Synthesize(_) => Some("synthesize (mechanisms as systems)".into()),
+        Command::Synthesize(Synthesize::NinePoint(c)) => precision(c.precision),
         Command::Fleet(_) => Some("fleet (workers kept in Slurm)".into()),
     };
     match missing {
@@ -52,12 +54,16 @@ fn problem(a: &ProblemArguments) -> Option<String> {
                 .find(|(asked, _)| *asked)
                 .map(|(_, name)| (*name).into())
         })
-        .or_else(|| match a.precision {
-            PrecisionChoice::Bits(bits) if bits > MOST_BITS => {
-                Some(format!("--precision {bits} (at most {MOST_BITS} bits)"))
-            }
-            _ => None,
-        })
+        .or_else(|| precision(a.precision))
+}
+
+fn precision(choice: PrecisionChoice) -> Option<String> {
+    match choice {
+        PrecisionChoice::Bits(bits) if bits > MOST_BITS => {
+            Some(format!("--precision {bits} (at most {MOST_BITS} bits)"))
+        }
+        _ => None,
+    }
 }
 
 fn service(a: &ServiceArguments) -> Option<String> {

@@ -9,6 +9,7 @@ pub mod path;
 pub mod results;
 pub mod solve;
 pub mod submit;
+pub mod synthesize;
 pub mod watch;
 pub mod worker;
 pub mod workers;

@@ -4,6 +4,7 @@ pub mod certificates;
 pub mod drawing;
 pub mod files;
 pub mod json;
+pub mod linkages;
 pub mod parquet;
 pub mod paths;
 pub mod progress;

@@ -22,21 +22,40 @@ const LABEL: usize = 22;
 const FIGURES: usize = 6;
 
 /// One line: a name, a number, what it means.
-struct Lines {
+pub(super) struct Lines {
     text: String,
     look: Look,
     number: usize,
 }
 
 impl Lines {
-    fn heading(&mut self, title: &str, number: &str, note: &str) {
+    /// No lines yet; numbers are so wide.
+    pub(super) fn new(look: Look, number: usize) -> Self {
+        Self {
+            text: String::new(),
+            look,
+            number,
+        }
+    }
+
+    /// All lines.
+    pub(super) fn finish(self) -> String {
+        self.text
+    }
+
+    /// Lines that are made already.
+    pub(super) fn raw(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
+    pub(super) fn heading(&mut self, title: &str, number: &str, note: &str) {
         let cell = format!("{number:>width$}", width = self.number);
         let title = self.look.bold(&format!("{title:<LABEL$}"));
         let line = format!("  {title}{}", self.look.bold(&cell));
         self.with_note(line, note);
     }
 
-    fn line(&mut self, name: &str, number: &str, note: &str) {
+    pub(super) fn line(&mut self, name: &str, number: &str, note: &str) {
         let cell = format!("{number:>width$}", width = self.number);
         let line = format!("    {name:<width$}{cell}", width = LABEL - 2);
         self.with_note(line, note);
@@ -60,7 +79,7 @@ impl Lines {
         }
     }
 
-    fn blank(&mut self) {
+    pub(super) fn blank(&mut self) {
         self.text.push('\n');
     }
 }

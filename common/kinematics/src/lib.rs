@@ -1,0 +1,32 @@
+//! Mechanisms: from points that a person gives, and solutions that the service finds, to linkages
+//! that can be built. Knows no service: equations and numbers only.
+//!
+//! In reading order: points and angles of the plane; a linkage and its type; what driving it does;
+//! what it is worth; the nine-point problem, from points to classes of linkages.
+//!
+//! ```
+//! use cognate_kinematics::linkage::{Linkage, Mobility, Side};
+//! use num_complex::Complex64;
+//!
+//! let at = |x: f64, y: f64| Complex64::new(x, y);
+//! let linkage = Linkage {
+//!     pivots: [at(0.0, 0.0), at(4.0, 0.0)],
+//!     joints: [at(0.0, 1.0), at(3.0, 2.8)],
+//!     point: at(1.0, 3.0),
+//! };
+//! let mobility = linkage.lengths().mobility();
+//! assert_eq!(mobility, Mobility::CrankRocker(Side::A));
+//! assert_eq!(mobility.circuits(), 2);
+//! ```
+#![forbid(unsafe_code)]
+
+pub mod assessment;
+pub mod coupler_curve;
+pub mod drive;
+pub mod linkage;
+pub mod nine_point;
+pub mod plane;
+#[cfg(test)]
+mod simulation;
+#[cfg(test)]
+mod test_linkages;

@@ -1,0 +1,508 @@
+//! ClassBook: what has become of each of the 1442 classes of linkages, path after path.
+//!
+//! A class is finite if one of its three cognates is: where a representative runs away or is
+//! lost, the others are followed, along the same parameters, so that they end in the same class.
+
+use super::Point;
+use super::cognates::{Newton, cognates, is_finite, least_determinant};
+use super::family::{CLASSES, representatives};
+use cognate_solutions::classification::{Tolerances, error_bound};
+use cognate_solutions::point_shape::PointShape;
+use cognate_solutions::symmetry::SymmetryGroup;
+use cognate_systems::named::nine_point;
+use num_complex::Complex64;
+
+/// Relative determinants below this are 0: see [`least_determinant`]. Rounding leaves 1e-16
+/// times the condition of the solution.
+const NO_LINKAGE: f64 = 1e-9;
+
+/// One cognate of one class's representative, as it is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// Which class, from 0.
+    pub class: usize,
+    /// Which cognate of its representative: 0, 1, 2.
+    pub cognate: usize,
+}
+
+/// A point that a path arrived at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrived {
+    /// The solution.
+    pub point: Point,
+    /// Its estimated error, relative to its largest coordinate.
+    pub accuracy: f64,
+    /// Fixed by conjugation; `None` where that was not asked.
+    pub real: Option<bool>,
+    /// Proved to be there, alone, and to differ from the others.
+    pub certified: bool,
+    /// ... and proved to be real.
+    pub certified_real: bool,
+}
+
+/// How a path ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Arrival {
+    /// At a regular solution.
+    Regular(Arrived),
+    /// At an isolated solution where the Jacobian is singular.
+    Singular(Arrived),
+    /// On a set of positive dimension.
+    PositiveDimensional,
+    /// At infinity.
+    AtInfinity,
+    /// Nowhere: it was given up, for this reason.
+    Failed(String),
+}
+
+/// What has become of a class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ClassEnd {
+    /// A regular linkage.
+    Finite,
+    /// A linkage where several classes meet, or that is singular for another reason.
+    Multiple,
+    /// No linkage: links without length, two equal sides, or a set of positive dimension.
+    Degenerate,
+    /// All of its cognates are at infinity.
+    AtInfinity,
+    /// Not settled: a path was lost.
+    Failed,
+}
+
+/// A class that has a linkage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Which class; of several that end at one linkage the first.
+    pub class: usize,
+    /// The cognate of it that lies best, and what is known of it.
+    pub arrived: Arrived,
+    /// How many classes end here: 1 where it is regular.
+    pub classes: usize,
+}
+
+/// All that is known of the classes.
+pub struct ClassBook {
+    parameters: Vec<Complex64>,
+    representatives: Vec<Point>,
+    group: SymmetryGroup,
+    shape: PointShape,
+    arrivals: Vec<Vec<(usize, Arrival)>>,
+    /// Classes that arrived where an earlier class is: a path jumped.
+    clashing: Vec<Option<usize>>,
+    /// Linkages of classes whose own paths were lost, found in another way.
+    derived: Vec<Option<Arrived>>,
+}
+
+impl ClassBook {
+    /// An empty book for these parameters (those of [`super::PathPoints`]).
+    pub fn new(parameters: Vec<Complex64>) -> Self {
+        let system = nine_point().system;
+        let shape = PointShape::of(&system);
+        let representatives = representatives();
+        let mut group =
+            SymmetryGroup::of(&system).expect("the named system has rational generators");
+        group
+            .close(&representatives[0], &shape)
+            .expect("exchange and cognates are a group of six");
+        Self {
+            parameters,
+            representatives,
+            group,
+            shape,
+            arrivals: vec![Vec::new(); CLASSES],
+            clashing: vec![None; CLASSES],
+            derived: vec![None; CLASSES],
+        }
+    }
+
+    /// Where the path of a member starts, at the parameters of [`super::family`].
+    pub fn start(&self, member: Member) -> Point {
+        cognates(&self.representatives[member.class])[member.cognate]
+    }
+
+    /// The first round: the representative of each class.
+    pub fn first_round() -> Vec<Member> {
+        (0..CLASSES)
+            .map(|class| Member { class, cognate: 0 })
+            .collect()
+    }
+
+    /// The other cognates of every class that is not settled yet.
+    pub fn other_cognates(&self) -> Vec<Member> {
+        let open = (0..CLASSES).filter(|&class| self.end(class) != ClassEnd::Finite);
+        let members = open.flat_map(|class| [1, 2].map(|cognate| Member { class, cognate }));
+        members
+            .filter(|&member| is_finite(&self.start(member)))
+            .collect()
+    }
+
+    /// All cognates of every class of which a path was lost or jumped, and of those that they
+    /// jumped to.
+    pub fn lost(&self) -> Vec<Member> {
+        let mut open: Vec<usize> = (0..CLASSES)
+            .filter(|&class| self.end(class) == ClassEnd::Failed)
+            .collect();
+        open.extend(self.clashing.iter().flatten());
+        open.sort_unstable();
+        open.dedup();
+        let members = open
+            .into_iter()
+            .flat_map(|class| [0, 1, 2].map(|cognate| Member { class, cognate }));
+        members
+            .filter(|&member| is_finite(&self.start(member)))
+            .collect()
+    }
+
+    /// Notes how a path ended. What is noted last of a class counts.
+    ///
+    /// # Panics
+    /// When there is no such class.
+    pub fn note(&mut self, member: Member, arrival: Arrival) {
+        self.arrivals[member.class].push((member.cognate, arrival));
+    }
+
+    /// A path's point, where it is a linkage: the cognate that is farthest from degenerate.
+    fn best(&self, arrived: &Arrived) -> Option<Arrived> {
+        let mut best: Option<(f64, Point)> = None;
+        for member in cognates(&arrived.point) {
+            if !is_finite(&member) {
+                continue;
+            }
+            let determinant = least_determinant(&member, &self.parameters);
+            if best.is_none_or(|(other, _)| determinant > other) {
+                best = Some((determinant, member));
+            }
+        }
+        let (determinant, point) = best?;
+        (determinant > NO_LINKAGE).then(|| Arrived {
+            point,
+            ..arrived.clone()
+        })
+    }
+
+    /// The regular linkage of a class, as its last path found it.
+    fn regular(&self, class: usize) -> Option<&Arrived> {
+        let own = self.arrivals[class]
+            .iter()
+            .rev()
+            .find_map(|(_, a)| match a {
+                Arrival::Regular(arrived) if self.best(arrived).is_some() => Some(arrived),
+                _ => None,
+            });
+        let own = own.filter(|_| self.clashing[class].is_none());
+        self.derived[class].as_ref().or(own)
+    }
+
+    /// Looks for classes that arrived at one linkage: of them only one can belong there. Gives
+    /// their number.
+    pub fn compare(&mut self) -> usize {
+        self.clashing = vec![None; CLASSES];
+        let found: Vec<(usize, &Arrived)> = (0..CLASSES)
+            .filter_map(|class| Some((class, self.regular(class)?)))
+            .collect();
+        let points = found.iter().map(|(_, arrived)| *arrived);
+        let orbits = self.orbits(&points.collect::<Vec<_>>());
+        let mut clashing = vec![None; CLASSES];
+        for orbit in &orbits {
+            for &place in &orbit[1..] {
+                clashing[found[place].0] = Some(found[orbit[0]].0);
+            }
+        }
+        self.clashing = clashing;
+        self.clashing.iter().flatten().count()
+    }
+
+    fn orbits(&self, points: &[&Arrived]) -> Vec<Vec<usize>> {
+        let tolerances = Tolerances::default();
+        let radius = |arrived: &Arrived| {
+            let (factor, floor) = (tolerances.coincidence_factor, tolerances.coincidence_floor);
+            error_bound(arrived.accuracy, factor, floor)
+        };
+        let points: Vec<(&[Complex64], f64)> = points
+            .iter()
+            .map(|arrived| (&arrived.point[..], radius(arrived)))
+            .collect();
+        self.group.orbits(&points, &self.shape, 1)
+    }
+
+    /// What has become of a class so far.
+    pub fn end(&self, class: usize) -> ClassEnd {
+        if self.regular(class).is_some() {
+            return ClassEnd::Finite;
+        }
+        if self.clashing[class].is_some() {
+            return ClassEnd::Failed;
+        }
+        let arrivals = self.arrivals[class].iter().map(|(_, arrival)| arrival);
+        let mut end = None;
+        for arrival in arrivals {
+            let this = match arrival {
+                Arrival::Singular(arrived) if self.best(arrived).is_some() => ClassEnd::Multiple,
+                Arrival::Regular(_) | Arrival::Singular(_) | Arrival::PositiveDimensional => {
+                    ClassEnd::Degenerate
+                }
+                Arrival::AtInfinity => ClassEnd::AtInfinity,
+                Arrival::Failed(_) => ClassEnd::Failed,
+            };
+            // A linkage settles it; then what is not known; then where it went.
+            let rank = |end: ClassEnd| match end {
+                ClassEnd::Finite | ClassEnd::Multiple => 3,
+                ClassEnd::Failed => 2,
+                ClassEnd::Degenerate => 1,
+                ClassEnd::AtInfinity => 0,
+            };
+            if end.is_none_or(|before| rank(this) > rank(before)) {
+                end = Some(this);
+            }
+        }
+        end.unwrap_or(ClassEnd::Failed)
+    }
+
+    /// Why a class is not settled.
+    pub fn reason(&self, class: usize) -> String {
+        if let Some(other) = self.clashing[class] {
+            return format!("it arrives at the linkage of class {other}, however it is followed");
+        }
+        let reasons = self.arrivals[class].iter().rev();
+        let mut failures = reasons.filter_map(|(_, arrival)| match arrival {
+            Arrival::Failed(reason) => Some(reason.clone()),
+            _ => None,
+        });
+        failures
+            .next()
+            .unwrap_or_else(|| "it was not followed".into())
+    }
+
+    /// Solutions that must be there and are in no class yet give lost classes their linkages.
+    /// For real points every linkage's conjugate is one, too. `others` are regular solutions
+    /// that were found in another way, along other parameters for instance. Gives the
+    /// number of classes that are settled by this.
+    pub fn derive(&mut self, others: &[Arrived], conjugates: bool) -> usize {
+        let open: Vec<usize> = (0..CLASSES)
+            .filter(|&class| self.end(class) == ClassEnd::Failed)
+            .collect();
+        if open.is_empty() {
+            return 0;
+        }
+        let known: Vec<Arrived> = (0..CLASSES)
+            .filter_map(|class| self.regular(class).cloned())
+            .collect();
+        let mut all = known.clone();
+        all.extend(others.iter().filter_map(|arrived| self.best(arrived)));
+        if conjugates {
+            let mirrored = |arrived: &Arrived| Arrived {
+                point: std::array::from_fn(|k| arrived.point[k ^ 1].conj()),
+                ..arrived.clone()
+            };
+            let images: Vec<Arrived> = all.iter().map(mirrored).collect();
+            all.extend(images);
+        }
+        let orbits = self.orbits(&all.iter().collect::<Vec<_>>());
+        let mut newton = Newton::new();
+        let mut settled = 0;
+        let mut open = open.into_iter();
+        for orbit in orbits.iter().filter(|orbit| orbit[0] >= known.len()) {
+            let arrived = &all[orbit[0]];
+            // Only what Newton's method confirms.
+            let Some((point, _)) = newton.polish(&arrived.point, &self.parameters) else {
+                continue;
+            };
+            let Some(class) = open.next() else { break };
+            self.derived[class] = Some(Arrived {
+                point,
+                certified: false,
+                certified_real: false,
+                ..arrived.clone()
+            });
+            settled += 1;
+        }
+        settled
+    }
+
+    /// How many classes have come to each end: the numbers add up to 1442.
+    pub fn counts(&self) -> Vec<(ClassEnd, usize)> {
+        let ends = [
+            ClassEnd::Finite,
+            ClassEnd::Multiple,
+            ClassEnd::Degenerate,
+            ClassEnd::AtInfinity,
+            ClassEnd::Failed,
+        ];
+        let mut counts = ends.map(|end| (end, 0));
+        for class in 0..CLASSES {
+            let end = self.end(class);
+            for (kind, count) in &mut counts {
+                *count += usize::from(*kind == end);
+            }
+        }
+        counts.to_vec()
+    }
+
+    /// The classes that were settled in another way than by a path of their own.
+    pub fn derived(&self) -> usize {
+        let own =
+            |class: &usize| self.derived[*class].is_some() && self.end(*class) == ClassEnd::Finite;
+        (0..CLASSES).filter(own).count()
+    }
+
+    /// Every linkage that was found, each once, ascending by class.
+    pub fn found(&self) -> Vec<Found> {
+        let mut found: Vec<Found> = Vec::new();
+        let mut singular: Vec<(usize, Arrived)> = Vec::new();
+        for class in 0..CLASSES {
+            match self.end(class) {
+                ClassEnd::Finite => found.extend(self.regular(class).and_then(|arrived| {
+                    Some(Found {
+                        class,
+                        arrived: self.best(arrived)?,
+                        classes: 1,
+                    })
+                })),
+                ClassEnd::Multiple => {
+                    let arrivals = self.arrivals[class].iter();
+                    singular.extend(arrivals.rev().find_map(|(_, arrival)| match arrival {
+                        Arrival::Singular(arrived) => Some((class, self.best(arrived)?)),
+                        _ => None,
+                    }));
+                }
+                _ => {}
+            }
+        }
+        let points: Vec<&Arrived> = singular.iter().map(|(_, arrived)| arrived).collect();
+        for orbit in self.orbits(&points) {
+            let (class, arrived) = &singular[orbit[0]];
+            found.push(Found {
+                class: *class,
+                arrived: arrived.clone(),
+                classes: orbit.len(),
+            });
+        }
+        found.sort_by_key(|found| found.class);
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::family;
+    use super::*;
+
+    fn arrived(point: Point) -> Arrived {
+        Arrived {
+            point,
+            accuracy: 1e-14,
+            real: None,
+            certified: false,
+            certified_real: false,
+        }
+    }
+
+    fn count(book: &ClassBook, end: ClassEnd) -> usize {
+        let counts = book.counts();
+        assert_eq!(counts.iter().map(|(_, n)| n).sum::<usize>(), CLASSES);
+        counts
+            .iter()
+            .find(|(kind, _)| *kind == end)
+            .expect("all are there")
+            .1
+    }
+
+    /// A book of paths that stayed where they started.
+    fn full() -> ClassBook {
+        let mut book = ClassBook::new(family::parameters());
+        for member in ClassBook::first_round() {
+            let point = book.start(member);
+            book.note(member, Arrival::Regular(arrived(point)));
+        }
+        book
+    }
+
+    #[test]
+    fn a_class_is_finite_if_one_of_its_cognates_is() {
+        let mut book = full();
+        assert_eq!(book.compare(), 0);
+        assert_eq!(count(&book, ClassEnd::Finite), CLASSES);
+        assert!(book.other_cognates().is_empty() && book.lost().is_empty());
+        let found = book.found();
+        assert_eq!(found.len(), CLASSES);
+
+        let mut book = ClassBook::new(family::parameters());
+        for member in ClassBook::first_round() {
+            let point = book.start(member);
+            let arrival = match member.class {
+                7 => Arrival::AtInfinity,
+                8 => Arrival::Failed("lost".into()),
+                9 => Arrival::PositiveDimensional,
+                _ => Arrival::Regular(arrived(point)),
+            };
+            book.note(member, arrival);
+        }
+        let others = book.other_cognates();
+        let classes: Vec<usize> = others.iter().map(|m| m.class).collect();
+        assert_eq!(classes, [7, 7, 8, 8, 9, 9]);
+        for member in others {
+            let arrival = match (member.class, member.cognate) {
+                (7, 2) | (8, 1) => Arrival::Regular(arrived(book.start(member))),
+                _ => Arrival::AtInfinity,
+            };
+            book.note(member, arrival);
+        }
+        assert_eq!(book.compare(), 0);
+        assert_eq!(count(&book, ClassEnd::Finite), CLASSES - 1);
+        assert_eq!(book.end(9), ClassEnd::Degenerate);
+    }
+
+    #[test]
+    fn a_class_that_arrives_where_another_is_has_jumped() {
+        let mut book = full();
+        // Class 30 at a cognate of class 12.
+        let member = Member {
+            class: 30,
+            cognate: 0,
+        };
+        let elsewhere = book.start(Member {
+            class: 12,
+            cognate: 2,
+        });
+        book.note(member, Arrival::Regular(arrived(elsewhere)));
+        assert_eq!(book.compare(), 1);
+        assert_eq!(book.end(30), ClassEnd::Failed);
+        assert!(book.reason(30).contains("class 12"));
+        let again: Vec<usize> = book.lost().iter().map(|m| m.class).collect();
+        assert_eq!(again, [12, 12, 12, 30, 30, 30]);
+        // Nothing else is known: it stays lost. Then it is found along another way.
+        assert_eq!(book.derive(&[], false), 0);
+        let known = arrived(book.start(Member {
+            class: 5,
+            cognate: 1,
+        }));
+        let missing = arrived(book.start(Member {
+            class: 30,
+            cognate: 1,
+        }));
+        assert_eq!(book.derive(&[known, missing], false), 1);
+        assert_eq!(count(&book, ClassEnd::Finite), CLASSES);
+        assert_eq!(book.derived(), 1);
+        assert_eq!(book.compare(), 0);
+    }
+
+    #[test]
+    fn several_classes_at_one_singular_linkage_are_listed_once() {
+        let mut book = full();
+        for class in [3, 4] {
+            book.arrivals[class].clear();
+            let member = Member { class, cognate: 0 };
+            let point = book.start(Member {
+                class: 3,
+                cognate: class - 3,
+            });
+            book.note(member, Arrival::Singular(arrived(point)));
+        }
+        assert_eq!(book.compare(), 0);
+        assert_eq!(count(&book, ClassEnd::Multiple), 2);
+        let found = book.found();
+        assert_eq!(found.len(), CLASSES - 1);
+        assert_eq!((found[3].class, found[3].classes), (3, 2));
+    }
+}

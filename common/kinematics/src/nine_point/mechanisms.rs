@@ -1,0 +1,72 @@
+//! Mechanisms: the linkages that can be built, cognates together, best first.
+
+use super::class_book::Found;
+use super::realization::{Realization, realizations};
+use super::{PathPoints, Point};
+use crate::assessment::Assessment;
+
+/// One linkage that passes the nine points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mechanism {
+    /// Where its links are when the coupler point is at each of the nine.
+    pub realization: Realization,
+    /// What it is worth.
+    pub assessment: Assessment,
+}
+
+/// A coupler curve through the nine points, and the linkages that draw it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its class.
+    pub class: usize,
+    /// How many classes end here: 1, or more where the solution is singular.
+    pub classes: usize,
+    /// The solution that it was made from.
+    pub solution: Point,
+    /// Proved to be there, to be alone and to be real.
+    pub certified: bool,
+    /// Its cognates, best first: three, or fewer where some are at infinity.
+    pub linkages: Vec<Mechanism>,
+}
+
+impl Mechanism {
+    /// Whether it stands before another one.
+    fn order(&self, other: &Self) -> std::cmp::Ordering {
+        let (one, two) = (&self.assessment, &other.assessment);
+        let grades = one.grade.cmp(&two.grade);
+        grades.then(two.quality().total_cmp(&one.quality()))
+    }
+}
+
+/// The real curves among what was found, best first: by grade, then by quality.
+pub fn curves(found: &[Found], points: &PathPoints) -> Vec<Curve> {
+    let real = found.iter().filter(|f| f.arrived.real == Some(true));
+    let mut curves: Vec<Curve> = real
+        .map(|found| {
+            let made = realizations(&found.arrived.point, points).into_iter();
+            let mut linkages: Vec<Mechanism> = made
+                .map(|realization| Mechanism {
+                    assessment: Assessment::new(&realization.poses),
+                    realization,
+                })
+                .collect();
+            linkages.sort_by(Mechanism::order);
+            Curve {
+                class: found.class,
+                classes: found.classes,
+                solution: found.arrived.point,
+                certified: found.arrived.certified_real,
+                linkages,
+            }
+        })
+        .filter(|curve| !curve.linkages.is_empty())
+        .collect();
+    curves.sort_by(|one, two| one.linkages[0].order(&two.linkages[0]));
+    curves
+}
+
+/// A linkage's name: its curve's place in the list, from 1, and a letter.
+pub fn name(curve: usize, linkage: usize) -> String {
+    let letter = ["a", "b", "c"].get(linkage).copied().unwrap_or("x");
+    format!("{}{letter}", curve + 1)
+}

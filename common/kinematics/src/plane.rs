@@ -1,0 +1,149 @@
+//! Points of the plane as complex numbers: lengths, angles and halves of them, without libm.
+
+use num_complex::Complex64;
+
+/// |z|.
+pub fn modulus(z: Complex64) -> f64 {
+    // Scaled, so that neither a square overflows nor a small one is lost.
+    let size = z.re.abs().max(z.im.abs());
+    if size == 0.0 || !size.is_finite() {
+        return size;
+    }
+    let (re, im) = (z.re / size, z.im / size);
+    size * (re * re + im * im).sqrt()
+}
+
+/// z / |z|; 1 for 0.
+pub fn unit(z: Complex64) -> Complex64 {
+    let size = modulus(z);
+    if size == 0.0 {
+        Complex64::new(1.0, 0.0)
+    } else {
+        z / size
+    }
+}
+
+/// The signed area of the parallelogram of two vectors: positive where `w` lies to the left of `z`.
+pub fn cross(z: Complex64, w: Complex64) -> f64 {
+    z.re * w.im - z.im * w.re
+}
+
+/// The unit vector at half of this one's angle, which is taken from -180 to 180 degrees.
+pub fn half(z: Complex64) -> Complex64 {
+    let z = unit(z);
+    let re = ((1.0 + z.re) / 2.0).max(0.0).sqrt();
+    // The larger of the two parts is the accurate one.
+    if re > 0.5 {
+        return unit(Complex64::new(re, z.im / (2.0 * re)));
+    }
+    let im = ((1.0 - z.re) / 2.0).max(0.0).sqrt();
+    let re = z.im.abs() / (2.0 * im);
+    Complex64::new(re, if z.im < 0.0 { -im } else { im })
+}
+
+/// The angle of a vector in degrees, from -180 to 180; 0 for 0.
+pub fn degrees(z: Complex64) -> f64 {
+    const HALVINGS: i32 = 4;
+    let mut small = unit(z);
+    for _ in 0..HALVINGS {
+        small = half(small);
+    }
+    // Below 11.25 degrees: atan(t) by its series, t^17 < 1e-12 of t^1, and eight terms.
+    let t = small.im / small.re;
+    let square = t * t;
+    let mut sum = 0.0;
+    for k in (0..12).rev() {
+        let term = 1.0 / f64::from(2 * k + 1);
+        sum = term - square * sum;
+    }
+    sum * t * f64::from(1 << HALVINGS) * (180.0 / std::f64::consts::PI)
+}
+
+/// The angle between two vectors in degrees, from 0 to 180.
+pub fn angle_between(z: Complex64, w: Complex64) -> f64 {
+    degrees(w * z.conj()).abs()
+}
+
+/// A number that grows with the angle of a unit vector, from -2 to 2 as the angle goes from -180
+/// to 180 degrees; 0 at 0.
+pub fn turn(z: Complex64) -> f64 {
+    let size = z.re.abs() + z.im.abs();
+    if size == 0.0 {
+        return 0.0;
+    }
+    let share = 1.0 - z.re / size;
+    if z.im < 0.0 { -share } else { share }
+}
+
+/// `count` unit vectors from one angle to another, counterclockwise, evenly spaced, both ends
+/// among them; the way is shorter than a whole turn, and `count` is one more than a power of 2.
+///
+/// # Panics
+/// When `count` is not that.
+pub fn arc(from: Complex64, to: Complex64, count: usize) -> Vec<Complex64> {
+    assert!(
+        count > 1 && (count - 1).is_power_of_two(),
+        "an arc is halved again and again"
+    );
+    let mut points = vec![Complex64::default(); count];
+    let (from, to) = (unit(from), unit(to));
+    points[0] = from;
+    points[count - 1] = to;
+    let mut width = count - 1;
+    while width > 1 {
+        for start in (0..count - 1).step_by(width) {
+            let (low, high) = (points[start], points[start + width]);
+            let mut way = half(high * low.conj());
+            // More than half a turn: the half of the angle that `half` did not take.
+            if way.im < 0.0 {
+                way = -way;
+            }
+            points[start + width / 2] = unit(low * way);
+        }
+        width /= 2;
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_numeric::roots_of_unity::roots_of_unity;
+
+    #[test]
+    fn angles_are_those_of_the_roots_of_unity() {
+        for (k, z) in roots_of_unity(720).into_iter().enumerate() {
+            let expected = if k <= 360 {
+                k as f64 / 2.0
+            } else {
+                k as f64 / 2.0 - 360.0
+            };
+            let found = degrees(z * 3e-7);
+            assert!((found - expected).abs() < 1e-11, "{k}: {found}");
+            let twice = half(z) * half(z);
+            assert!((twice - z).norm_sqr() < 1e-30, "{k}");
+        }
+        let straight = degrees(Complex64::new(-1.0, 0.0));
+        assert!((straight - 180.0).abs() < 1e-11, "{straight}");
+        assert!((angle_between(Complex64::i(), Complex64::new(-2.0, 0.0)) - 90.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn turns_grow_with_the_angle() {
+        let roots = roots_of_unity(360);
+        let around: Vec<f64> = (181..360).chain(0..181).map(|k| turn(roots[k])).collect();
+        assert!(around.windows(2).all(|w| w[0] < w[1]), "{around:?}");
+    }
+
+    #[test]
+    fn arcs_are_even_and_have_their_ends() {
+        let roots = roots_of_unity(360);
+        for (from, to) in [(0usize, 90usize), (350, 340), (10, 300), (180, 179)] {
+            let points = arc(roots[from], roots[to], 65);
+            let step = ((to + 360 - from) % 360) as f64 / 64.0;
+            for pair in points.windows(2) {
+                assert!((degrees(pair[1] * pair[0].conj()) - step).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! Synthesis: from points to linkages, by jobs of the service.
+//!
+//! The points become parameters of the nine-point system; one representative of each class is
+//! followed there from the generic member that is carried in this program; what is open then is
+//! followed by other cognates, more carefully, and along other parameters.
+
+pub mod point_files;
+
+use super::arguments::PresetName;
+use super::commands::{submit, watch};
+use super::connection::Connection;
+use super::error::ClientError;
+use super::output::progress::Progress;
+use super::output::summary;
+use super::problem::Prepared;
+use crate::results::summary::Summary;
+use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::settings::Preset;
+use cognate_kinematics::nine_point::class_book::{Arrival, Arrived, Member};
+use cognate_kinematics::nine_point::{ClassBook, ClassEnd, PathPoints, Point, family};
+use cognate_protocol::submission::{
+    Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+};
+use cognate_protocol::v1;
+use cognate_solutions::solution::Solution;
+use cognate_systems::named::nine_point;
+use cognate_systems::system::System;
+use std::collections::BTreeMap;
+
+/// How the paths are followed.
+#[derive(Clone, Debug)]
+pub struct How {
+    /// Seed of everything random.
+    pub seed: Option<u64>,
+    /// How cautiously.
+    pub preset: PresetName,
+    /// In which arithmetic.
+    pub precision: PrecisionChoice,
+    /// Whether what is found is proved.
+    pub certify: bool,
+    /// What people call the points.
+    pub name: String,
+}
+
+/// One job of a synthesis.
+#[derive(Clone, Debug)]
+pub struct Round {
+    /// What it was for.
+    pub purpose: &'static str,
+    /// What came of it.
+    pub summary: Summary,
+}
+
+/// What has become of all classes.
+pub struct Answer {
+    /// Class after class.
+    pub book: ClassBook,
+    /// The jobs.
+    pub rounds: Vec<Round>,
+    /// Classes that were settled by what must be there besides what their own paths found.
+    pub derived: usize,
+}
+
+/// Seed of a synthesis where none is asked for: the same points give the same bits.
+const SEED: u64 = 0;
+
+/// Added to the seed for another way through the parameters.
+const OTHER_WAY: u64 = 1;
+
+/// Follows all classes to these points.
+pub async fn nine_points(
+    address: &str,
+    points: &PathPoints,
+    how: &How,
+    progress: &mut Progress,
+) -> Result<Answer, ClientError> {
+    let mut search = Search {
+        address,
+        parameters: points.parameters(),
+        how,
+        progress,
+        rounds: vec![],
+        system: followed_system(points),
+    };
+    let mut book = ClassBook::new(points.parameters());
+    let seed = how.seed.unwrap_or(SEED);
+    let preset = preset(how.preset);
+    let first = ClassBook::first_round();
+    search
+        .round("one of each class", &mut book, &first, seed, preset)
+        .await?;
+    book.compare();
+    let others = book.other_cognates();
+    search
+        .round("other cognates", &mut book, &others, seed, preset)
+        .await?;
+    book.compare();
+    let lost = book.lost();
+    search
+        .round("again, carefully", &mut book, &lost, seed, Preset::Careful)
+        .await?;
+    book.compare();
+    let mut derived = book.derive(&[], points.is_real());
+    if book.counts().contains(&(ClassEnd::Failed, 0)) {
+        return Ok(search.answer(book, derived));
+    }
+    // Along other parameters every class may end as another one: only what is found counts.
+    let starts: Vec<Point> = first.iter().map(|&member| book.start(member)).collect();
+    let job = search
+        .job("another way", &starts, seed + OTHER_WAY, preset)
+        .await?;
+    let others: Vec<Arrived> = job
+        .into_values()
+        .filter_map(|arrival| match arrival {
+            Arrival::Regular(arrived) => Some(arrived),
+            _ => None,
+        })
+        .collect();
+    derived += book.derive(&others, points.is_real());
+    Ok(search.answer(book, derived))
+}
+
+/// The system that is followed: without the group, of which only one member is wanted, and
+/// without degenerate sets, which the book looks at itself.
+fn followed_system(points: &PathPoints) -> System {
+    let mut system = nine_point().system;
+    system.symmetry.clear();
+    system.degenerate.clear();
+    if !points.is_real() {
+        system.conjugates.clear();
+    }
+    system
+}
+
+fn preset(name: PresetName) -> Preset {
+    match name {
+        PresetName::Careful => Preset::Careful,
+        PresetName::Default => Preset::Default,
+        PresetName::Fast => Preset::Fast,
+        PresetName::Reckless => Preset::Reckless,
+    }
+}
+
+/// A synthesis under way.
+struct Search<'a> {
+    address: &'a str,
+    parameters: Vec<num_complex::Complex64>,
+    how: &'a How,
+    progress: &'a mut Progress,
+    rounds: Vec<Round>,
+    system: System,
+}
+
+impl Search<'_> {
+    fn answer(self, book: ClassBook, derived: usize) -> Answer {
+        Answer {
+            book,
+            rounds: self.rounds,
+            derived,
+        }
+    }
+
+    /// Follows these members, if there are any, and notes how they ended.
+    async fn round(
+        &mut self,
+        purpose: &'static str,
+        book: &mut ClassBook,
+        members: &[Member],
+        seed: u64,
+        preset: Preset,
+    ) -> Result<(), ClientError> {
+        if members.is_empty() {
+            return Ok(());
+        }
+        let starts: Vec<Point> = members.iter().map(|&member| book.start(member)).collect();
+        let mut ends = self.job(purpose, &starts, seed, preset).await?;
+        for (k, &member) in members.iter().enumerate() {
+            let unknown = || Arrival::Failed("the service says nothing of its path".into());
+            book.note(member, ends.remove(&k).unwrap_or_else(unknown));
+        }
+        Ok(())
+    }
+
+    /// One job: how each start ended, by its place.
+    async fn job(
+        &mut self,
+        purpose: &'static str,
+        starts: &[Point],
+        seed: u64,
+        preset: Preset,
+    ) -> Result<BTreeMap<usize, Arrival>, ClientError> {
+        let options = Options {
+            start: StartKind::Given,
+            seed: Some(seed),
+            settings: SettingsChoice {
+                preset: Some(preset),
+                ..SettingsChoice::default()
+            },
+            precision: self.how.precision,
+            start_parameters: family::parameters(),
+            target_parameters: vec![self.parameters.clone()],
+            start_solutions: Some(StartSolutions::Points(StoredPoints {
+                dimension: 8,
+                coordinates: starts.iter().flatten().copied().collect(),
+            })),
+            name: self.how.name.clone(),
+            certify: self.how.certify,
+            ..Options::default()
+        };
+        let prepared = Prepared {
+            submission: Submission {
+                source: Source::System(Box::new(self.system.clone())),
+                options,
+            },
+            name: self.how.name.clone(),
+            warnings: vec![],
+        };
+        let mut connection = Connection::open(self.address).await?;
+        let request = uuid::Uuid::new_v4().to_string();
+        let (job, warnings) = submit::send(&mut connection, &request, prepared).await?;
+        for warning in &warnings {
+            self.progress.say(&format!("warning: {warning}"));
+        }
+        let (mut connection, last) = watch::follow(self.address, &job, self.progress).await?;
+        match last.state() {
+            v1::JobState::Failed => return Err(ClientError::GaveUp(last.message)),
+            v1::JobState::Cancelled => return Err(ClientError::Cancelled),
+            _ => {}
+        }
+        let summary = summary::read(&connection.summary(&job).await?)?;
+        let ends = ends(&mut connection, &job, &summary).await?;
+        self.rounds.push(Round { purpose, summary });
+        Ok(ends)
+    }
+}
+
+/// How each path of a finished job ended.
+async fn ends(
+    connection: &mut Connection,
+    job: &str,
+    summary: &Summary,
+) -> Result<BTreeMap<usize, Arrival>, ClientError> {
+    let mut ends = BTreeMap::new();
+    connection
+        .solutions(job, |solution| {
+            let arrived = arrived(&solution)?;
+            for &path in &solution.paths {
+                let arrival = match solution.singular {
+                    true => Arrival::Singular(arrived.clone()),
+                    false => Arrival::Regular(arrived.clone()),
+                };
+                ends.insert(usize::try_from(path).unwrap_or(usize::MAX), arrival);
+            }
+            Ok(true)
+        })
+        .await?;
+    // Paths that ended at no solution are asked for only where there are some.
+    if (ends.len() as u64) < summary.paths.total {
+        connection
+            .paths(job, |path| {
+                let result = path.result.clone().unwrap_or_default();
+                let at = usize::try_from(result.origin).unwrap_or(usize::MAX);
+                ends.entry(at)
+                    .or_insert_with(|| without_solution(&path, &result));
+                Ok(())
+            })
+            .await?;
+    }
+    Ok(ends)
+}
+
+fn arrived(solution: &Solution) -> Result<Arrived, ClientError> {
+    let values = solution.variables.0.iter().map(|(_, z)| *z);
+    let point: Result<Point, _> = values.collect::<Vec<_>>().try_into();
+    let proof = solution.certificate.as_ref();
+    let certified = proof.is_some_and(|c| c.certified && c.distinct == Some(true));
+    Ok(Arrived {
+        point: point.map_err(|_| {
+            ClientError::GaveUp("a solution of it has another number of variables".into())
+        })?,
+        accuracy: solution.accuracy,
+        real: solution.real,
+        certified,
+        certified_real: certified && proof.is_some_and(|c| c.real == Some(true)),
+    })
+}
+
+fn without_solution(path: &v1::ClassifiedPath, result: &v1::PathResult) -> Arrival {
+    match path.class() {
+        v1::PathClass::AtInfinity => Arrival::AtInfinity,
+        v1::PathClass::PositiveDimensional => Arrival::PositiveDimensional,
+        _ => {
+            let outcome = result.outcome().as_str_name();
+            let words = outcome.trim_start_matches("PATH_OUTCOME_");
+            Arrival::Failed(match result.outcome() {
+                v1::PathOutcome::Regular | v1::PathOutcome::Singular => {
+                    "it ends where another path does, or at no solution".into()
+                }
+                _ => words.to_lowercase().replace('_', " "),
+            })
+        }
+    }
+}

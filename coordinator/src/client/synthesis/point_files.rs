@@ -1,0 +1,240 @@
+//! Point files: nine points as CSV with a header `x,y` or as JSON, checked line by line.
+
+use cognate_kinematics::nine_point::{PathPoints, PointFault};
+use num_complex::Complex64;
+use serde_json::Value;
+
+/// x and y of a point, and where it stands, in words.
+type Placed = ([Complex64; 2], String);
+
+/// Reads nine points; the message names file, line and field.
+pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
+    let text = std::str::from_utf8(content).map_err(|e| {
+        format!(
+            "{name}: is no text: byte {} is not UTF-8",
+            e.valid_up_to() + 1
+        )
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let placed = if text.trim_start().starts_with(['{', '[']) {
+        json(name, text)?
+    } else {
+        csv(name, text)?
+    };
+    if placed.len() != 9 {
+        let found = placed.len();
+        let last = placed
+            .last()
+            .map_or(String::new(), |(_, at)| format!(" (the last is {at})"));
+        return Err(format!("{name}: expected nine points, found {found}{last}"));
+    }
+    let points: Vec<[Complex64; 2]> = placed.iter().map(|(point, _)| *point).collect();
+    let points = points.try_into().expect("nine were counted");
+    PathPoints::new(points).map_err(|fault| {
+        let at = |k: usize| &placed[k].1;
+        match fault {
+            PointFault::NotFinite(k) => format!("{name}: {}: {fault}", at(k)),
+            PointFault::Coincident(j, k) => {
+                format!("{name}: {} and {}: {fault}", at(j), at(k))
+            }
+            PointFault::Extent(_) => format!("{name}: {fault}"),
+        }
+    })
+}
+
+/// A row of numbers below the header `x,y`; commas, semicolons or tabs between. Empty lines and
+/// lines that begin with # are comments.
+fn csv(name: &str, text: &str) -> Result<Vec<Placed>, String> {
+    let mut rows = text
+        .lines()
+        .enumerate()
+        .map(|(k, line)| (k + 1, line.trim()))
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let header = rows.next();
+    let separator = |line: &str| {
+        let known = [',', ';', '\t'];
+        known.into_iter().find(|&c| line.contains(c)).unwrap_or(',')
+    };
+    let (line, header) =
+        header.ok_or_else(|| format!("{name}: is empty; expected a header x,y"))?;
+    let between = separator(header);
+    let names: Vec<&str> = header
+        .split(between)
+        .map(|s| s.trim().trim_matches('"'))
+        .collect();
+    let names: Vec<String> = names.iter().map(|s| s.to_lowercase()).collect();
+    if names != ["x", "y"] {
+        let header = super::super::output::text::cut(header, 40);
+        return Err(format!(
+            "{name}:{line}: expected the header x,y, found `{header}`"
+        ));
+    }
+    let mut points = vec![];
+    for (line, row) in rows {
+        let cells: Vec<&str> = row.split(between).map(str::trim).collect();
+        let [x, y] = cells[..] else {
+            let found = cells.len();
+            let s = if found == 1 { "" } else { "s" };
+            return Err(format!(
+                "{name}:{line}: expected two numbers, x and y, found {found} field{s}"
+            ));
+        };
+        let number = |field: &str, cell: &str| {
+            finite(cell).ok_or_else(|| {
+                let cell = super::super::output::text::cut(cell, 40);
+                format!("{name}:{line}: {field}: expected a finite number, found `{cell}`")
+            })
+        };
+        let point = [number("x", x)?, number("y", y)?].map(|c| Complex64::new(c, 0.0));
+        points.push((point, format!("line {line}")));
+    }
+    Ok(points)
+}
+
+fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+/// `{"points": [[x, y], ...]}`, or the list alone; a complex coordinate is `[re, im]`.
+fn json(name: &str, text: &str) -> Result<Vec<Placed>, String> {
+    let value: Value = serde_json::from_str(text)
+        .map_err(|e| format!("{name}:{}:{}: is no JSON: {e}", e.line(), e.column()))?;
+    let list = match &value {
+        Value::Object(fields) => fields
+            .get("points")
+            .ok_or_else(|| format!("{name}: expected the field \"points\", a list of [x, y]"))?,
+        list => list,
+    };
+    let list = list.as_array().ok_or_else(|| {
+        format!(
+            "{name}: points: expected a list of [x, y], found {}",
+            kind(list)
+        )
+    })?;
+    let points = list.iter().enumerate().map(|(k, point)| {
+        let at = format!("points[{k}]");
+        let Some([x, y]) = point.as_array().map(Vec::as_slice) else {
+            let found = kind(point);
+            return Err(format!("{name}: {at}: expected [x, y], found {found}"));
+        };
+        let coordinate = |field: &str, value: &Value| {
+            complex(value).ok_or_else(|| {
+                let found = kind(value);
+                format!("{name}: {at}.{field}: expected a finite number or [re, im], found {found}")
+            })
+        };
+        Ok(([coordinate("x", x)?, coordinate("y", y)?], at))
+    });
+    points.collect()
+}
+
+fn complex(value: &Value) -> Option<Complex64> {
+    let number = |value: &Value| value.as_f64().filter(|x| x.is_finite());
+    match value {
+        Value::Array(parts) => match &parts[..] {
+            [re, im] => Some(Complex64::new(number(re)?, number(im)?)),
+            _ => None,
+        },
+        _ => Some(Complex64::new(number(value)?, 0.0)),
+    }
+}
+
+fn kind(value: &Value) -> String {
+    match value {
+        Value::Null => "null".into(),
+        Value::Bool(b) => b.to_string(),
+        Value::Number(n) => format!("the number {n}"),
+        Value::String(_) => "a string".into(),
+        Value::Array(items) => format!("a list of {}", items.len()),
+        Value::Object(_) => "an object".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROWS: [&str; 9] = [
+        "0.25,0", "0.52,0.1", "0.8,0.7", "1.2,1", "1.4,1.3", "1.1,1.48", "0.7,1.4", "0.2,1",
+        "0.02,0.4",
+    ];
+
+    fn file(rows: &[&str]) -> String {
+        format!("# nine points\nx,y\n{}\n", rows.join("\n"))
+    }
+
+    fn fault(text: &str) -> String {
+        read("p.csv", text.as_bytes()).expect_err("it is not right")
+    }
+
+    #[test]
+    fn the_same_points_in_every_notation() {
+        let csv = read("p.csv", file(&ROWS).as_bytes()).expect("points");
+        let semicolons = file(&ROWS).replace(',', "; ");
+        assert_eq!(read("p.csv", semicolons.as_bytes()), Ok(csv.clone()));
+        let list: Vec<String> = ROWS.iter().map(|row| format!("[{row}]")).collect();
+        let list = format!("[{}]", list.join(", "));
+        let object = format!("{{\"points\": {list}}}");
+        assert_eq!(read("p.json", list.as_bytes()), Ok(csv.clone()));
+        assert_eq!(read("p.json", object.as_bytes()), Ok(csv.clone()));
+        let complex = object.replace("[0.25,0]", "[[0.25, 0], [0, 0]]");
+        assert_eq!(read("p.json", complex.as_bytes()), Ok(csv));
+        let complex = object.replace("[0.25,0]", "[[0.25, 0.5], 0]");
+        assert!(
+            !read("p.json", complex.as_bytes())
+                .expect("points")
+                .is_real()
+        );
+    }
+
+    #[test]
+    fn mistakes_are_named_with_line_and_field() {
+        let with = |k: usize, row: &'static str| {
+            let mut rows = ROWS;
+            rows[k] = row;
+            fault(&file(&rows))
+        };
+        let cases = [
+            (
+                with(2, "0.8,zero"),
+                "p.csv:5: y: expected a finite number, found `zero`",
+            ),
+            (
+                with(2, "inf,1"),
+                "p.csv:5: x: expected a finite number, found `inf`",
+            ),
+            (
+                with(2, "0.8"),
+                "p.csv:5: expected two numbers, x and y, found 1 field",
+            ),
+            (with(2, "0.8,1,2"), "found 3 fields"),
+            (
+                with(8, "0.52,0.1"),
+                "p.csv: line 4 and line 11: points 2 and 9 coincide",
+            ),
+            (
+                fault(&file(&ROWS[..8])),
+                "expected nine points, found 8 (the last is line 10)",
+            ),
+            (
+                fault("a,b\n1,2\n"),
+                "p.csv:1: expected the header x,y, found `a,b`",
+            ),
+            (fault(""), "p.csv: is empty"),
+            (
+                fault("{\"points\": [[1, null]]}"),
+                "points[0].y: expected a finite number or [re, im], found null",
+            ),
+            (
+                fault("{\"points\": [1]}"),
+                "points[0]: expected [x, y], found the number 1",
+            ),
+            (fault("{\"dots\": []}"), "expected the field \"points\""),
+            (fault("{\"points\": "), "p.csv:1:"),
+        ];
+        for (found, expected) in cases {
+            assert!(found.contains(expected), "{found}\nexpected {expected}");
+        }
+        assert!(read("p", b"x,y\n\xff").is_err_and(|e| e.contains("byte 5 is not UTF-8")));
+    }
+}
