@@ -283,6 +283,7 @@ fn rotations_as_unknowns_end_at_the_same_linkages() {
             assert!((a - b).norm_sqr() < 1e-16 * size, "{k}: {a} {b}");
         }
     }
+}
 
 /// One solution of each class, from all of them: of six the one whose largest coordinate is the
 /// smallest. What `cognate synthesize` carries. UPDATE_GOLDEN=1 writes it again.

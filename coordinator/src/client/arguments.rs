@@ -284,11 +284,17 @@ Examples:
   cognate synthesize nine-point points.csv
   cognate synthesize nine-point points.csv --certify --output linkages
   cognate synthesize nine-point points.csv --format json | jq '.curves[0].linkages[0]'
+  cognate synthesize nine-point --targets many.csv --format json > many.jsonl
 
 points.csv has a header x,y and nine rows; any units. JSON: {\"points\": [[x, y], ...]}.")]
 pub struct NinePoint {
     /// Nine points: CSV with a header x,y or JSON; - is standard input
-    pub file: PathBuf,
+    #[arg(required_unless_present = "targets")]
+    pub file: Option<PathBuf>,
+    /// Many sets of nine points: CSV with a header x1,y1,...,x9,y9 (name before it, if wanted), or a
+    /// line of JSON for each; every set is answered on a line as soon as it is settled
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "output"])]
+    pub targets: Option<PathBuf>,
     /// Seed of everything random; the same seed gives the same bits
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

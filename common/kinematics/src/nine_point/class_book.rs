@@ -137,11 +137,11 @@ impl ClassBook {
             .collect()
     }
 
-    /// All cognates of every class of which a path was lost or jumped, and of those that they
-    /// jumped to.
-    pub fn lost(&self) -> Vec<Member> {
+    /// All cognates of every class that has no regular linkage, and of those where its paths
+    /// jumped to: lost paths, and those that seem to end at a singular linkage or at none.
+    pub fn open(&self) -> Vec<Member> {
         let mut open: Vec<usize> = (0..CLASSES)
-            .filter(|&class| self.end(class) == ClassEnd::Failed)
+            .filter(|&class| self.end(class) != ClassEnd::Finite)
             .collect();
         open.extend(self.clashing.iter().flatten());
         open.sort_unstable();
@@ -423,7 +423,7 @@ mod tests {
         let mut book = full();
         assert_eq!(book.compare(), 0);
         assert_eq!(count(&book, ClassEnd::Finite), CLASSES);
-        assert!(book.other_cognates().is_empty() && book.lost().is_empty());
+        assert!(book.other_cognates().is_empty() && book.open().is_empty());
         let found = book.found();
         assert_eq!(found.len(), CLASSES);
 
@@ -469,7 +469,7 @@ mod tests {
         assert_eq!(book.compare(), 1);
         assert_eq!(book.end(30), ClassEnd::Failed);
         assert!(book.reason(30).contains("class 12"));
-        let again: Vec<usize> = book.lost().iter().map(|m| m.class).collect();
+        let again: Vec<usize> = book.open().iter().map(|m| m.class).collect();
         assert_eq!(again, [12, 12, 12, 30, 30, 30]);
         // Nothing else is known: it stays lost. Then it is found along another way.
         assert_eq!(book.derive(&[], false), 0);

@@ -6,27 +6,33 @@ use crate::client::error::{ClientError, Exit};
 use crate::client::output;
 use crate::client::output::linkages::{self, Sheet};
 use crate::client::output::progress::Progress;
-use crate::client::output::text::Look;
+use crate::client::output::text::{self, Look, counted};
 use crate::client::problem;
-use crate::client::synthesis::{How, nine_points, point_files};
+use crate::client::synthesis::{How, nine_points, point_files, sweep};
+use cognate_kinematics::nine_point::family::CLASSES;
 use cognate_kinematics::nine_point::{ClassEnd, PathPoints};
 use std::time::Instant;
+
+/// What is asked for, read and checked.
+enum Task {
+    One(String, Box<PathPoints>),
+    Many(String, Vec<(String, PathPoints)>),
+}
 
 /// Finds all linkages, prints them, stops everything that it started.
 pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
     let Synthesize::NinePoint(a) = a;
-    let (name, content) = problem::read_file(&a.file)?;
-    let points = point_files::read(&name, &content).map_err(ClientError::Format)?;
+    let task = read(a)?;
     if let Some(coordinator) = &a.coordinator {
         return tokio::select! {
-            ended = find(a, &points, coordinator) => ended,
+            ended = perform(a, &task, coordinator) => ended,
             () = crate::client::interrupted() => Err(ClientError::Interrupted),
         };
     }
     let mut service = Embedded::start(a.workers, a.threads).await?;
     let address = service.address();
     let ended = tokio::select! {
-        ended = find(a, &points, &address) => ended,
+        ended = perform(a, &task, &address) => ended,
         error = service.abandoned() => Err(error),
         () = crate::client::interrupted() => Err(ClientError::Interrupted),
     };
@@ -34,18 +40,88 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
     ended
 }
 
-async fn find(a: &NinePoint, points: &PathPoints, address: &str) -> Result<Exit, ClientError> {
-    let began = Instant::now();
-    let quiet = a.format != SynthesisFormat::Table;
-    let mut progress = Progress::new(quiet, began);
-    let how = How {
+fn read(a: &NinePoint) -> Result<Task, ClientError> {
+    let short = |path| problem::short_name(path).chars().take(60).collect();
+    if let Some(path) = &a.targets {
+        let (name, content) = problem::read_file(path)?;
+        let sets = point_files::read_many(&name, &content).map_err(ClientError::Format)?;
+        return Ok(Task::Many(short(path), sets));
+    }
+    let Some(path) = &a.file else {
+        unreachable!("the arguments name points or --targets")
+    };
+    let (name, content) = problem::read_file(path)?;
+    let points = point_files::read(&name, &content).map_err(ClientError::Format)?;
+    Ok(Task::One(short(path), Box::new(points)))
+}
+
+async fn perform(a: &NinePoint, task: &Task, address: &str) -> Result<Exit, ClientError> {
+    let how = |name: &str| How {
         seed: a.seed,
         preset: a.preset,
         precision: a.precision,
         certify: a.certify,
-        name: problem::short_name(&a.file).chars().take(60).collect(),
+        name: name.to_owned(),
     };
-    let answer = nine_points(address, points, &how, &mut progress).await;
+    match task {
+        Task::One(name, points) => find(a, points, &how(name), address).await,
+        Task::Many(name, sets) => find_many(a, sets, &how(name), address).await,
+    }
+}
+
+/// Every set is answered on a line of its own as soon as it and those before it are settled; at
+/// the end standard error says how many paths that were, and which classes were lost.
+async fn find_many(
+    a: &NinePoint,
+    sets: &[(String, PathPoints)],
+    how: &How,
+    address: &str,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let mut lost = 0;
+    if a.format == SynthesisFormat::Csv {
+        output::print(&format!("set,{}", linkages::csv::header()))?;
+    }
+    sweep::sweep(address, sets, how, |place, answer| {
+        let (name, points) = &sets[place];
+        let sheet = Sheet::new(name, points, answer, a.certify, began.elapsed());
+        for warning in &sheet.warnings {
+            eprintln!("warning: set {name}: {warning}");
+        }
+        lost += sheet.count(ClassEnd::Failed);
+        output::print(&match a.format {
+            SynthesisFormat::Table => linkages::table::line(&sheet),
+            SynthesisFormat::Json => linkages::json::line(&sheet),
+            SynthesisFormat::Csv => linkages::csv::rows(&sheet, Some(name)),
+        })
+    })
+    .await?;
+    let seconds = began.elapsed().as_secs_f64();
+    let paths = (sets.len() * CLASSES) as u64;
+    eprintln!(
+        "{} in {}: {}, {} paths/s; {} lost",
+        counted(sets.len() as u64, "set"),
+        text::seconds(seconds),
+        counted(paths, "path"),
+        text::rate(paths as f64 / seconds.max(1e-9)),
+        text::count(lost as u64)
+    );
+    Ok(match lost {
+        0 => Exit::Solved,
+        _ => Exit::Unsettled,
+    })
+}
+
+async fn find(
+    a: &NinePoint,
+    points: &PathPoints,
+    how: &How,
+    address: &str,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let quiet = a.format != SynthesisFormat::Table;
+    let mut progress = Progress::new(quiet, began);
+    let answer = nine_points(address, points, how, &mut progress).await;
     progress.finish();
     let sheet = Sheet::new(&how.name, points, answer?, a.certify, began.elapsed());
     if let Some(folder) = &a.output {

@@ -37,6 +37,14 @@ pub struct Progress {
 }
 
 impl Progress {
+    /// No display at all, not even on a terminal.
+    pub fn silent() -> Self {
+        Self {
+            display: Display::Silent,
+            began: Instant::now(),
+        }
+    }
+
     /// The display that fits: `quiet` (JSON was asked for) shows a bar on a terminal and nothing elsewhere.
     pub fn new(quiet: bool, now: Instant) -> Self {
         let term = console::Term::stderr();

@@ -5,6 +5,7 @@
 //! followed by other cognates, more carefully, and along other parameters.
 
 pub mod point_files;
+pub mod sweep;
 
 use super::arguments::PresetName;
 use super::commands::{submit, watch};
@@ -25,6 +26,7 @@ use cognate_protocol::v1;
 use cognate_solutions::solution::Solution;
 use cognate_systems::named::nine_point;
 use cognate_systems::system::System;
+use num_complex::Complex64;
 use std::collections::BTreeMap;
 
 /// How the paths are followed.
@@ -74,59 +76,23 @@ pub async fn nine_points(
     how: &How,
     progress: &mut Progress,
 ) -> Result<Answer, ClientError> {
-    let mut search = Search {
-        address,
-        parameters: points.parameters(),
-        how,
-        progress,
-        rounds: vec![],
-        system: followed_system(points),
-    };
+    let mut search = Search::new(address, points, how, progress);
     let mut book = ClassBook::new(points.parameters());
-    let seed = how.seed.unwrap_or(SEED);
-    let preset = preset(how.preset);
     let first = ClassBook::first_round();
+    let (seed, preset) = (search.seed, search.preset);
     search
         .round("one of each class", &mut book, &first, seed, preset)
         .await?;
-    book.compare();
-    let others = book.other_cognates();
-    search
-        .round("other cognates", &mut book, &others, seed, preset)
-        .await?;
-    book.compare();
-    let lost = book.lost();
-    search
-        .round("again, carefully", &mut book, &lost, seed, Preset::Careful)
-        .await?;
-    book.compare();
-    let mut derived = book.derive(&[], points.is_real());
-    if book.counts().contains(&(ClassEnd::Failed, 0)) {
-        return Ok(search.answer(book, derived));
-    }
-    // Along other parameters every class may end as another one: only what is found counts.
-    let starts: Vec<Point> = first.iter().map(|&member| book.start(member)).collect();
-    let job = search
-        .job("another way", &starts, seed + OTHER_WAY, preset)
-        .await?;
-    let others: Vec<Arrived> = job
-        .into_values()
-        .filter_map(|arrival| match arrival {
-            Arrival::Regular(arrived) => Some(arrived),
-            _ => None,
-        })
-        .collect();
-    derived += book.derive(&others, points.is_real());
-    Ok(search.answer(book, derived))
+    search.settle(book).await
 }
 
 /// The system that is followed: without the group, of which only one member is wanted, and
 /// without degenerate sets, which the book looks at itself.
-fn followed_system(points: &PathPoints) -> System {
+fn followed_system(real: bool) -> System {
     let mut system = nine_point().system;
     system.symmetry.clear();
     system.degenerate.clear();
-    if !points.is_real() {
+    if !real {
         system.conjugates.clear();
     }
     system
@@ -144,20 +110,65 @@ fn preset(name: PresetName) -> Preset {
 /// A synthesis under way.
 struct Search<'a> {
     address: &'a str,
-    parameters: Vec<num_complex::Complex64>,
+    points: &'a PathPoints,
     how: &'a How,
     progress: &'a mut Progress,
     rounds: Vec<Round>,
-    system: System,
+    seed: u64,
+    preset: Preset,
 }
 
-impl Search<'_> {
-    fn answer(self, book: ClassBook, derived: usize) -> Answer {
-        Answer {
+impl<'a> Search<'a> {
+    fn new(
+        address: &'a str,
+        points: &'a PathPoints,
+        how: &'a How,
+        progress: &'a mut Progress,
+    ) -> Self {
+        Self {
+            address,
+            points,
+            how,
+            progress,
+            rounds: vec![],
+            seed: how.seed.unwrap_or(SEED),
+            preset: preset(how.preset),
+        }
+    }
+
+    /// What is open after the first round.
+    async fn settle(mut self, mut book: ClassBook) -> Result<Answer, ClientError> {
+        let (seed, preset) = (self.seed, self.preset);
+        book.compare();
+        let others = book.other_cognates();
+        self.round("other cognates", &mut book, &others, seed, preset)
+            .await?;
+        book.compare();
+        let open = book.open();
+        self.round("again, carefully", &mut book, &open, seed, Preset::Careful)
+            .await?;
+        book.compare();
+        let mut derived = book.derive(&[], self.points.is_real());
+        if !book.counts().contains(&(ClassEnd::Failed, 0)) {
+            // Along other parameters every class may end as another one: only what is found counts.
+            let first = ClassBook::first_round();
+            let starts: Vec<Point> = first.iter().map(|&member| book.start(member)).collect();
+            let way = seed.wrapping_add(OTHER_WAY);
+            let job = self.job("another way", &starts, way, preset).await?;
+            let others: Vec<Arrived> = job
+                .into_values()
+                .filter_map(|arrival| match arrival {
+                    Arrival::Regular(arrived) => Some(arrived),
+                    _ => None,
+                })
+                .collect();
+            derived += book.derive(&others, self.points.is_real());
+        }
+        Ok(Answer {
             book,
             rounds: self.rounds,
             derived,
-        }
+        })
     }
 
     /// Follows these members, if there are any, and notes how they ended.
@@ -189,49 +200,79 @@ impl Search<'_> {
         seed: u64,
         preset: Preset,
     ) -> Result<BTreeMap<usize, Arrival>, ClientError> {
-        let options = Options {
-            start: StartKind::Given,
-            seed: Some(seed),
-            settings: SettingsChoice {
-                preset: Some(preset),
-                ..SettingsChoice::default()
-            },
-            precision: self.how.precision,
-            start_parameters: family::parameters(),
-            target_parameters: vec![self.parameters.clone()],
-            start_solutions: Some(StartSolutions::Points(StoredPoints {
-                dimension: 8,
-                coordinates: starts.iter().flatten().copied().collect(),
-            })),
-            name: self.how.name.clone(),
-            certify: self.how.certify,
-            ..Options::default()
-        };
-        let prepared = Prepared {
-            submission: Submission {
-                source: Source::System(Box::new(self.system.clone())),
-                options,
-            },
-            name: self.how.name.clone(),
-            warnings: vec![],
-        };
-        let mut connection = Connection::open(self.address).await?;
-        let request = uuid::Uuid::new_v4().to_string();
-        let (job, warnings) = submit::send(&mut connection, &request, prepared).await?;
-        for warning in &warnings {
-            self.progress.say(&format!("warning: {warning}"));
-        }
-        let (mut connection, last) = watch::follow(self.address, &job, self.progress).await?;
-        match last.state() {
-            v1::JobState::Failed => return Err(ClientError::GaveUp(last.message)),
-            v1::JobState::Cancelled => return Err(ClientError::Cancelled),
-            _ => {}
-        }
-        let summary = summary::read(&connection.summary(&job).await?)?;
-        let ends = ends(&mut connection, &job, &summary).await?;
+        let targets = [self.points.parameters()];
+        let submission = submission(
+            starts,
+            &targets,
+            self.points.is_real(),
+            self.how,
+            seed,
+            preset,
+        );
+        let (summary, ends) = run(self.address, submission, self.progress).await?;
         self.rounds.push(Round { purpose, summary });
         Ok(ends)
     }
+}
+
+/// From these starts to all of these targets.
+fn submission(
+    starts: &[Point],
+    targets: &[Vec<Complex64>],
+    real: bool,
+    how: &How,
+    seed: u64,
+    preset: Preset,
+) -> Prepared {
+    let options = Options {
+        start: StartKind::Given,
+        seed: Some(seed),
+        settings: SettingsChoice {
+            preset: Some(preset),
+            ..SettingsChoice::default()
+        },
+        precision: how.precision,
+        start_parameters: family::parameters(),
+        target_parameters: targets.to_vec(),
+        start_solutions: Some(StartSolutions::Points(StoredPoints {
+            dimension: 8,
+            coordinates: starts.iter().flatten().copied().collect(),
+        })),
+        name: how.name.clone(),
+        certify: how.certify,
+        ..Options::default()
+    };
+    Prepared {
+        submission: Submission {
+            source: Source::System(Box::new(followed_system(real))),
+            options,
+        },
+        name: how.name.clone(),
+        warnings: vec![],
+    }
+}
+
+/// Runs a job to its end: its summary, and how each path ended, by its number.
+async fn run(
+    address: &str,
+    prepared: Prepared,
+    progress: &mut Progress,
+) -> Result<(Summary, BTreeMap<usize, Arrival>), ClientError> {
+    let mut connection = Connection::open(address).await?;
+    let request = uuid::Uuid::new_v4().to_string();
+    let (job, warnings) = submit::send(&mut connection, &request, prepared).await?;
+    for warning in &warnings {
+        progress.say(&format!("warning: {warning}"));
+    }
+    let (mut connection, last) = watch::follow(address, &job, progress).await?;
+    match last.state() {
+        v1::JobState::Failed => return Err(ClientError::GaveUp(last.message)),
+        v1::JobState::Cancelled => return Err(ClientError::Cancelled),
+        _ => {}
+    }
+    let summary = summary::read(&connection.summary(&job).await?)?;
+    let ends = ends(&mut connection, &job, &summary).await?;
+    Ok((summary, ends))
 }
 
 /// How each path of a finished job ended.

@@ -21,6 +21,11 @@ pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
     } else {
         csv(name, text)?
     };
+    nine(name, &placed)
+}
+
+/// Checks that there are nine, and that they are different.
+fn nine(name: &str, placed: &[Placed]) -> Result<PathPoints, String> {
     if placed.len() != 9 {
         let found = placed.len();
         let last = placed
@@ -40,6 +45,87 @@ pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
             PointFault::Extent(_) => format!("{name}: {fault}"),
         }
     })
+}
+
+/// Many sets of nine points, each with a name.
+///
+/// CSV with a header `x1,y1,...,x9,y9`, or the same with `name` before it, a row for each set; or
+/// JSON, a line for each: a list of points, or `{"name": ..., "points": [...]}`.
+pub fn read_many(name: &str, content: &[u8]) -> Result<Vec<(String, PathPoints)>, String> {
+    let text = std::str::from_utf8(content).map_err(|e| {
+        format!(
+            "{name}: is no text: byte {} is not UTF-8",
+            e.valid_up_to() + 1
+        )
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut rows = text
+        .lines()
+        .enumerate()
+        .map(|(k, line)| (k + 1, line.trim()))
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+        .peekable();
+    let is_json = rows
+        .peek()
+        .is_some_and(|(_, row)| row.starts_with(['{', '[']));
+    let mut sets = vec![];
+    if is_json {
+        for (line, row) in rows {
+            let origin = format!("{name}:{line}");
+            let placed = json(&origin, row)?;
+            let value: Value = serde_json::from_str(row).unwrap_or_default();
+            let called = value["name"].as_str().map(str::to_owned);
+            let called = called.unwrap_or_else(|| (sets.len() + 1).to_string());
+            sets.push((called, nine(&origin, &placed)?));
+        }
+    } else {
+        let header = rows.next().map_or("", |(_, row)| row).to_lowercase();
+        let between = [',', ';', '\t'].into_iter().find(|&c| header.contains(c));
+        let between = between.unwrap_or(',');
+        let names: Vec<&str> = header.split(between).map(str::trim).collect();
+        let coordinates = (1..=9).flat_map(|k| [format!("x{k}"), format!("y{k}")]);
+        let coordinates: Vec<String> = coordinates.collect();
+        let named = names.first() == Some(&"name");
+        if names[usize::from(named)..] != coordinates {
+            return Err(format!(
+                "{name}: expected the header x1,y1,...,x9,y9, or name,x1,y1,...,x9,y9, or a line of \
+                 JSON for each set of points"
+            ));
+        }
+        for (line, row) in rows {
+            let cells: Vec<&str> = row.split(between).map(str::trim).collect();
+            if cells.len() != names.len() {
+                let (expected, found) = (names.len(), cells.len());
+                return Err(format!(
+                    "{name}:{line}: expected {expected} fields, found {found}"
+                ));
+            }
+            let called = match named {
+                true => cells[0].to_owned(),
+                false => (sets.len() + 1).to_string(),
+            };
+            let numbers = coordinates.iter().zip(&cells[usize::from(named)..]);
+            let numbers: Vec<Complex64> = numbers
+                .map(|(field, cell)| {
+                    let number = finite(cell).map(|x| Complex64::new(x, 0.0));
+                    number.ok_or_else(|| {
+                        let cell = super::super::output::text::cut(cell, 40);
+                        format!("{name}:{line}: {field}: expected a finite number, found `{cell}`")
+                    })
+                })
+                .collect::<Result<_, _>>()?;
+            let placed: Vec<Placed> = numbers
+                .chunks_exact(2)
+                .enumerate()
+                .map(|(k, point)| ([point[0], point[1]], format!("x{0},y{0}", k + 1)))
+                .collect();
+            sets.push((called, nine(&format!("{name}:{line}"), &placed)?));
+        }
+    }
+    match sets.is_empty() {
+        true => Err(format!("{name}: holds no set of points")),
+        false => Ok(sets),
+    }
 }
 
 /// A row of numbers below the header `x,y`; commas, semicolons or tabs between. Empty lines and
@@ -185,6 +271,57 @@ mod tests {
                 .expect("points")
                 .is_real()
         );
+    }
+
+    #[test]
+    fn many_sets_are_read_and_their_mistakes_named() {
+        let one = read("p.csv", file(&ROWS).as_bytes()).expect("points");
+        let header: Vec<String> = (1..=9).map(|k| format!("x{k},y{k}")).collect();
+        let (header, row) = (header.join(","), ROWS.join(","));
+        let plain = format!("{header}\n{row}\n\n{row}\n");
+        let sets = read_many("t.csv", plain.as_bytes()).expect("two sets");
+        let expected = [
+            ("1".to_string(), one.clone()),
+            ("2".to_string(), one.clone()),
+        ];
+        assert_eq!(sets, expected);
+        let named = format!("name,{header}\nwing,{row}\n");
+        let sets = read_many("t.csv", named.as_bytes()).expect("one set");
+        assert_eq!(sets, [("wing".to_string(), one.clone())]);
+        let list: Vec<String> = ROWS.iter().map(|row| format!("[{row}]")).collect();
+        let list = list.join(", ");
+        let lines = format!("[{list}]\n{{\"name\": \"wing\", \"points\": [{list}]}}\n");
+        let sets = read_many("t.jsonl", lines.as_bytes()).expect("two sets");
+        assert_eq!(
+            sets,
+            [("1".to_string(), one.clone()), ("wing".to_string(), one)]
+        );
+        let fault = |text: String| read_many("t", text.as_bytes()).expect_err("it is not right");
+        let twice = row.replace("0.52,0.1", "0.25,0");
+        let cases = [
+            (
+                format!("{header}\n{row},1\n"),
+                "t:2: expected 18 fields, found 19",
+            ),
+            (
+                format!("{header}\n{}\n", row.replace("1.48", "?")),
+                "t:2: y6: expected a finite number",
+            ),
+            (
+                format!("{header}\n{row}\n{twice}\n"),
+                "t:3: x1,y1 and x2,y2: points 1 and 2 coincide",
+            ),
+            ("x,y\n1,2\n".into(), "expected the header x1,y1,...,x9,y9"),
+            (format!("{header}\n"), "holds no set of points"),
+            (
+                format!("[{list}]\n[[1, 2]]\n"),
+                "t:2: expected nine points, found 1",
+            ),
+        ];
+        for (text, expected) in cases {
+            let found = fault(text);
+            assert!(found.contains(expected), "{found}\nexpected {expected}");
+        }
     }
 
     #[test]

@@ -7,10 +7,23 @@ const HEADER: &str = "name,class,certified,grade,type,driver,pivot_a_x,pivot_a_y
 joint_a_x,joint_a_y,joint_b_x,joint_b_y,point_x,point_y,ground,side_a,coupler,side_b,arm_a,arm_b,\
 one_circuit,one_branch,in_order,order,turns_round,swing_degrees,transmission_degrees,size,error";
 
+/// The names of the columns, with the line's end.
+pub fn header() -> String {
+    format!("{HEADER}\n")
+}
+
 /// The table; joints and coupler point are in the position of point 1.
 pub fn sheet(sheet: &Sheet) -> String {
-    let mut text = format!("{HEADER}\n");
+    header() + &rows(sheet, None)
+}
+
+/// The table without its header; the set's name in a column before the others, if one is given.
+pub fn rows(sheet: &Sheet, set: Option<&str>) -> String {
+    let mut text = String::new();
     for (name, curve, mechanism) in sheet.linkages() {
+        if let Some(set) = set {
+            let _ = write!(text, "\"{}\",", set.replace('"', "\"\""));
+        }
         let a = &mechanism.assessment;
         let first = &mechanism.realization.poses[0];
         let drive = a.drive();

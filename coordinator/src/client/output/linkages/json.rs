@@ -32,6 +32,29 @@ pub fn value(sheet: &Sheet) -> Value {
     answer
 }
 
+/// A line for one set of a sweep: its classes, its points, and its linkages without their
+/// positions.
+pub fn line(sheet: &Sheet) -> String {
+    let curves = sheet.curves.iter().enumerate().map(|(place, c)| {
+        let mut curve = curve(place, c);
+        for linkage in curve["linkages"].as_array_mut().into_iter().flatten() {
+            if let Some(fields) = linkage.as_object_mut() {
+                fields.remove("positions");
+            }
+        }
+        curve
+    });
+    let line = json!({
+        "name": sheet.name,
+        "points": points(sheet),
+        "classes": classes(sheet),
+        "settled": sheet.count(ClassEnd::Failed) == 0,
+        "curves": curves.collect::<Value>(),
+        "warnings": sheet.warnings,
+    });
+    format!("{line}\n")
+}
+
 fn points(sheet: &Sheet) -> Value {
     let points = sheet.points.coordinates().iter();
     if sheet.points.is_real() {

@@ -1,6 +1,6 @@
 //! The sheet for people: what became of every class, and the linkages worth looking at.
 
-use super::Sheet;
+use super::{Sheet, word};
 use crate::client::output::table::Lines;
 use crate::client::output::text::{Columns, Look, count, counted, cut, real, seconds, wrapped};
 use cognate_kinematics::assessment::Grade;
@@ -36,6 +36,31 @@ pub fn sheet(sheet: &Sheet, files: Option<&Path>, look: Look) -> String {
         lines.raw(&list(sheet, files, look));
     }
     lines.finish()
+}
+
+/// One line for one set of a sweep: its counts, and its best linkage.
+pub fn line(sheet: &Sheet) -> String {
+    let ends: Vec<String> = sheet
+        .classes
+        .iter()
+        .filter(|(_, n)| *n > 0)
+        .map(|(end, n)| format!("{n} {}", word(*end).replace('_', " ")))
+        .collect();
+    let best = sheet.linkages().next().map(|(_, _, mechanism)| {
+        let a = &mechanism.assessment;
+        let angle = a.drive().transmission_degrees;
+        format!("; best {} {}, {angle:.1} degrees", a.grade.name(), a.kind())
+    });
+    let real = match sheet.real {
+        Some(n) => counted(n as u64, "real curve"),
+        None => "complex points".into(),
+    };
+    format!(
+        "{}: {}, {real}{}\n",
+        sheet.name,
+        ends.join(", "),
+        best.unwrap_or_default()
+    )
 }
 
 fn headline(sheet: &Sheet, look: Look) -> String {
