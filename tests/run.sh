@@ -74,6 +74,20 @@ if ! cmp -s tests/stranger/requirements.txt "$stranger/requirements.txt"; then
 fi
 export COGNATE_STRANGER_PYTHON=$PWD/$stranger/bin/python
 
+step "a PostgreSQL server for tests"
+postgres=${TMPDIR:-/tmp}/cognate-pg-$$
+trap 'tests/support/postgres.sh stop "$postgres"' EXIT
+tests/support/postgres.sh start "$postgres" && started=0 || started=$?
+if [ "$started" -eq 77 ]; then
+  install postgresql
+  tests/support/postgres.sh start "$postgres" && started=0 || started=$?
+fi
+case $started in
+  0) export COGNATE_TEST_POSTGRES="host=$postgres&user=cognate" ;;
+  77) echo "skipped: the tests of the ledger on PostgreSQL, which is not installed" ;;
+  *) exit 1 ;;
+esac
+
 step "building"
 cargo test --release --workspace --no-run
 # The build above has made it; the tests need not ask cargo again.
@@ -82,4 +96,8 @@ export COGNATE_PROGRAM=$PWD/target/release/cognate
 
 step "everything"
 cargo test --release --workspace
+
+step "chaos: half a minute of random kills on either ledger"
+cargo run --release -p cognate-tests --bin chaos -- --seconds 15 --seed 1
+cargo run --release -p cognate-tests --bin chaos -- --seconds 15 --seed 2 --ledger postgres
 printf '\nall tests passed\n'

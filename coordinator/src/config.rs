@@ -1,6 +1,8 @@
 //! Config: addresses, places, deadlines, limits of a coordinator; each with its default.
 
+use crate::api::security::Security;
 use crate::chunks::leasing::Policy;
+use cognate_worker::transport::shared_memory::place::LEAST_FREE;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -16,10 +18,17 @@ pub struct Config {
     pub listen: Vec<ListenAddress>,
     /// Serve addresses beyond this machine without asking anybody who they are.
     pub insecure: bool,
+    /// What is asked of callers from a network.
+    pub security: Security,
+    /// Where metrics are read by HTTP: host and port; `None`: nowhere.
+    pub metrics: Option<String>,
     /// What remembers.
     pub ledger: LedgerPlace,
     /// The folder of the results and all other objects; `None`: in memory.
     pub results: Option<PathBuf>,
+    /// Workers of the same user on this host may use shared memory while so many bytes are free in
+    /// /dev/shm; `None`: never.
+    pub shared_memory: Option<u64>,
     /// Deadlines and limits.
     pub rules: Rules,
 }
@@ -29,8 +38,11 @@ impl Default for Config {
         Self {
             listen: vec![ListenAddress::Tcp(DEFAULT_ADDRESS.to_owned())],
             insecure: false,
+            security: Security::default(),
+            metrics: None,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),
             results: Some("cognate-data/results".into()),
+            shared_memory: Some(LEAST_FREE),
             rules: Rules::default(),
         }
     }
@@ -72,11 +84,8 @@ pub enum ConfigError {
     #[error("`{0}` is no address to listen on; expected HOST:PORT or unix:PATH")]
     Address(String),
     /// No ledger.
-    #[error("`{0}` is no ledger; expected sqlite:PATH or memory")]
+    #[error("`{0}` is no ledger; expected sqlite:PATH, postgres://USER@HOST/DATABASE or memory")]
     Ledger(String),
-    /// A later version's.
-    #[error("not in this version: {0}")]
-    NotInThisVersion(String),
 }
 
 /// A place to listen on.
@@ -84,6 +93,8 @@ pub enum ConfigError {
 pub enum ListenAddress {
     /// gRPC over TCP: host and port; port 0 takes a free one.
     Tcp(String),
+    /// gRPC over TCP and TLS, likewise.
+    Tls(String),
     /// gRPC over a Unix socket.
     Unix(PathBuf),
 }
@@ -93,11 +104,6 @@ impl FromStr for ListenAddress {
 
     fn from_str(text: &str) -> Result<Self, ConfigError> {
         let bad = || ConfigError::Address(text.to_owned());
-        if text.starts_with("https://") {
-            return Err(ConfigError::NotInThisVersion(format!(
-                "TLS, which `{text}` asks for"
-            )));
-        }
         if let Some(path) = text.strip_prefix("unix:") {
             let path = path.strip_prefix("//").unwrap_or(path);
             return if path.is_empty() {
@@ -106,13 +112,19 @@ impl FromStr for ListenAddress {
                 Ok(Self::Unix(path.into()))
             };
         }
-        let authority = text.strip_prefix("http://").unwrap_or(text);
+        let secret = text.strip_prefix("https://");
+        let authority = secret.unwrap_or_else(|| text.strip_prefix("http://").unwrap_or(text));
         let authority = authority.strip_suffix('/').unwrap_or(authority);
         let (host, port) = authority.rsplit_once(':').ok_or_else(bad)?;
         if host.is_empty() || host.contains('/') || port.parse::<u16>().is_err() {
             return Err(bad());
         }
-        Ok(Self::Tcp(authority.to_owned()))
+        let authority = authority.to_owned();
+        Ok(if secret.is_some() {
+            Self::Tls(authority)
+        } else {
+            Self::Tcp(authority)
+        })
     }
 }
 
@@ -120,6 +132,7 @@ impl fmt::Display for ListenAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Tcp(authority) => write!(f, "http://{authority}"),
+            Self::Tls(authority) => write!(f, "https://{authority}"),
             Self::Unix(path) => write!(f, "unix:{}", path.display()),
         }
     }
@@ -130,6 +143,8 @@ impl fmt::Display for ListenAddress {
 pub enum LedgerPlace {
     /// A file.
     Sqlite(PathBuf),
+    /// A PostgreSQL database, which several coordinators may share, by its URL.
+    Postgres(String),
     /// Nothing outlives the process: for tests and the embedded solve.
     Memory,
 }
@@ -141,10 +156,8 @@ impl FromStr for LedgerPlace {
         if text == "memory" {
             return Ok(Self::Memory);
         }
-        if text.starts_with("postgres:") || text.starts_with("postgresql:") {
-            return Err(ConfigError::NotInThisVersion(format!(
-                "PostgreSQL, which `{text}` asks for"
-            )));
+        if text.starts_with("postgres://") || text.starts_with("postgresql://") {
+            return Ok(Self::Postgres(text.to_owned()));
         }
         let path = text.strip_prefix("sqlite:");
         let path = path.map(|p| p.strip_prefix("//").unwrap_or(p));
@@ -188,8 +201,8 @@ mod tests {
         ] {
             assert!(text.parse::<ListenAddress>().is_err(), "{text}");
         }
-        let error = "https://a:1".parse::<ListenAddress>().unwrap_err();
-        assert!(error.to_string().starts_with("not in this version"));
+        let tls = "https://a:1".parse::<ListenAddress>();
+        assert_eq!(tls.unwrap(), ListenAddress::Tls("a:1".into()));
     }
 
     #[test]
@@ -200,7 +213,7 @@ mod tests {
         for text in ["", "sqlite:", "redis:x", "a.db"] {
             assert!(text.parse::<LedgerPlace>().is_err(), "{text}");
         }
-        let error = "postgres://h/d".parse::<LedgerPlace>().unwrap_err();
-        assert!(error.to_string().starts_with("not in this version"));
+        let url = "postgres://h/d";
+        assert_eq!(url.parse(), Ok(LedgerPlace::Postgres(url.into())));
     }
 }

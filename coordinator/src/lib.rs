@@ -36,4 +36,6 @@ pub mod config;
 
 pub mod server;
 
+pub mod metrics;
+
 pub mod client;

@@ -5,15 +5,18 @@
 
 use crate::api::Context;
 use crate::api::client_service::ClientService;
+use crate::api::security::{Guard, Security};
 use crate::api::worker_service::WorkerService;
 use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
 use crate::coordinator::Coordinator;
 use crate::ledger::clock::SystemClock;
 use crate::ledger::identity::CoordinatorId;
 use crate::ledger::memory::MemoryLedger;
-use crate::ledger::sqlite::SqliteLedger;
+use crate::ledger::sql::SqlLedger;
 use crate::ledger::{Ledger, LedgerError};
+use crate::metrics;
 use crate::results::store::{Store, StoreError};
+use crate::transport::shared_memory::SharedMemoryDoor;
 use crate::transport::{self, Door, DoorError};
 use cognate_protocol::DESCRIPTORS;
 use cognate_protocol::limits::MESSAGE_BYTES;
@@ -56,8 +59,9 @@ pub struct RunningServer {
     /// Where it listens, with the ports that were free where port 0 was asked for.
     pub addresses: Vec<ListenAddress>,
     context: Arc<Context>,
+    memory: CancellationToken,
     tasks: JoinSet<()>,
-    sqlite: Option<Arc<SqliteLedger>>,
+    database: Option<Arc<SqlLedger>>,
 }
 
 /// Starts coordinators.
@@ -72,33 +76,71 @@ impl Server {
         // Doors first: whoever is refused here has touched nothing.
         let mut doors = Vec::new();
         for address in &config.listen {
-            doors.push(Door::open(address, config.insecure).await?);
+            doors.push(Door::open(address, &config.security, config.insecure).await?);
         }
+        let metrics = match &config.metrics {
+            None => None,
+            Some(address) => {
+                let bound = tokio::net::TcpListener::bind(address).await;
+                Some(bound.map_err(|source| DoorError::Bind {
+                    address: ListenAddress::Tcp(address.clone()),
+                    source,
+                })?)
+            }
+        };
         let store = match &config.results {
             Some(folder) => Store::folder(folder)?,
             None => Store::in_memory(),
         };
         let clock = Arc::new(SystemClock::default());
-        let mut sqlite = None;
+        let mut database = None;
         let ledger: Arc<dyn Ledger> = match &config.ledger {
             LedgerPlace::Memory => Arc::new(MemoryLedger::new(clock)),
             LedgerPlace::Sqlite(path) => {
                 make_folder(path)?;
-                let ledger = Arc::new(SqliteLedger::open(path, clock).await?);
-                sqlite = Some(ledger.clone());
+                let ledger = Arc::new(SqlLedger::sqlite(path, clock).await?);
+                database = Some(ledger.clone());
+                ledger
+            }
+            LedgerPlace::Postgres(url) => {
+                let ledger = Arc::new(SqlLedger::postgres(url, None).await?);
+                database = Some(ledger.clone());
                 ledger
             }
         };
         let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
             .expect("a UUID is a name");
-        let mut running = Self::serve(doors, ledger, store, who, config.rules).await;
-        running.sqlite = sqlite;
+        let memory = config.shared_memory.and_then(|least_free| {
+            let opened = SharedMemoryDoor::open(least_free);
+            let refused = |error| tracing::info!(%error, "no shared memory; workers use gRPC");
+            opened.map_err(refused).ok()
+        });
+        let counted = Arc::clone(&ledger);
+        let mut running = Self::serve(
+            doors,
+            memory,
+            config.security,
+            ledger,
+            store,
+            who,
+            config.rules,
+        )
+        .await;
+        running.database = database;
+        if let Some(listener) = metrics {
+            let stopping = running.stopping();
+            running
+                .tasks
+                .spawn(metrics::serve(listener, counted, stopping));
+        }
         Ok(running)
     }
 
     /// Starts one on parts that are there already, behind these doors.
     pub async fn serve(
         doors: Vec<Door>,
+        memory: Option<SharedMemoryDoor>,
+        security: Security,
         ledger: Arc<dyn Ledger>,
         store: Store,
         who: CoordinatorId,
@@ -106,12 +148,27 @@ impl Server {
     ) -> RunningServer {
         let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
         let stopping = CancellationToken::new();
-        let context = Arc::new(Context::new(coordinator.clone(), rules, stopping.clone()));
+        let named = memory.as_ref().map(SharedMemoryDoor::named);
+        let context = Arc::new(Context::new(
+            coordinator.clone(),
+            rules,
+            stopping.clone(),
+            named.unwrap_or_default(),
+        ));
         let routes = routes(&context).await;
         let mut tasks = JoinSet::new();
         let addresses: Vec<_> = doors.iter().map(Door::address).collect();
         for door in doors {
-            tasks.spawn(listen(door, routes.clone(), context.clone()));
+            tasks.spawn(listen(
+                door,
+                security.clone(),
+                routes.clone(),
+                context.clone(),
+            ));
+        }
+        let memory_ends = stopping.child_token();
+        if let Some(memory) = memory {
+            tasks.spawn(memory.serve(routes, memory_ends.clone()));
         }
         tasks.spawn(coordinator.run(stopping));
         for address in &addresses {
@@ -120,8 +177,9 @@ impl Server {
         RunningServer {
             addresses,
             context,
+            memory: memory_ends,
             tasks,
-            sqlite: None,
+            database: None,
         }
     }
 }
@@ -137,6 +195,11 @@ impl RunningServer {
         self.context.stopping.clone()
     }
 
+    /// Closes the door in shared memory: its workers go on by gRPC.
+    pub fn close_shared_memory(&self) {
+        self.memory.cancel();
+    }
+
     /// Stops: waiting calls return at once, others have the grace period; then the ledger closes.
     pub async fn shutdown(mut self) {
         tracing::info!("stopping");
@@ -147,10 +210,17 @@ impl RunningServer {
             tracing::warn!("some calls were cut off");
             self.tasks.shutdown().await;
         }
-        if let Some(ledger) = self.sqlite.take() {
+        if let Some(ledger) = self.database.take() {
             ledger.close().await;
         }
         tracing::info!("stopped");
+    }
+}
+
+impl Drop for RunningServer {
+    fn drop(&mut self) {
+        // The thread of shared memory would go on without it.
+        self.context.stopping.cancel();
     }
 }
 
@@ -213,25 +283,43 @@ async fn routes(context: &Arc<Context>) -> Routes {
 }
 
 /// Takes calls at one door until the service stops.
-async fn listen(door: Door, routes: Routes, context: Arc<Context>) {
+async fn listen(door: Door, security: Security, routes: Routes, context: Arc<Context>) {
     let address = door.address();
     let stopping = context.stopping.clone();
     let keep_alive = context.rules.keep_alive;
-    let mut server = tonic::transport::Server::builder()
+    let server = tonic::transport::Server::builder()
         .http2_keepalive_interval(Some(keep_alive))
         .http2_keepalive_timeout(Some(keep_alive))
         .tcp_keepalive(Some(keep_alive));
-    let router = server.add_routes(routes);
     let served = match door {
         Door::Tcp(listener) => {
+            let mut server = server.layer(Guard(security.tokens));
             let incoming = transport::tcp_connections(listener);
-            router
+            server
+                .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await
         }
+        Door::Tls(listener) => {
+            let tls = security.tls.map(|tls| tls.config()).unwrap_or_default();
+            let incoming = transport::tcp_connections(listener);
+            match server.tls_config(tls) {
+                Ok(server) => {
+                    let mut server = server.layer(Guard(security.tokens));
+                    server
+                        .add_routes(routes)
+                        .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
+                        .await
+                }
+                Err(error) => Err(error),
+            }
+        }
+        // Its file is this user's alone: whoever opens it could read the tokens, too.
         Door::Unix(socket) => {
+            let mut server = server.layer(Guard(None));
             let incoming = transport::unix_connections(socket);
-            router
+            server
+                .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await
         }

@@ -3,7 +3,7 @@
 
 mod support;
 
-use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress, Rules};
+use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};
 use cognate_coordinator::server::{Server, ServerError};
 use cognate_coordinator::transport::DoorError;
 use cognate_protocol::v1;
@@ -461,7 +461,7 @@ async fn health_and_reflection_answer_over_tcp() {
         .iter()
         .find_map(|address| match address {
             ListenAddress::Tcp(authority) => Some(authority.clone()),
-            ListenAddress::Unix(_) => None,
+            ListenAddress::Tls(_) | ListenAddress::Unix(_) => None,
         });
     let endpoint = tonic::transport::Endpoint::from_shared(format!("http://{}", tcp.unwrap()));
     let channel = endpoint.unwrap().connect().await.unwrap();
@@ -562,7 +562,7 @@ async fn beyond_loopback_only_when_told_so() {
         insecure,
         ledger: LedgerPlace::Memory,
         results: None,
-        rules: Rules::default(),
+        ..Config::default()
     };
     let refused = Server::start(config(false)).await.err().unwrap();
     assert!(matches!(

@@ -9,12 +9,14 @@ fn answer(text: &str, widths: &[Option<u32>], chunk_paths: Option<u64>) -> Answe
     let options = CoordinatorOptions {
         lease: None,
         chunk_paths,
+        ..CoordinatorOptions::default()
     };
     let mut cluster = Cluster::start(options);
     for (number, &lane_width) in widths.iter().enumerate() {
         cluster.add_worker(&WorkerOptions {
             threads: 1 + usize::from(number + 1 == widths.len()),
             lane_width,
+            ..WorkerOptions::default()
         });
     }
     let answer = cluster.client().solve(&Submission::of(text));

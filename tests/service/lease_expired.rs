@@ -14,6 +14,7 @@ fn a_frozen_worker_is_replaced_and_goes_on_when_it_wakes() {
     let mut cluster = Cluster::start(CoordinatorOptions {
         lease: Some(Duration::from_secs(1)),
         chunk_paths: Some(64),
+        ..CoordinatorOptions::default()
     });
     cluster.add_worker(&slow_worker());
     let client = cluster.client();
@@ -55,6 +56,7 @@ fn a_late_report_is_stale() {
     let mut cluster = Cluster::start(CoordinatorOptions {
         lease: Some(Duration::from_millis(500)),
         chunk_paths: Some(4),
+        ..CoordinatorOptions::default()
     });
     let client = cluster.client();
     let job = client.submit(&Submission::of(katsura(4)));

@@ -10,6 +10,7 @@ fn small_chunks() -> CoordinatorOptions {
     CoordinatorOptions {
         lease: None,
         chunk_paths: Some(4),
+        ..CoordinatorOptions::default()
     }
 }
 

@@ -16,6 +16,7 @@ pub fn slow_worker() -> WorkerOptions {
     WorkerOptions {
         threads: 1,
         lane_width: Some(1),
+        ..WorkerOptions::default()
     }
 }
 
@@ -24,6 +25,7 @@ pub fn nervous() -> CoordinatorOptions {
     CoordinatorOptions {
         lease: Some(Duration::from_secs(2)),
         chunk_paths: Some(32),
+        ..CoordinatorOptions::default()
     }
 }
 
@@ -98,6 +100,7 @@ fn a_drained_worker_gives_back_at_once() {
     let options = CoordinatorOptions {
         lease: Some(Duration::from_secs(3600)),
         chunk_paths: Some(256),
+        ..CoordinatorOptions::default()
     };
     let mut cluster = Cluster::start(options);
     cluster.add_worker(&slow_worker());

@@ -14,12 +14,18 @@ pub struct CoordinatorOptions {
     pub lease: Option<Duration>,
     /// Every chunk has this many paths.
     pub chunk_paths: Option<u64>,
+    /// Where the ledger is; else in a file of the test's folder.
+    pub ledger: Option<String>,
+    /// So many MiB must be free in /dev/shm for workers to use it.
+    pub least_free_mib: Option<u64>,
 }
 
 impl CoordinatorOptions {
     /// The coordinator's configuration file.
     fn config(&self) -> String {
-        let mut text = String::new();
+        // Tests run where little is free, too.
+        let mib = self.least_free_mib.unwrap_or(16);
+        let mut text = format!("shared_memory_least_free_mib = {mib}\n");
         if let Some(lease) = self.lease {
             let seconds = lease.as_secs_f64();
             text +=
@@ -41,6 +47,10 @@ pub struct WorkerOptions {
     pub threads: usize,
     /// Lanes of each.
     pub lane_width: Option<u32>,
+    /// By which way it works.
+    pub transport: Option<&'static str>,
+    /// A second address to ask.
+    pub second: Option<String>,
 }
 
 impl Default for WorkerOptions {
@@ -49,6 +59,8 @@ impl Default for WorkerOptions {
         Self {
             threads: 1,
             lane_width: None,
+            transport: None,
+            second: None,
         }
     }
 }
@@ -72,7 +84,7 @@ impl Cluster {
     /// When it does not answer.
     pub fn start(options: CoordinatorOptions) -> Self {
         let folder = TempDir::new().expect("a temporary folder");
-        let coordinator = start_coordinator(folder.path(), &options);
+        let coordinator = start_coordinator(folder.path(), "coordinator", &options);
         let cluster = Self {
             coordinator,
             workers: Vec::new(),
@@ -95,7 +107,7 @@ impl Cluster {
 
     /// Where the coordinator listens: a socket in the test's folder, the same after a restart.
     pub fn address(&self) -> String {
-        address(self.folder.path())
+        address(self.folder.path(), "coordinator")
     }
 
     /// The test's folder.
@@ -109,12 +121,18 @@ impl Cluster {
         let mut arguments = vec![
             "worker".to_owned(),
             "--coordinator".to_owned(),
-            self.address(),
+            match &options.second {
+                Some(second) => format!("{},{second}", self.address()),
+                None => self.address(),
+            },
             "--threads".to_owned(),
             options.threads.to_string(),
         ];
         if let Some(width) = options.lane_width {
             arguments.extend(["--lane-width".to_owned(), width.to_string()]);
+        }
+        if let Some(transport) = options.transport {
+            arguments.extend(["--transport".to_owned(), transport.to_owned()]);
         }
         let name = format!("worker-{}", self.workers_started);
         self.workers
@@ -135,8 +153,22 @@ impl Cluster {
             !self.coordinator.is_alive(),
             "the old one must be gone first"
         );
-        self.coordinator = start_coordinator(self.folder.path(), &self.options);
+        self.coordinator = start_coordinator(self.folder.path(), "coordinator", &self.options);
         self.client();
+    }
+
+    /// A second coordinator on the same ledger and results, which must be a database's; and where
+    /// it listens.
+    ///
+    /// # Panics
+    /// When it does not answer.
+    pub fn second_coordinator(&self) -> (Process, String) {
+        let process = start_coordinator(self.folder.path(), "second", &self.options);
+        let address = address(self.folder.path(), "second");
+        until("the second coordinator answers", || {
+            Client::connect(&address)
+        });
+        (process, address)
     }
 
     /// A client of the coordinator.
@@ -177,22 +209,23 @@ impl Cluster {
     }
 }
 
-fn address(folder: &Path) -> String {
-    format!("unix:{}", folder.join("coordinator.sock").display())
+fn address(folder: &Path, name: &str) -> String {
+    format!("unix:{}", folder.join(format!("{name}.sock")).display())
 }
 
-fn start_coordinator(folder: &Path, options: &CoordinatorOptions) -> Process {
+fn start_coordinator(folder: &Path, name: &str, options: &CoordinatorOptions) -> Process {
+    let file = || format!("sqlite:{}", folder.join("ledger.db").display());
     let mut arguments = vec![
         "coordinator".to_owned(),
         "--listen".to_owned(),
-        address(folder),
+        address(folder, name),
         "--ledger".to_owned(),
-        format!("sqlite:{}", folder.join("ledger.db").display()),
+        options.ledger.clone().unwrap_or_else(file),
         "--results".to_owned(),
         folder.join("results").display().to_string(),
     ];
-    let config = folder.join("coordinator.toml");
+    let config = folder.join(format!("{name}.toml"));
     std::fs::write(&config, options.config()).expect("the test's folder is writable");
     arguments.extend(["--config".to_owned(), config.display().to_string()]);
-    Process::start(folder, "coordinator", &arguments)
+    Process::start(folder, name, &arguments)
 }

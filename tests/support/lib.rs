@@ -4,5 +4,6 @@
 pub mod builders;
 pub mod client;
 pub mod cluster;
+pub mod database;
 pub mod processes;
 pub mod systems;

@@ -4,6 +4,7 @@
 //! it); `Config` is the same, checked. Every number with unit, default and reason.
 
 use crate::machine::Machine;
+use crate::transport::connect::{CredentialError, CredentialFiles, Credentials, Role};
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -14,6 +15,8 @@ use std::time::Duration;
 pub enum Address {
     /// gRPC over TCP: `http://host:port`, or `host:port`.
     Tcp(String),
+    /// gRPC over TCP and TLS: `https://host:port`.
+    Tls(String),
     /// gRPC over a Unix socket on this host: `unix:/path`.
     Unix(PathBuf),
 }
@@ -21,11 +24,10 @@ pub enum Address {
 /// An address that is none.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
-    /// Encryption is not in this version.
-    #[error("`{0}`: TLS is not in this version; use http://host:port or unix:/path")]
-    Tls(String),
-    /// Neither form.
-    #[error("`{0}` is no address; expected http://host:port, host:port or unix:/path")]
+    /// None of the forms.
+    #[error(
+        "`{0}` is no address; expected http://host:port, https://host:port, host:port or unix:/path"
+    )]
     Malformed(String),
 }
 
@@ -34,9 +36,6 @@ impl FromStr for Address {
 
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let malformed = || AddressError::Malformed(text.to_owned());
-        if text.starts_with("https://") {
-            return Err(AddressError::Tls(text.to_owned()));
-        }
         if let Some(path) = text.strip_prefix("unix:") {
             let path = path.strip_prefix("//").unwrap_or(path);
             return if path.is_empty() {
@@ -45,13 +44,15 @@ impl FromStr for Address {
                 Ok(Self::Unix(path.into()))
             };
         }
-        let authority = text.strip_prefix("http://").unwrap_or(text);
+        let secret = text.strip_prefix("https://");
+        let authority = secret.unwrap_or_else(|| text.strip_prefix("http://").unwrap_or(text));
         let authority = authority.strip_suffix('/').unwrap_or(authority);
         let (host, port) = authority.rsplit_once(':').ok_or_else(malformed)?;
         let bracketed = host.starts_with('[') && host.ends_with(']');
         let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
         let host_fits = !host.is_empty() && (bracketed || host.chars().all(plain));
         match port.parse::<u16>() {
+            Ok(1..) if host_fits && secret.is_some() => Ok(Self::Tls(authority.to_owned())),
             Ok(1..) if host_fits => Ok(Self::Tcp(authority.to_owned())),
             _ => Err(malformed()),
         }
@@ -62,6 +63,7 @@ impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Tcp(authority) => write!(f, "http://{authority}"),
+            Self::Tls(authority) => write!(f, "https://{authority}"),
             Self::Unix(path) => write!(f, "unix:{}", path.display()),
         }
     }
@@ -105,12 +107,12 @@ impl FromStr for LaneWidth {
 /// By which way chunks and results travel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum TransportChoice {
-    /// The best that both sides have: gRPC in this version.
+    /// Shared memory where coordinator and worker have host, user and /dev/shm in common, else gRPC.
     #[default]
     Auto,
     /// gRPC over TCP or a Unix socket.
     Grpc,
-    /// Shared memory on one host: refused with a message in this version.
+    /// Shared memory on one host. Where it cannot be used, the log says why, and gRPC is used.
     SharedMemory,
 }
 
@@ -123,6 +125,9 @@ pub struct Arguments {
     /// Way by which chunks and results travel
     #[arg(long, value_enum, default_value_t)]
     pub transport: TransportChoice,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
     /// Threads that track paths [default: all cores]
     #[arg(long, value_name = "N")]
     pub threads: Option<std::num::NonZeroUsize>,
@@ -151,12 +156,12 @@ fn seconds(text: &str) -> Result<Duration, String> {
 /// Arguments that contradict this version or this machine.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConfigError {
-    /// The door is there, the room is not yet.
-    #[error("--transport shared-memory is not in this version; use auto or grpc")]
-    SharedMemory,
     /// A worker without a coordinator has nothing to do.
     #[error("no coordinator is named; use --coordinator URL")]
     NoCoordinator,
+    /// A token or a certificate that cannot be read.
+    #[error(transparent)]
+    Credentials(#[from] CredentialError),
 }
 
 /// How the worker runs.
@@ -164,6 +169,10 @@ pub enum ConfigError {
 pub struct Config {
     /// Coordinators, tried in turn: any of them may answer.
     pub coordinators: Vec<Address>,
+    /// By which way chunks and results travel. Default: shared memory where it can be used.
+    pub transport: TransportChoice,
+    /// What it shows to coordinators. Default: nothing.
+    pub credentials: Credentials,
     /// Threads that track paths. Default: all cores.
     pub threads: usize,
     /// Paths that one thread follows at once. Default `None`: chosen for each system by
@@ -204,6 +213,8 @@ impl Config {
     pub fn new(coordinators: Vec<Address>) -> Self {
         Self {
             coordinators,
+            transport: TransportChoice::Auto,
+            credentials: Credentials::default(),
             threads: Machine::detect().cores,
             lane_width: None,
             wall_time: None,
@@ -224,14 +235,13 @@ impl TryFrom<Arguments> for Config {
     type Error = ConfigError;
 
     fn try_from(arguments: Arguments) -> Result<Self, ConfigError> {
-        if arguments.transport == TransportChoice::SharedMemory {
-            return Err(ConfigError::SharedMemory);
-        }
         if arguments.coordinator.is_empty() {
             return Err(ConfigError::NoCoordinator);
         }
         let default = Self::new(arguments.coordinator);
         Ok(Self {
+            transport: arguments.transport,
+            credentials: Credentials::read(&arguments.credentials, Role::Worker)?,
             threads: arguments.threads.map_or(default.threads, usize::from),
             lane_width: arguments.lane_width,
             wall_time: arguments.wall_time,
@@ -273,8 +283,7 @@ mod tests {
         ] {
             check(bad, None);
         }
-        let tls = "https://host:443".parse::<Address>().unwrap_err();
-        assert!(tls.to_string().contains("not in this version"));
+        check("https://host:443/", Some("https://host:443"));
     }
 
     #[derive(clap::Parser)]
@@ -326,8 +335,8 @@ mod tests {
         );
         check(&["--coordinator", "h:2", "--threads", "0"], "--threads");
         check(
-            &["--coordinator", "h:2", "--transport", "shared-memory"],
-            "not in this version",
+            &["--coordinator", "h:2", "--transport", "pigeon"],
+            "shared-memory",
         );
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod client_service;
 pub mod error;
+pub mod security;
 pub mod worker_service;
 
 use crate::config::Rules;
@@ -31,17 +32,25 @@ pub struct Context {
     pub rules: Rules,
     /// Cancelled when the service is to stop: waiting calls return at once.
     pub stopping: CancellationToken,
+    /// The door in shared memory, where there is one; else the empty message.
+    pub shared_memory: v1::SharedMemory,
     /// Workers that get no work, and why.
     refused: Mutex<HashMap<WorkerId, String>>,
 }
 
 impl Context {
     /// In front of this coordinator.
-    pub fn new(coordinator: Arc<Coordinator>, rules: Rules, stopping: CancellationToken) -> Self {
+    pub fn new(
+        coordinator: Arc<Coordinator>,
+        rules: Rules,
+        stopping: CancellationToken,
+        shared_memory: v1::SharedMemory,
+    ) -> Self {
         Self {
             coordinator,
             rules,
             stopping,
+            shared_memory,
             refused: Mutex::default(),
         }
     }

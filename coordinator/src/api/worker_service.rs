@@ -304,4 +304,11 @@ impl WorkerApi for WorkerService {
         let bytes = self.context.coordinator.object(digest).await;
         Ok(Response::new(pieces(bytes.map_err(ApiError::from)?)))
     }
+
+    async fn get_shared_memory(
+        &self,
+        _: Request<v1::GetSharedMemoryRequest>,
+    ) -> Result<Response<v1::SharedMemory>, Status> {
+        Ok(Response::new(self.context.shared_memory.clone()))
+    }
 }

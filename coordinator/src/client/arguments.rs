@@ -3,11 +3,14 @@
 //! Options that belong to the command line but not to this version are parsed
 //! here and refused by `not_yet`, so that nothing is half there in silence.
 
+use super::connection::Target;
+use super::error::ClientError;
 use crate::config::DEFAULT_ADDRESS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cognate_protocol::submission::PrecisionChoice;
+use cognate_worker::transport::connect::CredentialFiles;
 use std::path::PathBuf;
 
 const STYLES: Styles = Styles::styled()
@@ -223,15 +226,19 @@ pub struct OutputArguments {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Service")]
 pub struct ServiceArguments {
-    /// The coordinator's address: http://HOST:PORT or unix:PATH
+    /// The coordinator's address: http://HOST:PORT or unix:PATH; of several, with commas between, the first that answers
     #[arg(long, value_name = "URL", env = "COGNATE_COORDINATOR", default_value_t = format!("http://{DEFAULT_ADDRESS}"))]
     pub coordinator: String,
-    /// A file with the token that the coordinator asks for (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub token_file: Option<PathBuf>,
-    /// A file with the authority that the coordinator's certificate is checked by (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub tls_ca: Option<PathBuf>,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
+}
+
+impl ServiceArguments {
+    /// Where calls go, with what they show.
+    pub fn target(&self) -> Result<Target, ClientError> {
+        Target::read(&self.coordinator, &self.credentials)
+    }
 }
 
 /// `cognate solve`.
@@ -310,6 +317,9 @@ pub struct NinePoint {
     /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
     #[arg(long, value_name = "URL", help_heading = "Service")]
     pub coordinator: Option<String>,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
     /// Local worker processes
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
     pub workers: u32,
@@ -378,7 +388,7 @@ pub struct Coordinator {
     /// Addresses to listen on: HOST:PORT or unix:PATH, one or several [default: 127.0.0.1:7654]
     #[arg(long, value_name = "ADDR", num_args = 1..)]
     pub listen: Vec<String>,
-    /// What is remembered: sqlite:PATH [default: sqlite:cognate-data/ledger.db]
+    /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
     #[arg(long, value_name = "URL")]
     pub ledger: Option<String>,
     /// Where results are kept [default: cognate-data/results]
@@ -390,17 +400,20 @@ pub struct Coordinator {
     /// Serve addresses beyond this machine without asking anybody who they are
     #[arg(long)]
     pub insecure: bool,
-    /// Certificate chain (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
+    /// Where Prometheus reads metrics, by plain HTTP: HOST:PORT [default: nowhere]
+    #[arg(long, value_name = "ADDR")]
+    pub metrics: Option<String>,
+    /// A file with the own certificate chain (PEM): all TCP addresses then speak TLS
+    #[arg(long, value_name = "FILE", requires = "tls_key")]
     pub tls_certificate: Option<PathBuf>,
-    /// Private key (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
+    /// A file with the private key (PEM)
+    #[arg(long, value_name = "FILE", requires = "tls_certificate")]
     pub tls_key: Option<PathBuf>,
-    /// Authority of clients and workers (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
+    /// A file with the authority (PEM) whose certificates callers must have
+    #[arg(long, value_name = "FILE", requires = "tls_certificate")]
     pub tls_client_ca: Option<PathBuf>,
-    /// Tokens of clients and workers (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
+    /// A file with the tokens that TCP callers must have: lines of `client TOKEN` or `worker TOKEN`
+    #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
 }
 
@@ -415,12 +428,6 @@ pub struct Worker {
     /// What the worker itself reads.
     #[command(flatten)]
     pub worker: cognate_worker::config::Arguments,
-    /// A file with the token that the coordinator asks for (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub token_file: Option<PathBuf>,
-    /// A file with the authority that the coordinator's certificate is checked by (not in this version)
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub tls_ca: Option<PathBuf>,
 }
 
 /// `cognate submit`.

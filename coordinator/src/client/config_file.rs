@@ -4,9 +4,9 @@ use super::error::ClientError;
 use super::problem;
 use crate::chunks::leasing::Policy;
 use crate::chunks::sizing::Sizing;
-use crate::config::Rules;
+use crate::config::{Config, Rules};
 use serde::Deserialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// What a file says; an absent field keeps its default.
@@ -21,6 +21,20 @@ pub struct ConfigFile {
     pub results: Option<String>,
     /// Serve addresses beyond this machine without asking anybody who they are.
     pub insecure: Option<bool>,
+    /// The tokens that callers over TCP must have.
+    pub token_file: Option<PathBuf>,
+    /// The own certificate chain.
+    pub tls_certificate: Option<PathBuf>,
+    /// Its private key.
+    pub tls_key: Option<PathBuf>,
+    /// Whose certificates callers must have.
+    pub tls_client_ca: Option<PathBuf>,
+    /// Where metrics are read.
+    pub metrics: Option<String>,
+    /// Workers on this host may use shared memory.
+    pub shared_memory: Option<bool>,
+    /// ... while so many MiB are free in /dev/shm.
+    pub shared_memory_least_free_mib: Option<u64>,
     /// Times and limits.
     rules: RulesTable,
     /// How large chunks are.
@@ -74,6 +88,17 @@ impl ConfigFile {
         };
         let text = String::from_utf8(content).map_err(|e| wrong(e.to_string()))?;
         toml::from_str(&text).map_err(|e| wrong(e.to_string().trim_end().to_string()))
+    }
+
+    /// What must be free for shared memory, in bytes; `None` where it is not wanted.
+    pub fn shared_memory_least_free(&self) -> Option<u64> {
+        if self.shared_memory == Some(false) {
+            return None;
+        }
+        match self.shared_memory_least_free_mib {
+            Some(mib) => Some(mib.saturating_mul(1 << 20)),
+            None => Config::default().shared_memory,
+        }
     }
 
     /// The deadlines and limits, or which of them makes no sense.
@@ -163,14 +188,26 @@ fn number<N: Copy + PartialEq + From<u8>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Config;
 
     #[test]
     fn the_file_that_is_shipped_says_the_defaults_and_all_of_them() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy/config/cognate.toml");
         let file = ConfigFile::read(&path).expect("the shipped file is well formed");
-        // Every field stands there, so none is None.
-        assert!(!format!("{file:?}").contains("None"), "{file:?}");
+        // Every field with a default stands there, so none is None.
+        let without = [
+            "token_file",
+            "tls_certificate",
+            "tls_key",
+            "tls_client_ca",
+            "metrics",
+        ];
+        let mut said = format!("{file:?}");
+        let text = std::fs::read_to_string(&path).expect("it was read before");
+        for field in without {
+            assert!(text.contains(&format!("# {field} = ")), "{field} is shown");
+            said = said.replace(&format!("{field}: None"), "");
+        }
+        assert!(!said.contains("None"), "{said}");
         let default = Config::default();
         let listen: Vec<String> = default
             .listen
@@ -184,6 +221,7 @@ mod tests {
             Some(Ok(default.ledger))
         );
         assert_eq!(file.results.as_deref().map(Into::into), default.results);
+        assert_eq!(file.shared_memory_least_free(), default.shared_memory);
         let rules = file.rules().expect("the shipped rules make sense");
         assert_eq!(format!("{rules:?}"), format!("{:?}", Rules::default()));
     }

@@ -6,65 +6,95 @@ use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::{from_proto, v1};
 use cognate_solutions::solution::Solution;
 use cognate_worker::config::Address;
+use cognate_worker::transport::connect::{Bearer, CredentialFiles, Credentials, Role, innermost};
 use std::time::Duration;
-use tonic::transport::{Channel, Endpoint, Uri};
+use tonic::service::interceptor::InterceptedService;
+use tonic::transport::Channel;
 use tonic::{Code, Status};
+use tonic_health::pb::HealthCheckRequest;
+use tonic_health::pb::health_client::HealthClient;
 
 /// How long a coordinator may take to accept a connection.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// A coordinator that answers no ping for so long is gone.
-const KEEP_ALIVE: Duration = Duration::from_secs(20);
+/// Where calls go, with what they show.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// Addresses, with commas between.
+    pub addresses: String,
+    /// Token and certificates.
+    pub credentials: Credentials,
+}
+
+impl Target {
+    /// These addresses, with what these files hold.
+    pub fn read(addresses: &str, files: &CredentialFiles) -> Result<Self, ClientError> {
+        let read = Credentials::read(files, Role::Client);
+        Ok(Self {
+            addresses: addresses.to_owned(),
+            credentials: read.map_err(|error| ClientError::Input {
+                origin: error.file,
+                message: error.what,
+            })?,
+        })
+    }
+
+    /// An address that asks for nothing.
+    pub fn open_to_all(address: &str) -> Self {
+        Self {
+            addresses: address.to_owned(),
+            credentials: Credentials::default(),
+        }
+    }
+}
 
 /// A connection to one coordinator.
 #[derive(Clone, Debug)]
 pub struct Connection {
-    client: ClientApiClient<Channel>,
+    client: ClientApiClient<InterceptedService<Channel, Bearer>>,
     address: String,
 }
 
 impl Connection {
-    /// Connects, or says that nobody answers.
-    pub async fn open(address: &str) -> Result<Self, ClientError> {
-        let target: Address = address.parse().map_err(|e| ClientError::Input {
-            origin: "--coordinator".into(),
-            message: format!("{e}"),
-        })?;
-        let unreachable = |e: &dyn std::error::Error| ClientError::Unreachable {
-            address: address.to_string(),
-            reason: innermost(e),
-        };
-        let uri = match &target {
-            Address::Tcp(authority) => format!("http://{authority}"),
-            // The name is not looked up: the connector below knows the path.
-            Address::Unix(_) => "http://localhost".into(),
-        };
-        let endpoint = Endpoint::from_shared(uri)
-            .map_err(|e| unreachable(&e))?
-            .connect_timeout(CONNECT_TIMEOUT)
-            .http2_keep_alive_interval(KEEP_ALIVE)
-            .keep_alive_timeout(KEEP_ALIVE)
-            .keep_alive_while_idle(true);
-        let channel = match target {
-            Address::Tcp(_) => endpoint.connect().await,
-            Address::Unix(path) => {
-                let connector = tower::service_fn(move |_: Uri| {
-                    let path = path.clone();
-                    async move {
-                        let stream = tokio::net::UnixStream::connect(path).await?;
-                        Ok::<_, std::io::Error>(hyper_util::rt::TokioIo::new(stream))
-                    }
-                });
-                endpoint.connect_with_connector(connector).await
+    /// Connects to the first of these addresses that answers, or says that nobody does.
+    pub async fn open(target: &Target) -> Result<Self, ClientError> {
+        let mut last = None;
+        for address in target.addresses.split(',') {
+            match Self::open_one(address.trim(), &target.credentials).await {
+                Err(error @ ClientError::Unreachable { .. }) => last = Some(error),
+                done => return done,
             }
         }
-        .map_err(|e| unreachable(&e))?;
-        let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
-        Ok(Self {
-            client: ClientApiClient::new(channel)
-                .max_decoding_message_size(limit)
-                .max_encoding_message_size(limit),
+        last.map_or_else(|| unreachable!("a split text has a first part"), Err)
+    }
+
+    async fn open_one(address: &str, credentials: &Credentials) -> Result<Self, ClientError> {
+        let wrong = |e: &dyn std::fmt::Display| ClientError::Input {
+            origin: "--coordinator".into(),
+            message: e.to_string(),
+        };
+        let parsed: Address = address.parse().map_err(|e| wrong(&e))?;
+        let channel = credentials.channel(&parsed).map_err(|e| wrong(&e))?;
+        // Asked at once whether anybody is there: later errors are about the call.
+        let mut health = HealthClient::new(channel.clone());
+        let answer = health.check(HealthCheckRequest::default());
+        let reason = match tokio::time::timeout(CONNECT_TIMEOUT, answer).await {
+            Ok(Err(status)) if std::error::Error::source(&status).is_some() => innermost(&status),
+            Ok(_) => {
+                let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
+                let client = ClientApiClient::with_interceptor(channel, credentials.bearer());
+                return Ok(Self {
+                    client: client
+                        .max_decoding_message_size(limit)
+                        .max_encoding_message_size(limit),
+                    address: address.to_string(),
+                });
+            }
+            Err(_) => "no answer in time".into(),
+        };
+        Err(ClientError::Unreachable {
             address: address.to_string(),
+            reason,
         })
     }
 
@@ -243,13 +273,4 @@ impl Following {
             .await
             .map_err(|e| self.connection.explain(&e))
     }
-}
-
-/// The cause at the end of a chain of errors: the part that says what happened.
-fn innermost(error: &dyn std::error::Error) -> String {
-    let mut cause = error;
-    while let Some(deeper) = cause.source() {
-        cause = deeper;
-    }
-    cause.to_string()
 }

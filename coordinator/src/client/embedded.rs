@@ -5,7 +5,7 @@
 //! process that holds it is gone.
 
 use super::error::ClientError;
-use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
+use crate::config::{Config, LedgerPlace, ListenAddress};
 use crate::server::{RunningServer, Server};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -42,8 +42,7 @@ impl Embedded {
             listen: vec![ListenAddress::Unix(socket(folder.path()))],
             ledger: LedgerPlace::Memory,
             results: None,
-            insecure: false,
-            rules: Rules::default(),
+            ..Config::default()
         };
         let server = Server::start(config)
             .await

@@ -1,8 +1,6 @@
 //! What belongs to the command line but not to this version: refused with its name, before anything starts.
 
-use super::arguments::{
-    Command, Coordinator, ProblemArguments, ServiceArguments, Start, Synthesize, Worker,
-};
+use super::arguments::{Command, Coordinator, ProblemArguments, Start, Synthesize};
 use super::error::ClientError;
 use crate::intake::MOST_BITS;
 use cognate_protocol::submission::PrecisionChoice;
@@ -12,13 +10,16 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
     let missing = match command {
         Command::Solve(c) => problem(&c.problem),
         Command::Path(c) => problem(&c.problem),
-        Command::Submit(c) => problem(&c.problem).or_else(|| service(&c.service)),
-        Command::Watch(c) | Command::Explain(c) | Command::Cancel(c) => service(&c.service),
-        Command::Results(c) => service(&c.service),
-        Command::Jobs(c) | Command::Workers(c) => service(&c.service),
+        Command::Submit(c) => problem(&c.problem),
         Command::Coordinator(c) => coordinator(c),
-        Command::Worker(c) => worker(c),
-        Command::Info(_) => None,
+        Command::Watch(_)
+        | Command::Explain(_)
+        | Command::Cancel(_)
+        | Command::Results(_)
+        | Command::Jobs(_)
+        | Command::Workers(_)
+        | Command::Worker(_)
+        | Command::Info(_) => None,
         Command::Synthesize(Synthesize::NinePoint(c)) => precision(c.precision),
         Command::Fleet(_) => Some("fleet (workers kept in Slurm)".into()),
     };
@@ -66,38 +67,8 @@ fn precision(choice: PrecisionChoice) -> Option<String> {
     }
 }
 
-fn service(a: &ServiceArguments) -> Option<String> {
-    if a.token_file.is_some() {
-        Some("--token-file (tokens)".into())
-    } else if a.tls_ca.is_some() || a.coordinator.starts_with("https:") {
-        Some("TLS".into())
-    } else {
-        None
-    }
-}
-
 fn coordinator(a: &Coordinator) -> Option<String> {
-    if a.tls_certificate.is_some() || a.tls_key.is_some() || a.tls_client_ca.is_some() {
-        Some("TLS".into())
-    } else if a.token_file.is_some() {
-        Some("--token-file (tokens)".into())
-    } else if a
-        .ledger
-        .as_deref()
-        .is_some_and(|l| l.starts_with("postgres"))
-    {
-        Some("--ledger postgres://... (only sqlite:PATH)".into())
-    } else {
-        let results = a.results.as_deref().unwrap_or_default();
-        let remote = results.contains("://") && !results.starts_with("file://");
-        remote.then(|| format!("--results {results} (only local folders)"))
-    }
-}
-
-fn worker(a: &Worker) -> Option<String> {
-    if a.token_file.is_some() {
-        Some("--token-file (tokens)".into())
-    } else {
-        a.tls_ca.is_some().then(|| "TLS".into())
-    }
+    let results = a.results.as_deref().unwrap_or_default();
+    let remote = results.contains("://") && !results.starts_with("file://");
+    remote.then(|| format!("--results {results} (only local folders)"))
 }

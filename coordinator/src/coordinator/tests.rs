@@ -7,7 +7,7 @@ use crate::ledger::clock::ManualClock;
 use crate::ledger::faulty::{FaultyLedger, Side};
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::{ChunkState, JobRow};
-use crate::ledger::sqlite::SqliteLedger;
+use crate::ledger::sql::SqlLedger;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_protocol::submission::StartKind;
 use cognate_solutions::solution_set::FailureReason;
@@ -178,7 +178,7 @@ async fn a_ledger_and_store_on_disk_are_all_that_a_restart_needs() {
     let mut accepted_before = None;
     for round in 0..100 {
         let path = folder.path().join("ledger");
-        let ledger = Arc::new(SqliteLedger::open(&path, clock.clone()).await.unwrap());
+        let ledger = Arc::new(SqlLedger::sqlite(&path, clock.clone()).await.unwrap());
         let store = Store::folder(&folder.path().join("results")).unwrap();
         let mut cluster = Cluster::new(ledger.clone(), store, clock.clone(), policy(3), round);
         cluster.start_coordinator();

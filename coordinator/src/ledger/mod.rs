@@ -13,7 +13,7 @@ pub(crate) mod faulty;
 pub mod identity;
 pub mod memory;
 pub mod rows;
-pub mod sqlite;
+pub mod sql;
 #[cfg(test)]
 mod state_machine;
 

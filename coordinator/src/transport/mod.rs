@@ -1,10 +1,12 @@
 //! Transport: the doors by which workers and clients come in.
 //!
-//! One gRPC service behind all of them; shared memory on one host will be one more.
+//! One gRPC service behind all of them.
 
+pub mod shared_memory;
 pub mod tcp;
 pub mod unix;
 
+use crate::api::security::Security;
 use crate::config::ListenAddress;
 use futures::Stream;
 use std::io;
@@ -31,10 +33,16 @@ pub enum DoorError {
     },
     /// Anybody could come in.
     #[error(
-        "{address} can be reached from other machines, and this version asks nobody who they are \
-         (tokens and TLS are not in this version); say --insecure to listen there all the same"
+        "{address} can be reached from other machines: give it --token-file, or --tls-client-ca \
+         with a certificate of its own; or say --insecure to ask nobody there who they are"
     )]
     BeyondLoopback {
+        /// Where.
+        address: ListenAddress,
+    },
+    /// A door with TLS and no certificate.
+    #[error("{address} needs a certificate: --tls-certificate and --tls-key")]
+    NoCertificate {
         /// Where.
         address: ListenAddress,
     },
@@ -51,27 +59,51 @@ pub enum DoorError {
 pub enum Door {
     /// TCP.
     Tcp(TcpListener),
+    /// TCP and TLS.
+    Tls(TcpListener),
     /// A Unix socket, which is removed when the door closes.
     Unix(unix::Socket),
 }
 
 impl Door {
-    /// Binds an address; one that others can reach only if `insecure`.
-    pub async fn open(address: &ListenAddress, insecure: bool) -> Result<Self, DoorError> {
+    /// Binds an address; one that others can reach only where callers are known, or if `insecure`.
+    /// With a certificate, every TCP door speaks TLS.
+    pub async fn open(
+        address: &ListenAddress,
+        security: &Security,
+        insecure: bool,
+    ) -> Result<Self, DoorError> {
+        let open_to_all = insecure || security.knows_callers();
         match address {
-            ListenAddress::Tcp(authority) => tcp::bind(authority, insecure).await.map(Self::Tcp),
+            ListenAddress::Tcp(authority) | ListenAddress::Tls(authority)
+                if security.tls.is_some() =>
+            {
+                tcp::bind(authority, open_to_all).await.map(Self::Tls)
+            }
+            ListenAddress::Tls(_) => Err(DoorError::NoCertificate {
+                address: address.clone(),
+            }),
+            ListenAddress::Tcp(authority) => {
+                let listener = tcp::bind(authority, open_to_all).await?;
+                let beyond = !listener.local_addr().is_ok_and(|a| a.ip().is_loopback());
+                if beyond && security.tokens.is_some() {
+                    tracing::warn!(%address, "tokens travel in the clear: give it --tls-certificate");
+                }
+                Ok(Self::Tcp(listener))
+            }
             ListenAddress::Unix(path) => unix::Socket::bind(path).await.map(Self::Unix),
         }
     }
 
     /// Where it is; with the port that was free where port 0 was asked for.
     pub fn address(&self) -> ListenAddress {
+        let bound = |listener: &TcpListener| {
+            let address = listener.local_addr();
+            address.map_or_else(|e| e.to_string(), |address| address.to_string())
+        };
         match self {
-            Self::Tcp(listener) => ListenAddress::Tcp(
-                listener
-                    .local_addr()
-                    .map_or_else(|e| e.to_string(), |address| address.to_string()),
-            ),
+            Self::Tcp(listener) => ListenAddress::Tcp(bound(listener)),
+            Self::Tls(listener) => ListenAddress::Tls(bound(listener)),
             Self::Unix(socket) => ListenAddress::Unix(socket.path().to_owned()),
         }
     }

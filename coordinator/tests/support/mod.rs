@@ -6,10 +6,12 @@ use cognate_coordinator::server::{RunningServer, Server};
 use cognate_protocol::v1;
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::v1::worker_api_client::WorkerApiClient;
-use cognate_worker::config::Address;
+use cognate_worker::config::{Address, TransportChoice};
 use cognate_worker::machine::Machine;
 use cognate_worker::transport::Announcement;
+use cognate_worker::transport::connect::Bearer;
 use cognate_worker::transport::grpc::Grpc;
+use cognate_worker::transport::way::Way;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -57,6 +59,9 @@ impl House {
             },
             results: durable.then(|| at("data/results")),
             rules,
+            // Tests run where little is free, too.
+            shared_memory: Some(16 << 20),
+            ..Config::default()
         };
         let server = Server::start(config).await.expect("a coordinator starts");
         Self { server, folder }
@@ -84,8 +89,17 @@ impl House {
     }
 
     pub async fn worker_api(&self, name: &str) -> FakeWorker {
+        self.worker_api_by(name, TransportChoice::Grpc).await
+    }
+
+    /// A worker by shared memory, or not.
+    pub async fn worker_api_by(&self, name: &str, choice: TransportChoice) -> FakeWorker {
+        let address = Address::Unix(self.socket());
+        let way = Way::new(self.channel().await, Bearer::default(), address, choice);
+        way.look_for_shared_memory().await;
         FakeWorker {
-            api: WorkerApiClient::new(self.channel().await),
+            api: WorkerApiClient::new(way.clone()),
+            way,
             name: name.to_owned(),
             sequence: 0,
         }
@@ -211,7 +225,8 @@ impl Client {
 
 /// A worker that says what the test wants.
 pub struct FakeWorker {
-    pub api: WorkerApiClient<Channel>,
+    pub api: WorkerApiClient<Way>,
+    pub way: Way,
     pub name: String,
     pub sequence: u64,
 }

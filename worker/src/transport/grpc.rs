@@ -1,11 +1,13 @@
-//! gRPC over TCP or a Unix socket: the calls of a worker as messages.
+//! gRPC over TCP, a Unix socket or shared memory: the calls of a worker as messages.
 //!
 //! Connections are made when they are needed and again when they broke; where
 //! several coordinators are named, a call without an answer is made to the next.
 
+use super::connect::UnusableAddress;
+use super::way::Way;
 use super::{Announcement, GiveBack, Lease, LeaseId, Pulled, Renewal, Transport, TransportError};
 use crate::chunk_runner::TrackedChunk;
-use crate::config::{Address, Config};
+use crate::config::Config;
 use crate::reports::Verdict;
 use async_trait::async_trait;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -19,33 +21,19 @@ use cognate_systems::system::System;
 use std::future::Future;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
-use tonic::transport::{Channel, Endpoint, Uri};
 use tonic::{Code, Status};
 
-type Client = WorkerApiClient<Channel>;
+type Client = WorkerApiClient<Way>;
 
-/// How long a coordinator may take to accept a connection.
-const CONNECT: Duration = Duration::from_secs(5);
-/// A connection that is silent for so long is asked whether it lives, also while idle.
-const KEEP_ALIVE: Duration = Duration::from_secs(10);
-/// And is given up if it does not answer within this.
-const KEEP_ALIVE_ANSWER: Duration = Duration::from_secs(10);
 /// A call that should be answered at once is given up after this.
 const ANSWER: Duration = Duration::from_secs(20);
 /// A report may be large and is durable before it is answered.
 const REPORT_ANSWER: Duration = Duration::from_secs(120);
 
-/// Why an address cannot be used at all.
-#[derive(Debug, thiserror::Error)]
-#[error("{address} cannot be used as an address: {source}")]
-pub struct UnusableAddress {
-    address: Address,
-    source: tonic::transport::Error,
-}
-
 /// Calls by gRPC.
 pub struct Grpc {
     clients: Vec<Client>,
+    ways: Vec<Way>,
     /// The client that answered last.
     current: AtomicUsize,
     identity: v1::WorkerIdentity,
@@ -55,15 +43,27 @@ pub struct Grpc {
 impl Grpc {
     /// Prepares the connections; none is made yet. Must be called within a tokio runtime.
     pub fn new(config: &Config, announcement: &Announcement) -> Result<Self, UnusableAddress> {
-        let clients = config
+        let ways = config
             .coordinators
             .iter()
-            .map(|address| client(address, config.message_bytes))
+            .map(|address| {
+                let channel = config.credentials.channel(address)?;
+                let bearer = config.credentials.bearer();
+                Ok(Way::new(channel, bearer, address.clone(), config.transport))
+            })
             .collect::<Result<Vec<_>, _>>()?;
+        let bytes = config.message_bytes;
+        let client = |way: &Way| {
+            Client::new(way.clone())
+                .max_decoding_message_size(bytes)
+                .max_encoding_message_size(bytes)
+        };
+        let clients: Vec<_> = ways.iter().map(client).collect();
         assert!(!clients.is_empty(), "a configuration names a coordinator");
         let machine = &announcement.machine;
         Ok(Self {
             clients,
+            ways,
             current: AtomicUsize::new(0),
             identity: v1::WorkerIdentity {
                 worker: announcement.worker.clone(),
@@ -115,40 +115,6 @@ impl Grpc {
         }
         Err(error)
     }
-}
-
-fn client(address: &Address, message_bytes: usize) -> Result<Client, UnusableAddress> {
-    let uri = match address {
-        Address::Tcp(authority) => format!("http://{authority}"),
-        // The host is never looked up: the connector below goes to the socket.
-        Address::Unix(_) => "http://localhost".to_owned(),
-    };
-    let endpoint = Endpoint::from_shared(uri)
-        .map_err(|source| UnusableAddress {
-            address: address.clone(),
-            source,
-        })?
-        .connect_timeout(CONNECT)
-        .http2_keep_alive_interval(KEEP_ALIVE)
-        .keep_alive_timeout(KEEP_ALIVE_ANSWER)
-        .keep_alive_while_idle(true)
-        .tcp_nodelay(true);
-    let channel = match address {
-        Address::Tcp(_) => endpoint.connect_lazy(),
-        Address::Unix(path) => {
-            let path = path.clone();
-            endpoint.connect_with_connector_lazy(tower::service_fn(move |_: Uri| {
-                let path = path.clone();
-                async move {
-                    let stream = tokio::net::UnixStream::connect(path).await?;
-                    Ok::<_, std::io::Error>(hyper_util::rt::TokioIo::new(stream))
-                }
-            }))
-        }
-    };
-    Ok(Client::new(channel)
-        .max_decoding_message_size(message_bytes)
-        .max_encoding_message_size(message_bytes))
 }
 
 /// Which errors are worth asking again.
@@ -243,12 +209,19 @@ impl Transport for Grpc {
         free: usize,
         wait: Duration,
     ) -> Result<Pulled, TransportError> {
+        // The heartbeat is also the time to look for a better way.
+        let way = &self.ways[self.current.load(Ordering::Relaxed) % self.ways.len()];
+        way.look_for_shared_memory().await;
+        let mut machine = self.machine.clone();
+        if way.by_shared_memory() {
+            machine.transport = "shared-memory".to_owned();
+        }
         let request = v1::PullRequest {
             identity: self.identity(),
             sequence,
             free_slots: u32::try_from(free).unwrap_or(u32::MAX),
             wait_ms: u32::try_from(wait.as_millis()).unwrap_or(u32::MAX),
-            machine: Some(self.machine.clone()),
+            machine: Some(machine),
         };
         let call = |mut client: Client| async move { client.pull(request).await };
         let response = self.call(wait + ANSWER, call).await?.into_inner();

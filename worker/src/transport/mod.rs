@@ -1,9 +1,12 @@
 //! Transport: the calls that a worker makes to a coordinator, by whatever way.
 //!
 //! One trait in this crate's own types; only the implementations below know
-//! what a message looks like. Shared memory on one host will be a second one.
+//! what a message looks like, and only `way` knows what carries it.
 
+pub mod connect;
 pub mod grpc;
+pub mod shared_memory;
+pub mod way;
 
 use crate::chunk_runner::TrackedChunk;
 use crate::machine::Machine;

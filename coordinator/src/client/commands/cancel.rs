@@ -8,7 +8,7 @@ use cognate_protocol::v1::JobState;
 
 /// Stops a job; one that has ended already stays as it is, and that is said.
 pub async fn run(a: &OneJob) -> Result<Exit, ClientError> {
-    let mut connection = Connection::open(&a.service.coordinator).await?;
+    let mut connection = Connection::open(&a.service.target()?).await?;
     let state = connection.cancel(&a.job).await?;
     let name = json::state_name(state);
     let text = match (a.format, state) {

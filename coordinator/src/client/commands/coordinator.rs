@@ -1,10 +1,12 @@
 //! `cognate coordinator`: the service.
 
+use crate::api::security::{Tls, Tokens};
 use crate::client::arguments::Coordinator;
 use crate::client::config_file::ConfigFile;
 use crate::client::error::{ClientError, Exit};
 use crate::config::{Config, ListenAddress};
 use crate::server::{self, ServerError};
+use cognate_worker::transport::connect::CredentialError;
 use std::io::IsTerminal;
 
 /// Serves until somebody wants it to end; then lets running calls finish.
@@ -40,6 +42,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
     };
     let rules = file.rules().map_err(|e| wrong("--config", &e))?;
     let mut config = Config {
+        shared_memory: file.shared_memory_least_free(),
         rules,
         ..Config::default()
     };
@@ -60,6 +63,28 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
     if let Some(results) = a.results.clone().or(file.results) {
         config.results = Some(results.trim_start_matches("file://").into());
     }
+    let failed = |error: CredentialError| ClientError::Input {
+        origin: error.file,
+        message: error.what,
+    };
+    let tokens = a.token_file.clone().or(file.token_file);
+    config.security.tokens = tokens
+        .map(|path| Tokens::read(&path).map_err(failed))
+        .transpose()?;
+    let certificate = a.tls_certificate.clone().or(file.tls_certificate);
+    let key = a.tls_key.clone().or(file.tls_key);
+    let authority = a.tls_client_ca.clone().or(file.tls_client_ca);
+    config.security.tls = match (certificate, key) {
+        (Some(certificate), Some(key)) => {
+            Some(Tls::read(&certificate, &key, authority.as_deref()).map_err(failed)?)
+        }
+        (None, None) if authority.is_none() => None,
+        _ => {
+            let what = "tls_certificate and tls_key belong together";
+            return Err(wrong("--config", &what));
+        }
+    };
+    config.metrics = a.metrics.clone().or(file.metrics);
     config.insecure = a.insecure || file.insecure.unwrap_or(false);
     Ok(config)
 }

@@ -7,7 +7,7 @@ use crate::client::output::{self, json};
 
 /// Prints what the coordinator says about a job's plan and what became of it.
 pub async fn run(a: &OneJob) -> Result<Exit, ClientError> {
-    let mut connection = Connection::open(&a.service.coordinator).await?;
+    let mut connection = Connection::open(&a.service.target()?).await?;
     let explanation = connection.explanation(&a.job).await?;
     let text = match a.format {
         Format::Table => format!("{}\n", explanation.text.trim_end()),

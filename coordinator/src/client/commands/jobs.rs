@@ -10,7 +10,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Lists the jobs.
 pub async fn run(a: &Listing) -> Result<Exit, ClientError> {
-    let mut connection = Connection::open(&a.service.coordinator).await?;
+    let mut connection = Connection::open(&a.service.target()?).await?;
     let jobs = connection.jobs().await?;
     let text = match a.format {
         Format::Json => json::jobs(&jobs),

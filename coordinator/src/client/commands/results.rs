@@ -15,7 +15,7 @@ use cognate_solutions::solution::Solution;
 
 /// Shows a job's answer; the exit code is the job's.
 pub async fn run(a: &Results) -> Result<Exit, ClientError> {
-    let mut connection = Connection::open(&a.service.coordinator).await?;
+    let mut connection = Connection::open(&a.service.target()?).await?;
     let now = connection.progress(&a.job).await?;
     match now.state() {
         v1::JobState::Cancelled => return Err(ClientError::Cancelled),

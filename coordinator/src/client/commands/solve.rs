@@ -2,7 +2,7 @@
 
 use super::{results, submit, watch};
 use crate::client::arguments::{Format, Solve};
-use crate::client::connection::Connection;
+use crate::client::connection::{Connection, Target};
 use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::progress::Progress;
@@ -14,9 +14,9 @@ use std::time::Instant;
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
     let prepared = problem::prepare(&a.problem)?;
     let mut service = Embedded::start(a.workers, a.threads).await?;
-    let address = service.address();
+    let target = Target::open_to_all(&service.address());
     let ended = tokio::select! {
-        ended = solve(a, prepared, &address) => ended,
+        ended = solve(a, prepared, &target) => ended,
         error = service.abandoned() => Err(error),
         () = crate::client::interrupted() => Err(ClientError::Interrupted),
     };
@@ -24,15 +24,15 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
     ended
 }
 
-async fn solve(a: &Solve, prepared: Prepared, address: &str) -> Result<Exit, ClientError> {
+async fn solve(a: &Solve, prepared: Prepared, target: &Target) -> Result<Exit, ClientError> {
     let mut progress = Progress::new(a.output.format == Format::Json, Instant::now());
-    let mut connection = Connection::open(address).await?;
+    let mut connection = Connection::open(target).await?;
     let request_id = uuid::Uuid::new_v4().to_string();
     let (job, warnings) = submit::send(&mut connection, &request_id, prepared).await?;
     for warning in &warnings {
         progress.say(&format!("warning: {warning}"));
     }
-    let followed = watch::follow(address, &job, &mut progress).await;
+    let followed = watch::follow(target, &job, &mut progress).await;
     progress.finish();
     let (mut connection, last) = followed?;
     match last.state() {

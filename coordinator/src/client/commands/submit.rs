@@ -19,7 +19,7 @@ const ATTEMPTS: u32 = 5;
 /// Prints the job's id alone on a line.
 pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     let prepared = problem::prepare(&a.problem)?;
-    let mut connection = Connection::open(&a.service.coordinator).await?;
+    let mut connection = Connection::open(&a.service.target()?).await?;
     let request_id = match &a.request_id {
         Some(id) => id.clone(),
         None => uuid::Uuid::new_v4().to_string(),

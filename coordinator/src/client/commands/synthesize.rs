@@ -1,6 +1,7 @@
 //! `cognate synthesize`: from points to linkages, on a coordinator of its own or on a running one.
 
 use crate::client::arguments::{NinePoint, SynthesisFormat, Synthesize};
+use crate::client::connection::Target;
 use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output;
@@ -24,15 +25,16 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
     let Synthesize::NinePoint(a) = a;
     let task = read(a)?;
     if let Some(coordinator) = &a.coordinator {
+        let target = Target::read(coordinator, &a.credentials)?;
         return tokio::select! {
-            ended = perform(a, &task, coordinator) => ended,
+            ended = perform(a, &task, &target) => ended,
             () = crate::client::interrupted() => Err(ClientError::Interrupted),
         };
     }
     let mut service = Embedded::start(a.workers, a.threads).await?;
-    let address = service.address();
+    let target = Target::open_to_all(&service.address());
     let ended = tokio::select! {
-        ended = perform(a, &task, &address) => ended,
+        ended = perform(a, &task, &target) => ended,
         error = service.abandoned() => Err(error),
         () = crate::client::interrupted() => Err(ClientError::Interrupted),
     };
@@ -55,7 +57,7 @@ fn read(a: &NinePoint) -> Result<Task, ClientError> {
     Ok(Task::One(short(path), Box::new(points)))
 }
 
-async fn perform(a: &NinePoint, task: &Task, address: &str) -> Result<Exit, ClientError> {
+async fn perform(a: &NinePoint, task: &Task, target: &Target) -> Result<Exit, ClientError> {
     let how = |name: &str| How {
         seed: a.seed,
         preset: a.preset,
@@ -64,8 +66,8 @@ async fn perform(a: &NinePoint, task: &Task, address: &str) -> Result<Exit, Clie
         name: name.to_owned(),
     };
     match task {
-        Task::One(name, points) => find(a, points, &how(name), address).await,
-        Task::Many(name, sets) => find_many(a, sets, &how(name), address).await,
+        Task::One(name, points) => find(a, points, &how(name), target).await,
+        Task::Many(name, sets) => find_many(a, sets, &how(name), target).await,
     }
 }
 
@@ -75,14 +77,14 @@ async fn find_many(
     a: &NinePoint,
     sets: &[(String, PathPoints)],
     how: &How,
-    address: &str,
+    target: &Target,
 ) -> Result<Exit, ClientError> {
     let began = Instant::now();
     let mut lost = 0;
     if a.format == SynthesisFormat::Csv {
         output::print(&format!("set,{}", linkages::csv::header()))?;
     }
-    sweep::sweep(address, sets, how, |place, answer| {
+    sweep::sweep(target, sets, how, |place, answer| {
         let (name, points) = &sets[place];
         let sheet = Sheet::new(name, points, answer, a.certify, began.elapsed());
         for warning in &sheet.warnings {
@@ -116,12 +118,12 @@ async fn find(
     a: &NinePoint,
     points: &PathPoints,
     how: &How,
-    address: &str,
+    target: &Target,
 ) -> Result<Exit, ClientError> {
     let began = Instant::now();
     let quiet = a.format != SynthesisFormat::Table;
     let mut progress = Progress::new(quiet, began);
-    let answer = nine_points(address, points, how, &mut progress).await;
+    let answer = nine_points(target, points, how, &mut progress).await;
     progress.finish();
     let sheet = Sheet::new(&how.name, points, answer?, a.certify, began.elapsed());
     if let Some(folder) = &a.output {

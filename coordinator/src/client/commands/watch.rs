@@ -1,7 +1,7 @@
 //! `cognate watch`: follows a job until it ends.
 
 use crate::client::arguments::{Format, OneJob};
-use crate::client::connection::Connection;
+use crate::client::connection::{Connection, Target};
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::json;
 use crate::client::output::progress::{Progress, Standing};
@@ -19,8 +19,8 @@ const RETRY: Duration = Duration::from_millis(500);
 pub async fn run(a: &OneJob) -> Result<Exit, ClientError> {
     let quiet = a.format == Format::Json;
     let mut progress = Progress::new(quiet, Instant::now());
-    let address = &a.service.coordinator;
-    let followed = follow(address, &a.job, &mut progress).await;
+    let target = a.service.target()?;
+    let followed = follow(&target, &a.job, &mut progress).await;
     progress.finish();
     let (mut connection, last) = followed?;
     let (exit, line) = verdict(&mut connection, &last).await?;
@@ -33,11 +33,11 @@ pub async fn run(a: &OneJob) -> Result<Exit, ClientError> {
 
 /// Follows a job until it ends, also over a restart of the coordinator; gives its last state.
 pub async fn follow(
-    address: &str,
+    target: &Target,
     job: &str,
     progress: &mut Progress,
 ) -> Result<(Connection, v1::JobProgress), ClientError> {
-    let mut connection = Connection::open(address).await?;
+    let mut connection = Connection::open(target).await?;
     let mut gone_since: Option<Instant> = None;
     loop {
         match follow_once(&mut connection, job, progress, &mut gone_since).await {
@@ -52,7 +52,7 @@ pub async fn follow(
                     return Err(lost);
                 }
                 tokio::time::sleep(RETRY).await;
-                if let Ok(again) = Connection::open(address).await {
+                if let Ok(again) = Connection::open(target).await {
                     connection = again;
                 }
             }

@@ -9,7 +9,7 @@ use cognate_protocol::v1::WorkerOverview;
 
 /// Lists the workers.
 pub async fn run(a: &Listing) -> Result<Exit, ClientError> {
-    let mut connection = Connection::open(&a.service.coordinator).await?;
+    let mut connection = Connection::open(&a.service.target()?).await?;
     let workers = connection.workers().await?;
     let text = match a.format {
         Format::Json => json::workers(&workers),

@@ -9,7 +9,7 @@ pub mod sweep;
 
 use super::arguments::PresetName;
 use super::commands::{submit, watch};
-use super::connection::Connection;
+use super::connection::{Connection, Target};
 use super::error::ClientError;
 use super::output::progress::Progress;
 use super::output::summary;
@@ -71,12 +71,12 @@ const OTHER_WAY: u64 = 1;
 
 /// Follows all classes to these points.
 pub async fn nine_points(
-    address: &str,
+    target: &Target,
     points: &PathPoints,
     how: &How,
     progress: &mut Progress,
 ) -> Result<Answer, ClientError> {
-    let mut search = Search::new(address, points, how, progress);
+    let mut search = Search::new(target, points, how, progress);
     let mut book = ClassBook::new(points.parameters());
     let first = ClassBook::first_round();
     let (seed, preset) = (search.seed, search.preset);
@@ -109,7 +109,7 @@ fn preset(name: PresetName) -> Preset {
 
 /// A synthesis under way.
 struct Search<'a> {
-    address: &'a str,
+    target: &'a Target,
     points: &'a PathPoints,
     how: &'a How,
     progress: &'a mut Progress,
@@ -120,13 +120,13 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(
-        address: &'a str,
+        target: &'a Target,
         points: &'a PathPoints,
         how: &'a How,
         progress: &'a mut Progress,
     ) -> Self {
         Self {
-            address,
+            target,
             points,
             how,
             progress,
@@ -209,7 +209,7 @@ impl<'a> Search<'a> {
             seed,
             preset,
         );
-        let (summary, ends) = run(self.address, submission, self.progress).await?;
+        let (summary, ends) = run(self.target, submission, self.progress).await?;
         self.rounds.push(Round { purpose, summary });
         Ok(ends)
     }
@@ -254,17 +254,17 @@ fn submission(
 
 /// Runs a job to its end: its summary, and how each path ended, by its number.
 async fn run(
-    address: &str,
+    target: &Target,
     prepared: Prepared,
     progress: &mut Progress,
 ) -> Result<(Summary, BTreeMap<usize, Arrival>), ClientError> {
-    let mut connection = Connection::open(address).await?;
+    let mut connection = Connection::open(target).await?;
     let request = uuid::Uuid::new_v4().to_string();
     let (job, warnings) = submit::send(&mut connection, &request, prepared).await?;
     for warning in &warnings {
         progress.say(&format!("warning: {warning}"));
     }
-    let (mut connection, last) = watch::follow(address, &job, progress).await?;
+    let (mut connection, last) = watch::follow(target, &job, progress).await?;
     match last.state() {
         v1::JobState::Failed => return Err(ClientError::GaveUp(last.message)),
         v1::JobState::Cancelled => return Err(ClientError::Cancelled),

@@ -1,6 +1,7 @@
 //! Sweeps: many sets of nine points, in jobs of some sets each, answered set after set.
 
 use super::{Answer, How, SEED, Search, preset, run, submission};
+use crate::client::connection::Target;
 use crate::client::error::ClientError;
 use crate::client::output::progress::Progress;
 use cognate_kinematics::nine_point::class_book::Arrival;
@@ -16,7 +17,7 @@ const JOBS: usize = 3;
 
 /// Follows all classes to every set, and hands the answers over in the order of the sets.
 pub async fn sweep(
-    address: &str,
+    target: &Target,
     sets: &[(String, PathPoints)],
     how: &How,
     mut take: impl FnMut(usize, Answer) -> Result<(), ClientError>,
@@ -24,7 +25,7 @@ pub async fn sweep(
     // What is real is asked of a whole job.
     let alike = sets.chunk_by(|(_, one), (_, two)| one.is_real() == two.is_real());
     let batches = alike.flat_map(|sets| sets.chunks(SETS_A_JOB));
-    let batches = batches.map(|batch| follow(address, batch, how));
+    let batches = batches.map(|batch| follow(target, batch, how));
     let mut answers = futures::stream::iter(batches).buffered(JOBS);
     let mut place = 0;
     while let Some(batch) = answers.next().await {
@@ -38,7 +39,7 @@ pub async fn sweep(
 
 /// One job for some sets, and what is open of each afterwards.
 async fn follow(
-    address: &str,
+    target: &Target,
     batch: &[(String, PathPoints)],
     how: &How,
 ) -> Result<Vec<Answer>, ClientError> {
@@ -56,16 +57,16 @@ async fn follow(
     let seed = how.seed.unwrap_or(SEED);
     let job = submission(&starts, &targets, real, how, seed, preset(how.preset));
     let mut quiet = Progress::silent();
-    let (_, mut ends) = run(address, job, &mut quiet).await?;
+    let (_, mut ends) = run(target, job, &mut quiet).await?;
     let mut answers = Vec::with_capacity(batch.len());
-    for (target, (book, (_, points))) in books.into_iter().zip(batch).enumerate() {
+    for (number, (book, (_, points))) in books.into_iter().zip(batch).enumerate() {
         let mut book = book;
         for &member in &first {
             let unknown = || Arrival::Failed("the service says nothing of its path".into());
-            let path = target * CLASSES + member.class;
+            let path = number * CLASSES + member.class;
             book.note(member, ends.remove(&path).unwrap_or_else(unknown));
         }
-        let search = Search::new(address, points, how, &mut quiet);
+        let search = Search::new(target, points, how, &mut quiet);
         answers.push(search.settle(book).await?);
     }
     Ok(answers)

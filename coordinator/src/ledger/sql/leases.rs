@@ -1,16 +1,13 @@
 //! What workers write: leases and what becomes of them. Each function is one operation of a commit.
 
 use super::decode::*;
+use super::engine::{Connection, Row, query};
 use crate::chunks::sizing::Situation;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::memory::{PRESENT_MS, check_size, estimate};
 use crate::ledger::rows::*;
-use sqlx::Row;
-use sqlx::sqlite::{SqliteConnection, SqliteRow};
-
-type Connection = SqliteConnection;
 
 fn signed(value: u64) -> i64 {
     i64::try_from(value).unwrap_or(i64::MAX)
@@ -22,16 +19,16 @@ struct Found {
     state: String,
     epoch: Epoch,
     charged: i64,
-    row: SqliteRow,
+    row: Row,
 }
 
 /// One chunk.
 async fn find(c: &mut Connection, chunk: ChunkId) -> Result<Option<Found>, LedgerError> {
-    let row = sqlx::query("SELECT * FROM chunks WHERE job = ? AND stage = ? AND first = ?")
+    let row = query("SELECT * FROM chunks WHERE job = ? AND stage = ? AND first = ?")
         .bind(chunk.job.to_string())
         .bind(chunk.stage.0)
         .bind(signed(chunk.first))
-        .fetch_optional(c)
+        .fetch_optional(&mut *c)
         .await?;
     row.map(|row| {
         Ok(Found {
@@ -52,7 +49,7 @@ pub async fn lease(
     request: LeaseRequest,
 ) -> Result<Vec<Lease>, LedgerError> {
     let until = now.after_ms(request.duration_ms);
-    let held = sqlx::query(
+    let held = query(
         "SELECT c.job, c.stage, c.first, c.last, c.epoch, c.alone, c.request, j.problem,
                 s.definition
          FROM chunks c JOIN jobs j ON j.job = c.job
@@ -103,7 +100,7 @@ pub async fn lease(
 const CHOOSE: &str = "
     SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
            c.epoch AS chunk_epoch, c.alone AS chunk_alone,
-           (SELECT COALESCE(SUM(threads), 0) FROM workers
+           (SELECT CAST(COALESCE(SUM(threads), 0) AS BIGINT) FROM workers
             WHERE last_seen > ? AND draining = 0 AND worker <> ?) AS other_threads
     FROM jobs j
     JOIN tenants t ON t.tenant = j.tenant
@@ -145,7 +142,7 @@ async fn lease_one(
     now: LedgerTime,
     request: &LeaseRequest,
 ) -> Result<Option<Lease>, LedgerError> {
-    let row = sqlx::query(CHOOSE)
+    let row = query(CHOOSE)
         .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
         .bind(request.worker.as_str())
         .bind(request.suspicion_limit)
@@ -178,15 +175,15 @@ async fn lease_one(
     let charged = estimate(items.len(), &stage);
     let until = now.after_ms(request.duration_ms);
     let epoch = Epoch(number(&row, "chunk_epoch")? + 1);
-    let (job, tenant) = (chunk.job.to_string(), row.try_get::<String, _>("tenant")?);
+    let (job, tenant) = (chunk.job.to_string(), row.try_get::<String>("tenant")?);
     let writes = if is_cut {
-        sqlx::query(CUT_AND_LEASE)
+        query(CUT_AND_LEASE)
             .bind(signed(items.last))
             .bind(&job)
             .bind(chunk.stage.0)
             .bind(signed(items.first))
     } else {
-        sqlx::query(lease_writes!())
+        query(lease_writes!())
     };
     writes
         .bind(signed(items.last))
@@ -208,7 +205,7 @@ async fn lease_one(
         .bind(&job)
         .bind(charged)
         .bind(tenant)
-        .execute(c)
+        .execute(&mut *c)
         .await?;
     Ok(Some(Lease {
         lease: LeaseId { chunk, epoch },
@@ -222,7 +219,7 @@ async fn lease_one(
 
 /// Writes a chunk that is ready. The stage's counts are the caller's business.
 pub async fn insert_ready(c: &mut Connection, chunk: &ChunkRow) -> Result<(), LedgerError> {
-    sqlx::query(
+    query(
         "INSERT INTO chunks (job, stage, first, last, state, epoch, suspicions, alone, charged)
          VALUES (?, ?, ?, ?, 'ready', ?, ?, ?, 0)",
     )
@@ -233,7 +230,7 @@ pub async fn insert_ready(c: &mut Connection, chunk: &ChunkRow) -> Result<(), Le
     .bind(signed(chunk.epoch.0))
     .bind(chunk.suspicions)
     .bind(i64::from(chunk.alone))
-    .execute(c)
+    .execute(&mut *c)
     .await?;
     Ok(())
 }
@@ -243,12 +240,12 @@ async fn set_lease_end(
     chunk: ChunkId,
     until: LedgerTime,
 ) -> Result<(), LedgerError> {
-    sqlx::query("UPDATE chunks SET lease_until = ? WHERE job = ? AND stage = ? AND first = ?")
+    query("UPDATE chunks SET lease_until = ? WHERE job = ? AND stage = ? AND first = ?")
         .bind(until.0)
         .bind(chunk.job.to_string())
         .bind(chunk.stage.0)
         .bind(signed(chunk.first))
-        .execute(c)
+        .execute(&mut *c)
         .await?;
     Ok(())
 }
@@ -263,7 +260,7 @@ pub async fn renew(
     let until = now.after_ms(duration_ms);
     let mut renewals = Vec::with_capacity(leases.len());
     for lease in leases {
-        let done = sqlx::query(
+        let done = query(
             "UPDATE chunks SET lease_until = ? WHERE job = ? AND stage = ? AND first = ?
              AND epoch = ? AND state = 'leased'",
         )
@@ -274,7 +271,7 @@ pub async fn renew(
         .bind(signed(lease.epoch.0))
         .execute(&mut *c)
         .await?;
-        renewals.push(match done.rows_affected() {
+        renewals.push(match done {
             0 => Renewal::Lost,
             _ => Renewal::Until(until),
         });
@@ -319,7 +316,7 @@ pub async fn complete(
             let job = lease.chunk.job.to_string();
             let items = signed(result.items.len());
             let charged = cpu_micros - found.charged;
-            sqlx::query(ACCEPT)
+            query(ACCEPT)
                 .bind(result.address.as_str())
                 .bind(result.hash.to_string())
                 .bind(cpu_micros)
@@ -343,7 +340,7 @@ pub async fn complete(
                 .bind(&job)
                 .bind(items)
                 .bind(worker.as_str())
-                .execute(c)
+                .execute(&mut *c)
                 .await?;
             Ok(Completion::Accepted)
         }
@@ -370,7 +367,7 @@ async fn release(
 ) -> Result<(), LedgerError> {
     let job = chunk.job.to_string();
     let items = signed(found.items.len());
-    sqlx::query(
+    query(
         "UPDATE chunks SET state = 'ready', worker = NULL, lease_until = NULL, request = NULL,
                 charged = 0, suspicions = suspicions + ?
          WHERE job = ? AND stage = ? AND first = ?;
@@ -394,7 +391,7 @@ async fn release(
     .bind(&job)
     .bind(found.charged)
     .bind(&job)
-    .execute(c)
+    .execute(&mut *c)
     .await?;
     Ok(())
 }
@@ -416,7 +413,7 @@ pub async fn give_back(
 
 /// Returns the chunks whose leases have ended.
 pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>, LedgerError> {
-    let rows = sqlx::query(
+    let rows = query(
         "SELECT * FROM chunks WHERE state = 'leased' AND lease_until <= ?
          ORDER BY job, stage, first",
     )
@@ -443,7 +440,7 @@ pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>,
 
 /// Returns all leased chunks of a job that ends.
 pub async fn release_all(c: &mut Connection, job: JobId) -> Result<(), LedgerError> {
-    let rows = sqlx::query("SELECT * FROM chunks WHERE state = 'leased' AND job = ?")
+    let rows = query("SELECT * FROM chunks WHERE state = 'leased' AND job = ?")
         .bind(job.to_string())
         .fetch_all(&mut *c)
         .await?;
@@ -462,7 +459,7 @@ pub async fn seen(
     now: LedgerTime,
     says: WorkerSeen,
 ) -> Result<(), LedgerError> {
-    sqlx::query(
+    query(
         "INSERT INTO workers (worker, version, numerics_revision, instruction_set, threads,
                 lane_width, host, transport, draining, first_seen, last_seen, items_done,
                 chunks_done)
@@ -485,7 +482,7 @@ pub async fn seen(
     .bind(i64::from(says.draining))
     .bind(now.0)
     .bind(now.0)
-    .execute(c)
+    .execute(&mut *c)
     .await?;
     Ok(())
 }

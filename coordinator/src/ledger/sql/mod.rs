@@ -1,15 +1,18 @@
-//! The ledger on SQLite: one machine, no set-up.
+//! The ledger in a database: SQLite embedded, or PostgreSQL for several coordinators.
 //!
 //! One task writes: it groups operations into a commit and acknowledges them
-//! after it. Readers have connections of their own (WAL).
+//! after it. Readers have connections of their own. The statements are the same
+//! for both engines; what differs stands in `engine`.
 
 mod decode;
+mod engine;
 mod file_system;
 mod leases;
 mod stewardship;
 mod writer;
 
 use self::decode::*;
+use self::engine::{Engine, Readers, query};
 use self::writer::Writer;
 use super::clock::{Clock, LedgerTime};
 use super::identity::*;
@@ -17,26 +20,19 @@ use super::rows::*;
 use super::{Ledger, LedgerError};
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
-use sqlx::sqlite::{
-    SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqlitePool, SqlitePoolOptions,
-    SqliteSynchronous,
-};
-use sqlx::{ConnectOptions, Connection, Row};
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Version of the schema that this program writes.
 pub const SCHEMA_VERSION: i64 = 1;
 
-/// What makes version n + 1 of version n; the first makes version 1 of an empty file.
+/// What makes version n + 1 of version n; the first makes version 1 of an empty database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [include_str!("../schema.sql")];
 
-/// A ledger in a file.
-pub struct SqliteLedger {
-    clock: Arc<dyn Clock>,
+/// A ledger in a database.
+pub struct SqlLedger {
     writer: Writer,
-    readers: SqlitePool,
+    readers: Readers,
 }
 
 impl From<sqlx::Error> for LedgerError {
@@ -45,94 +41,52 @@ impl From<sqlx::Error> for LedgerError {
     }
 }
 
-impl SqliteLedger {
+impl SqlLedger {
     /// Opens the ledger in this file, or makes it; brings an older one up to date.
-    pub async fn open(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, LedgerError> {
+    pub async fn sqlite(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, LedgerError> {
         if let Some(kind) = file_system::network_file_system(path) {
             tracing::warn!(path = %path.display(), kind, "the ledger is on a network file system: \
                 SQLite's locks and syncs cannot be relied on there, put it on a local disk");
         }
-        let options = SqliteConnectOptions::new()
-            .filename(path)
-            .create_if_missing(true)
-            .journal_mode(SqliteJournalMode::Wal)
-            .synchronous(SqliteSynchronous::Full)
-            .busy_timeout(Duration::from_secs(10))
-            .statement_cache_capacity(128);
-        let mut connection = options.connect().await?;
-        migrate(&mut connection).await?;
-        let readers = SqlitePoolOptions::new()
-            .max_connections(4)
-            .connect_with(options.read_only(true))
-            .await?;
+        Self::open(Engine::sqlite(path, clock)).await
+    }
+
+    /// Opens the ledger in the database of this URL (`postgres://user@host/database`), or makes it
+    /// there; brings an older one up to date. Deadlines are by the server's clock, or by `clock`
+    /// where a test has one.
+    pub async fn postgres(url: &str, clock: Option<Arc<dyn Clock>>) -> Result<Self, LedgerError> {
+        Self::open(Engine::postgres(url, clock)?).await
+    }
+
+    async fn open(engine: Engine) -> Result<Self, LedgerError> {
+        let mut connection = engine.connect().await?;
+        connection.migrate(&MIGRATIONS, SCHEMA_VERSION).await?;
+        let readers = engine.readers().await?;
         Ok(Self {
-            writer: Writer::start(connection, Arc::clone(&clock)),
-            clock,
+            writer: Writer::start(engine, connection),
             readers,
         })
     }
 
-    /// Writes what is under way and closes the file.
+    /// Writes what is under way and closes the connections.
     pub async fn close(&self) {
         self.writer.close().await;
         self.readers.close().await;
     }
 
     async fn known(&self, job: JobId) -> Result<(), LedgerError> {
-        let found = sqlx::query("SELECT 1 FROM jobs WHERE job = ?")
+        let found = query("SELECT 1 AS one FROM jobs WHERE job = ?")
             .bind(job.to_string())
-            .fetch_optional(&self.readers)
+            .read_optional(&self.readers)
             .await?;
         found.map(|_| ()).ok_or(LedgerError::UnknownJob(job))
     }
 }
 
-/// Brings the schema to this program's version, all or nothing.
-async fn migrate(connection: &mut SqliteConnection) -> Result<(), LedgerError> {
-    let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
-    let tables: i64 = sqlx::query("SELECT COUNT(*) FROM sqlite_master WHERE type = 'table'")
-        .fetch_one(&mut *transaction)
-        .await?
-        .try_get(0)?;
-    let found: i64 = if tables == 0 {
-        0
-    } else {
-        sqlx::query("SELECT schema_version FROM ledger")
-            .fetch_one(&mut *transaction)
-            .await
-            .map_err(|_| LedgerError::Damaged("it has no schema version".into()))?
-            .try_get(0)?
-    };
-    if found > SCHEMA_VERSION {
-        return Err(LedgerError::TooNew {
-            found,
-            known: SCHEMA_VERSION,
-        });
-    }
-    let done = usize::try_from(found)
-        .map_err(|_| LedgerError::Damaged(format!("its schema version is {found}")))?;
-    for migration in &MIGRATIONS[done..] {
-        sqlx::raw_sql(*migration).execute(&mut *transaction).await?;
-    }
-    if found < SCHEMA_VERSION {
-        let write = if found == 0 {
-            "INSERT INTO ledger (schema_version) VALUES (?)"
-        } else {
-            "UPDATE ledger SET schema_version = ?"
-        };
-        sqlx::query(write)
-            .bind(SCHEMA_VERSION)
-            .execute(&mut *transaction)
-            .await?;
-    }
-    transaction.commit().await?;
-    Ok(())
-}
-
 #[async_trait]
-impl Ledger for SqliteLedger {
+impl Ledger for SqlLedger {
     async fn now(&self) -> Result<LedgerTime, LedgerError> {
-        Ok(self.clock.now())
+        self.readers.now().await
     }
 
     async fn submit(&self, id: RequestId, job: NewJob) -> Result<Submitted, LedgerError> {
@@ -149,26 +103,26 @@ impl Ledger for SqliteLedger {
     }
 
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
-        let row = sqlx::query("SELECT * FROM jobs WHERE job = ?")
+        let row = query("SELECT * FROM jobs WHERE job = ?")
             .bind(job.to_string())
-            .fetch_optional(&self.readers)
+            .read_optional(&self.readers)
             .await?;
         row.as_ref().map(job_row).transpose()
     }
 
     async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError> {
-        let rows = sqlx::query("SELECT * FROM jobs ORDER BY number DESC LIMIT ?")
+        let rows = query("SELECT * FROM jobs ORDER BY number DESC LIMIT ?")
             .bind(limit)
-            .fetch_all(&self.readers)
+            .read_all(&self.readers)
             .await?;
         rows.iter().rev().map(job_row).collect()
     }
 
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
         self.known(job).await?;
-        let rows = sqlx::query("SELECT * FROM stages WHERE job = ? ORDER BY stage")
+        let rows = query("SELECT * FROM stages WHERE job = ? ORDER BY stage")
             .bind(job.to_string())
-            .fetch_all(&self.readers)
+            .read_all(&self.readers)
             .await?;
         rows.iter().map(stage_row).collect()
     }
@@ -186,8 +140,8 @@ impl Ledger for SqliteLedger {
     }
 
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
-        let rows = sqlx::query("SELECT job FROM jobs WHERE ended IS NULL ORDER BY number")
-            .fetch_all(&self.readers)
+        let rows = query("SELECT job FROM jobs WHERE ended IS NULL ORDER BY number")
+            .read_all(&self.readers)
             .await?;
         rows.iter().map(job_id).collect()
     }
@@ -235,7 +189,7 @@ impl Ledger for SqliteLedger {
         limit: u32,
     ) -> Result<Vec<ChunkRow>, LedgerError> {
         self.known(job).await?;
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT * FROM chunks WHERE job = ? AND stage = ? AND first >= ?
              AND state IN ('accepted', 'failed') ORDER BY first LIMIT ?",
         )
@@ -243,34 +197,36 @@ impl Ledger for SqliteLedger {
         .bind(stage.0)
         .bind(i64::try_from(from).unwrap_or(i64::MAX))
         .bind(limit)
-        .fetch_all(&self.readers)
+        .read_all(&self.readers)
         .await?;
         rows.iter().map(chunk_row).collect()
     }
 
     async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
         self.known(job).await?;
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT * FROM chunks WHERE job = ? AND state = 'ready' AND suspicions >= ?
              ORDER BY stage, first",
         )
         .bind(job.to_string())
         .bind(suspicions)
-        .fetch_all(&self.readers)
+        .read_all(&self.readers)
         .await?;
         rows.iter().map(chunk_row).collect()
     }
 
     async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError> {
         self.known(job).await?;
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT c.worker, COALESCE(w.transport, '') AS transport,
-                    SUM(c.last - c.first) AS items, SUM(c.cpu_micros) AS cpu_micros
+                    CAST(SUM(c.last - c.first) AS BIGINT) AS items,
+                    CAST(SUM(c.cpu_micros) AS BIGINT) AS cpu_micros
              FROM chunks c LEFT JOIN workers w ON w.worker = c.worker
-             WHERE c.job = ? AND c.state = 'accepted' GROUP BY c.worker ORDER BY c.worker",
+             WHERE c.job = ? AND c.state = 'accepted'
+             GROUP BY c.worker, w.transport ORDER BY c.worker",
         )
         .bind(job.to_string())
-        .fetch_all(&self.readers)
+        .read_all(&self.readers)
         .await?;
         rows.iter().map(contribution).collect()
     }
@@ -321,13 +277,13 @@ impl Ledger for SqliteLedger {
     }
 
     async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, LedgerError> {
-        let rows = sqlx::query(
+        let rows = query(
             "SELECT w.*, (SELECT COUNT(*) FROM chunks c
                           WHERE c.state = 'leased' AND c.worker = w.worker) AS leased_chunks
              FROM workers w ORDER BY last_seen DESC, worker DESC LIMIT ?",
         )
         .bind(limit)
-        .fetch_all(&self.readers)
+        .read_all(&self.readers)
         .await?;
         rows.iter().map(worker_row).collect()
     }

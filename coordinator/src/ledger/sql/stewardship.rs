@@ -1,6 +1,7 @@
 //! What clients and stewards write: jobs and stages. Each function is one operation of a commit.
 
 use super::decode::*;
+use super::engine::{Connection, query};
 use super::leases::{insert_ready, release_all};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
@@ -8,16 +9,12 @@ use crate::ledger::identity::*;
 use crate::ledger::memory::{check_size, make_up};
 use crate::ledger::rows::*;
 use cognate_continuation::work::StageId;
-use sqlx::Row;
-use sqlx::sqlite::SqliteConnection;
 use std::collections::BTreeSet;
 
-type Connection = SqliteConnection;
-
 async fn job(c: &mut Connection, job: JobId) -> Result<Option<JobRow>, LedgerError> {
-    let row = sqlx::query("SELECT * FROM jobs WHERE job = ?")
+    let row = query("SELECT * FROM jobs WHERE job = ?")
         .bind(job.to_string())
-        .fetch_optional(c)
+        .fetch_optional(&mut *c)
         .await?;
     row.as_ref().map(job_row).transpose()
 }
@@ -40,10 +37,10 @@ pub async fn submit(
 ) -> Result<Submitted, LedgerError> {
     let id = JobId::of_request(&request);
     if let Some(before) = job(c, id).await? {
-        let same = sqlx::query("SELECT 1 FROM jobs WHERE job = ? AND request = ?")
+        let same = query("SELECT 1 FROM jobs WHERE job = ? AND request = ?")
             .bind(id.to_string())
             .bind(request.as_str())
-            .fetch_optional(c)
+            .fetch_optional(&mut *c)
             .await?;
         if before.asked != asked || same.is_none() {
             return Err(LedgerError::RequestReused(request));
@@ -54,7 +51,7 @@ pub async fn submit(
         });
     }
     // Nobody saves up virtual time while he has no jobs.
-    let row = sqlx::query(
+    let row = query(
         "SELECT (SELECT COALESCE(MAX(number), 0) + 1 FROM jobs) AS number,
                 (SELECT MIN(t.virtual_time) FROM jobs j JOIN tenants t ON t.tenant = j.tenant
                  WHERE j.ended IS NULL) AS floor,
@@ -70,7 +67,7 @@ pub async fn submit(
     let own: Option<i64> = row.try_get("own")?;
     let same_tenant: Option<i64> = row.try_get("same_tenant")?;
     let own = own.unwrap_or(0);
-    sqlx::query(
+    query(
         "INSERT INTO tenants (tenant, virtual_time) VALUES (?, ?)
          ON CONFLICT (tenant) DO UPDATE SET virtual_time = excluded.virtual_time",
     )
@@ -78,14 +75,14 @@ pub async fn submit(
     .bind(floor.map_or(own, |floor| own.max(floor)))
     .execute(&mut *c)
     .await?;
-    sqlx::query(
+    query(
         "INSERT INTO jobs (job, number, request, tenant, label, problem, options,
                 numerics_revision, state, submitted, steward_epoch, steward_until, virtual_time,
                 leased_chunks)
          VALUES (?, ?, ?, ?, ?, ?, ?, ?, 'queued', ?, 0, 0, ?, 0)",
     )
     .bind(id.to_string())
-    .bind(row.try_get::<i64, _>("number")?)
+    .bind(row.try_get::<i64>("number")?)
     .bind(request.as_str())
     .bind(asked.tenant.as_str())
     .bind(asked.label)
@@ -94,7 +91,7 @@ pub async fn submit(
     .bind(asked.numerics_revision)
     .bind(now.0)
     .bind(same_tenant.unwrap_or(0))
-    .execute(c)
+    .execute(&mut *c)
     .await?;
     Ok(Submitted {
         job: id,
@@ -113,7 +110,7 @@ pub async fn cancel(
     if found.state.has_ended() {
         return Ok(Cancelled::HadEnded(found.state));
     }
-    sqlx::query("UPDATE jobs SET state = 'cancelled', reason = ?, ended = ? WHERE job = ?")
+    query("UPDATE jobs SET state = 'cancelled', reason = ?, ended = ? WHERE job = ?")
         .bind(reason)
         .bind(now.0)
         .bind(id.to_string())
@@ -141,12 +138,12 @@ pub async fn steward(
     if !held || !mine {
         epoch.0 += 1;
     }
-    sqlx::query("UPDATE jobs SET steward = ?, steward_epoch = ?, steward_until = ? WHERE job = ?")
+    query("UPDATE jobs SET steward = ?, steward_epoch = ?, steward_until = ? WHERE job = ?")
         .bind(who.as_str())
         .bind(i64::try_from(epoch.0).map_err(|_| LedgerError::TooLarge("the steward's epoch"))?)
         .bind(now.after_ms(duration_ms).0)
         .bind(id.to_string())
-        .execute(c)
+        .execute(&mut *c)
         .await?;
     Ok(Some(epoch))
 }
@@ -159,7 +156,7 @@ pub async fn advance(
     step: Advance,
 ) -> Result<(), LedgerError> {
     fenced(c, id, epoch).await?;
-    let rows = sqlx::query("SELECT * FROM stages WHERE job = ?")
+    let rows = query("SELECT * FROM stages WHERE job = ?")
         .bind(id.to_string())
         .fetch_all(&mut *c)
         .await?;
@@ -182,7 +179,7 @@ pub async fn advance(
         }
     }
     for close in &step.close {
-        sqlx::query("UPDATE stages SET closed = 1 WHERE job = ? AND stage = ?")
+        query("UPDATE stages SET closed = 1 WHERE job = ? AND stage = ?")
             .bind(id.to_string())
             .bind(close.0)
             .execute(&mut *c)
@@ -190,7 +187,7 @@ pub async fn advance(
     }
     for new in &step.open {
         let items = check_size("the number of items of a stage", new.items)?;
-        sqlx::query(
+        query(
             "INSERT INTO stages (job, stage, definition, items, closed, ready_items,
                     ready_chunks, leased_items, leased_chunks, accepted_items, accepted_chunks,
                     failed_items, failed_chunks, cpu_micros, paths_regular, paths_singular,
@@ -223,7 +220,7 @@ pub async fn advance(
     }
     let snapshot = step.snapshot.map(|digest| digest.to_string());
     let opened = i64::from(!step.open.is_empty());
-    sqlx::query(
+    query(
         "UPDATE jobs SET snapshot = COALESCE(?, snapshot),
                 state = CASE WHEN ? = 1 THEN 'running' ELSE state END
          WHERE job = ?",
@@ -231,20 +228,19 @@ pub async fn advance(
     .bind(snapshot)
     .bind(opened)
     .bind(id.to_string())
-    .execute(c)
+    .execute(&mut *c)
     .await?;
     Ok(())
 }
 
 async fn ready_chunk(c: &mut Connection, chunk: ChunkId) -> Result<Option<ChunkRow>, LedgerError> {
-    let row = sqlx::query(
-        "SELECT * FROM chunks WHERE job = ? AND stage = ? AND first = ? AND state = 'ready'",
-    )
-    .bind(chunk.job.to_string())
-    .bind(chunk.stage.0)
-    .bind(i64::try_from(chunk.first).unwrap_or(i64::MAX))
-    .fetch_optional(c)
-    .await?;
+    let row =
+        query("SELECT * FROM chunks WHERE job = ? AND stage = ? AND first = ? AND state = 'ready'")
+            .bind(chunk.job.to_string())
+            .bind(chunk.stage.0)
+            .bind(i64::try_from(chunk.first).unwrap_or(i64::MAX))
+            .fetch_optional(&mut *c)
+            .await?;
     row.as_ref().map(chunk_row).transpose()
 }
 
@@ -260,7 +256,7 @@ pub async fn split(
         .await?
         .filter(|whole| make_up(pieces.iter().map(|p| p.items), whole.items))
         .ok_or(LedgerError::NotAPartition(chunk.job))?;
-    sqlx::query("DELETE FROM chunks WHERE job = ? AND stage = ? AND first = ?")
+    query("DELETE FROM chunks WHERE job = ? AND stage = ? AND first = ?")
         .bind(chunk.job.to_string())
         .bind(chunk.stage.0)
         .bind(i64::try_from(chunk.first).unwrap_or(i64::MAX))
@@ -274,14 +270,12 @@ pub async fn split(
         row.alone = piece.alone;
         insert_ready(c, &row).await?;
     }
-    sqlx::query(
-        "UPDATE stages SET ready_chunks = ready_chunks - 1 + ? WHERE job = ? AND stage = ?",
-    )
-    .bind(i64::try_from(pieces.len()).unwrap_or(i64::MAX))
-    .bind(chunk.job.to_string())
-    .bind(chunk.stage.0)
-    .execute(c)
-    .await?;
+    query("UPDATE stages SET ready_chunks = ready_chunks - 1 + ? WHERE job = ? AND stage = ?")
+        .bind(i64::try_from(pieces.len()).unwrap_or(i64::MAX))
+        .bind(chunk.job.to_string())
+        .bind(chunk.stage.0)
+        .execute(&mut *c)
+        .await?;
     Ok(())
 }
 
@@ -300,7 +294,7 @@ pub async fn condemn(
         .ok_or(LedgerError::NotAPartition(chunk.job))?;
     let items = i64::try_from(result.items.len()).unwrap_or(i64::MAX);
     let count = |value: u64| i64::try_from(value).unwrap_or(i64::MAX);
-    sqlx::query(
+    query(
         "UPDATE chunks SET state = 'failed', address = ?, hash = ?, cpu_micros = ?,
                 paths_regular = ?, paths_singular = ?, paths_failed = ?
          WHERE job = ? AND stage = ? AND first = ?;
@@ -326,7 +320,7 @@ pub async fn condemn(
     .bind(count(result.outcomes.failed))
     .bind(chunk.job.to_string())
     .bind(chunk.stage.0)
-    .execute(c)
+    .execute(&mut *c)
     .await?;
     Ok(())
 }
@@ -349,7 +343,7 @@ pub async fn finish(
         ),
         JobEnd::Failed { reason } => (JobState::Failed, Some(reason), None, None),
     };
-    sqlx::query(
+    query(
         "UPDATE jobs SET state = ?, reason = ?, ended = ?, solutions = ?, summary = ?
          WHERE job = ?",
     )

@@ -1,13 +1,12 @@
 //! Rows of the database to rows of the ledger: every value is checked.
 
+use super::engine::Row;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::StageId;
-use sqlx::Row;
-use sqlx::sqlite::SqliteRow;
 use std::fmt::Display;
 
 /// The error for a value that this program did not write.
@@ -16,54 +15,54 @@ pub fn damaged(what: impl Display) -> LedgerError {
 }
 
 /// A nonnegative number.
-pub fn number(row: &SqliteRow, column: &str) -> Result<u64, LedgerError> {
+pub fn number(row: &Row, column: &str) -> Result<u64, LedgerError> {
     let value: i64 = row.try_get(column)?;
     u64::try_from(value).map_err(|_| damaged(format_args!("{column} is {value}")))
 }
 
 /// A nonnegative number of at most 32 bits.
-pub fn small(row: &SqliteRow, column: &str) -> Result<u32, LedgerError> {
+pub fn small(row: &Row, column: &str) -> Result<u32, LedgerError> {
     let value = number(row, column)?;
     u32::try_from(value).map_err(|_| damaged(format_args!("{column} is {value}")))
 }
 
-fn text(row: &SqliteRow, column: &str) -> Result<String, LedgerError> {
-    Ok(row.try_get(column)?)
+fn text(row: &Row, column: &str) -> Result<String, LedgerError> {
+    row.try_get(column)
 }
 
-fn time(row: &SqliteRow, column: &str) -> Result<LedgerTime, LedgerError> {
+fn time(row: &Row, column: &str) -> Result<LedgerTime, LedgerError> {
     Ok(LedgerTime(row.try_get(column)?))
 }
 
 /// A digest.
-pub fn digest(row: &SqliteRow, column: &str) -> Result<Digest, LedgerError> {
+pub fn digest(row: &Row, column: &str) -> Result<Digest, LedgerError> {
     parse_digest(&text(row, column)?).map_err(damaged)
 }
 
-fn optional_digest(row: &SqliteRow, column: &str) -> Result<Option<Digest>, LedgerError> {
+fn optional_digest(row: &Row, column: &str) -> Result<Option<Digest>, LedgerError> {
     let value: Option<String> = row.try_get(column)?;
     value.map(|v| parse_digest(&v).map_err(damaged)).transpose()
 }
 
 /// A worker's name.
-pub fn worker(row: &SqliteRow) -> Result<WorkerId, LedgerError> {
+pub fn worker(row: &Row) -> Result<WorkerId, LedgerError> {
     WorkerId::new(text(row, "worker")?).map_err(damaged)
 }
 
 /// A job's id.
-pub fn job_id(row: &SqliteRow) -> Result<JobId, LedgerError> {
+pub fn job_id(row: &Row) -> Result<JobId, LedgerError> {
     text(row, "job")?.parse().map_err(damaged)
 }
 
 /// A job's state by its name.
-pub fn job_state(row: &SqliteRow) -> Result<JobState, LedgerError> {
+pub fn job_state(row: &Row) -> Result<JobState, LedgerError> {
     let name = text(row, "state")?;
     let found = JobState::ALL.into_iter().find(|s| s.name() == name);
     found.ok_or_else(|| damaged(format_args!("a job's state is `{name}`")))
 }
 
 /// A whole job.
-pub fn job_row(row: &SqliteRow) -> Result<JobRow, LedgerError> {
+pub fn job_row(row: &Row) -> Result<JobRow, LedgerError> {
     let optional_time = |column| -> Result<Option<LedgerTime>, LedgerError> {
         let value: Option<i64> = row.try_get(column)?;
         Ok(value.map(LedgerTime))
@@ -95,7 +94,7 @@ pub fn job_row(row: &SqliteRow) -> Result<JobRow, LedgerError> {
     })
 }
 
-fn outcomes(row: &SqliteRow) -> Result<Outcomes, LedgerError> {
+fn outcomes(row: &Row) -> Result<Outcomes, LedgerError> {
     Ok(Outcomes {
         regular: number(row, "paths_regular")?,
         singular: number(row, "paths_singular")?,
@@ -104,7 +103,7 @@ fn outcomes(row: &SqliteRow) -> Result<Outcomes, LedgerError> {
 }
 
 /// A stage with its counts.
-pub fn stage_row(row: &SqliteRow) -> Result<StageRow, LedgerError> {
+pub fn stage_row(row: &Row) -> Result<StageRow, LedgerError> {
     let count = |items: &str, chunks: &str| -> Result<Count, LedgerError> {
         Ok(Count {
             items: number(row, items)?,
@@ -126,7 +125,7 @@ pub fn stage_row(row: &SqliteRow) -> Result<StageRow, LedgerError> {
 }
 
 /// The name of a chunk.
-pub fn chunk_id(row: &SqliteRow) -> Result<ChunkId, LedgerError> {
+pub fn chunk_id(row: &Row) -> Result<ChunkId, LedgerError> {
     Ok(ChunkId {
         job: job_id(row)?,
         stage: StageId(small(row, "stage")?),
@@ -135,7 +134,7 @@ pub fn chunk_id(row: &SqliteRow) -> Result<ChunkId, LedgerError> {
 }
 
 /// The items of a chunk.
-pub fn items(row: &SqliteRow) -> Result<ItemRange, LedgerError> {
+pub fn items(row: &Row) -> Result<ItemRange, LedgerError> {
     Ok(ItemRange {
         first: number(row, "first")?,
         last: number(row, "last")?,
@@ -143,7 +142,7 @@ pub fn items(row: &SqliteRow) -> Result<ItemRange, LedgerError> {
 }
 
 /// A whole chunk.
-pub fn chunk_row(row: &SqliteRow) -> Result<ChunkRow, LedgerError> {
+pub fn chunk_row(row: &Row) -> Result<ChunkRow, LedgerError> {
     let items = items(row)?;
     let result = || -> Result<ResultObject, LedgerError> {
         Ok(ResultObject {
@@ -178,7 +177,7 @@ pub fn chunk_row(row: &SqliteRow) -> Result<ChunkRow, LedgerError> {
 }
 
 /// What one worker did for a job.
-pub fn contribution(row: &SqliteRow) -> Result<Contribution, LedgerError> {
+pub fn contribution(row: &Row) -> Result<Contribution, LedgerError> {
     Ok(Contribution {
         worker: worker(row)?,
         transport: text(row, "transport")?,
@@ -188,7 +187,7 @@ pub fn contribution(row: &SqliteRow) -> Result<Contribution, LedgerError> {
 }
 
 /// A whole worker.
-pub fn worker_row(row: &SqliteRow) -> Result<WorkerRow, LedgerError> {
+pub fn worker_row(row: &Row) -> Result<WorkerRow, LedgerError> {
     Ok(WorkerRow {
         says: WorkerSeen {
             worker: worker(row)?,

@@ -1,11 +1,9 @@
 //! The one task that writes: operations are grouped into a commit and acknowledged after it.
 
+use super::engine::{Connection, Engine};
 use crate::ledger::LedgerError;
-use crate::ledger::clock::{Clock, LedgerTime};
+use crate::ledger::clock::LedgerTime;
 use futures::future::BoxFuture;
-use sqlx::Connection;
-use sqlx::sqlite::SqliteConnection;
-use std::sync::Arc;
 use tokio::sync::{mpsc, oneshot};
 
 /// Operations in a commit. More would let the first wait longer than a sync to disk takes.
@@ -14,7 +12,7 @@ const GROUP: usize = 64;
 type Acknowledge = Box<dyn FnOnce() + Send>;
 type Operation = Box<
     dyn for<'c> FnOnce(
-            &'c mut SqliteConnection,
+            &'c mut Connection,
             LedgerTime,
         ) -> BoxFuture<'c, Result<Acknowledge, LedgerError>>
         + Send,
@@ -32,9 +30,9 @@ pub struct Writer {
 
 impl Writer {
     /// Starts the task; it ends when the writer is closed or dropped.
-    pub fn start(connection: SqliteConnection, clock: Arc<dyn Clock>) -> Self {
+    pub fn start(engine: Engine, connection: Connection) -> Self {
         let (operations, queue) = mpsc::channel(4 * GROUP);
-        tokio::spawn(run(connection, clock, queue));
+        tokio::spawn(run(engine, connection, queue));
         Self { operations }
     }
 
@@ -45,10 +43,7 @@ impl Writer {
     pub async fn write<T, F>(&self, operation: F) -> Result<T, LedgerError>
     where
         T: Send + 'static,
-        F: for<'c> FnOnce(
-                &'c mut SqliteConnection,
-                LedgerTime,
-            ) -> BoxFuture<'c, Result<T, LedgerError>>
+        F: for<'c> FnOnce(&'c mut Connection, LedgerTime) -> BoxFuture<'c, Result<T, LedgerError>>
             + Send
             + 'static,
     {
@@ -93,19 +88,34 @@ impl Writer {
     }
 }
 
-async fn run(
-    mut connection: SqliteConnection,
-    clock: Arc<dyn Clock>,
-    mut queue: mpsc::Receiver<Message>,
-) {
+async fn run(engine: Engine, connection: Connection, mut queue: mpsc::Receiver<Message>) {
     let mut closing = None;
+    // None while the server is gone: each group tries to reach it again.
+    let mut connected = Some(connection);
     while closing.is_none() {
         match queue.recv().await {
             Some(Message::Write(first)) => {
-                let group = commit_group(&mut connection, &*clock, first, &mut queue).await;
-                match group {
+                if connected.is_none() {
+                    match engine.connect().await {
+                        Ok(connection) => connected = Some(connection),
+                        // Whoever wrote hears that it was not done, and asks again.
+                        Err(error) => {
+                            tracing::error!(%error, "the ledger's database is not reached");
+                            continue;
+                        }
+                    }
+                }
+                let Some(connection) = &mut connected else {
+                    continue;
+                };
+                match commit_group(connection, first, &mut queue).await {
                     Ok(close) => closing = close,
-                    Err(error) => tracing::error!(%error, "a commit of the ledger failed"),
+                    Err(error) => {
+                        tracing::error!(%error, "a commit of the ledger failed");
+                        if connection.roll_back().await.is_err() {
+                            connected = None;
+                        }
+                    }
                 }
             }
             Some(Message::Close(reply)) => closing = Some(reply),
@@ -113,8 +123,10 @@ async fn run(
         }
     }
     queue.close();
-    if let Err(error) = connection.close().await {
-        tracing::warn!(%error, "the ledger's file was not closed cleanly");
+    if let Some(connection) = connected
+        && let Err(error) = connection.close().await
+    {
+        tracing::warn!(%error, "the ledger was not closed cleanly");
     }
     if let Some(reply) = closing {
         // Whoever closed it may have gone.
@@ -124,17 +136,16 @@ async fn run(
 
 /// One commit: the first operation and those that wait behind it.
 async fn commit_group(
-    connection: &mut SqliteConnection,
-    clock: &dyn Clock,
+    connection: &mut Connection,
     first: Operation,
     queue: &mut mpsc::Receiver<Message>,
 ) -> Result<Option<oneshot::Sender<()>>, LedgerError> {
-    let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
+    let now = connection.begin().await?;
     let mut acknowledgements = Vec::new();
     let mut closing = None;
     let mut next = Some(first);
     while let Some(operation) = next.take() {
-        acknowledgements.push(operation(&mut transaction, clock.now()).await?);
+        acknowledgements.push(operation(connection, now).await?);
         if acknowledgements.len() < GROUP {
             match queue.try_recv() {
                 Ok(Message::Write(operation)) => next = Some(operation),
@@ -143,7 +154,7 @@ async fn commit_group(
             }
         }
     }
-    transaction.commit().await?;
+    connection.commit().await?;
     for acknowledge in acknowledgements {
         acknowledge();
     }

@@ -1,0 +1,215 @@
+//! What only a ledger in a database can get wrong: reopening, versions, speed; and all the rest.
+
+use super::engine::query;
+use super::{MIGRATIONS, SCHEMA_VERSION, SqlLedger};
+use crate::ledger::clock::{Clock, ManualClock, SystemClock};
+use crate::ledger::conformance::*;
+use crate::ledger::rows::*;
+use crate::ledger::{Ledger, LedgerError};
+use std::path::Path;
+use std::sync::Arc;
+
+async fn open(clock: Arc<ManualClock>) -> (SqlLedger, tempfile::TempDir) {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let ledger = SqlLedger::sqlite(&folder.path().join("ledger"), clock)
+        .await
+        .expect("an empty ledger opens");
+    (ledger, folder)
+}
+
+ledger_conformance!(sqlite, open);
+
+/// A server that tests may use, as `postgres://` understands it behind `?`: see
+/// `tests/support/postgres.sh`.
+fn postgres() -> Option<String> {
+    let server = std::env::var("COGNATE_TEST_POSTGRES").ok();
+    if server.is_none() {
+        println!("skipped: COGNATE_TEST_POSTGRES names no server; tests/run.sh starts one");
+    }
+    server
+}
+
+/// An empty database of its own on this server.
+async fn database(server: &str) -> String {
+    use sqlx::{AssertSqlSafe, Connection, PgConnection};
+    let name = format!("test_{}", uuid::Uuid::new_v4().simple());
+    let url = format!("postgres:///postgres?{server}");
+    let mut connection = PgConnection::connect(&url).await.expect("the server");
+    let create = AssertSqlSafe(format!("CREATE DATABASE {name}"));
+    let created = sqlx::raw_sql(create).execute(&mut connection).await;
+    created.expect("a database is made");
+    format!("postgres:///{name}?{server}")
+}
+
+async fn open_postgres(clock: Arc<ManualClock>) -> Option<(SqlLedger, ())> {
+    let url = database(&postgres()?).await;
+    let ledger = SqlLedger::postgres(&url, Some(clock)).await;
+    Some((ledger.expect("an empty database opens"), ()))
+}
+
+ledger_conformance!(postgresql, open_postgres, optional);
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn coordinators_of_one_database_take_turns() {
+    let Some(server) = postgres() else { return };
+    let url = database(&server).await;
+    // Opened at once: one of them makes the schema.
+    let open = || SqlLedger::postgres(&url, None);
+    let (one, two) = tokio::join!(open(), open());
+    let (one, two) = (Arc::new(one.unwrap()), Arc::new(two.unwrap()));
+    let job = one.submit(request("r"), new_job("t", 1)).await.unwrap().job;
+    assert!(
+        !two.submit(request("r"), new_job("t", 1))
+            .await
+            .unwrap()
+            .is_new
+    );
+    let epoch = one.steward(job, &coordinator("one"), 600_000).await;
+    let epoch = epoch.unwrap().expect("nobody else drives it");
+    let second = two.steward(job, &coordinator("two"), 600_000).await;
+    assert_eq!(second.unwrap(), None);
+    let items = 2000;
+    let open = Advance {
+        open: vec![stage(0, items, items)],
+        ..Advance::default()
+    };
+    one.advance(job, epoch, open).await.unwrap();
+    let tasks = (0..8).map(|w| {
+        let ledger = Arc::clone(if w % 2 == 0 { &one } else { &two });
+        tokio::spawn(async move {
+            let mut done = Vec::new();
+            for k in 0.. {
+                let mut wanted = wants(&format!("w{w}"), &format!("{w}-{k}"), 1);
+                wanted.sizing.most_items = 10;
+                let leases = ledger.lease(wanted).await.unwrap();
+                let Some(lease) = leases.first() else { break };
+                let object = result(lease.items, 1, 100_000);
+                let verdict = ledger.complete(lease.lease, object).await.unwrap();
+                assert_eq!(verdict, Completion::Accepted);
+                done.extend(lease.items.first..lease.items.last);
+            }
+            done
+        })
+    });
+    let mut done = Vec::new();
+    for task in tasks.collect::<Vec<_>>() {
+        done.extend(task.await.unwrap());
+    }
+    done.sort_unstable();
+    assert_eq!(done, (0..items).collect::<Vec<_>>(), "each item once");
+    assert_eq!(one.stages(job).await.unwrap()[0].accepted.items, items);
+    let skew = one.now().await.unwrap().0 - SystemClock::default().now().0;
+    assert!(
+        skew.abs() < 60_000,
+        "milliseconds since 1970, not {skew} off"
+    );
+}
+
+async fn reopen(path: &Path) -> Result<SqlLedger, LedgerError> {
+    SqlLedger::sqlite(path, Arc::new(SystemClock::default())).await
+}
+
+#[tokio::test]
+async fn what_was_acknowledged_is_there_after_reopening() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ledger");
+    let ledger = reopen(&path).await.unwrap();
+    let job = ledger.submit(request("r"), new_job("t", 1)).await.unwrap();
+    let row = ledger.job(job.job).await.unwrap();
+    ledger.close().await;
+    let refused = ledger.submit(request("s"), new_job("t", 1)).await;
+    assert!(matches!(refused, Err(LedgerError::Closed)));
+    let again = reopen(&path).await.unwrap();
+    assert_eq!(again.job(job.job).await.unwrap(), row);
+    let twice = again.submit(request("r"), new_job("t", 1)).await.unwrap();
+    assert!(!twice.is_new);
+}
+
+#[tokio::test]
+async fn later_and_foreign_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ledger");
+    let ledger = reopen(&path).await.unwrap();
+    ledger
+        .writer
+        .write(|c, _| {
+            Box::pin(async move {
+                query("UPDATE ledger SET schema_version = 999")
+                    .execute(c)
+                    .await?;
+                Ok(())
+            })
+        })
+        .await
+        .unwrap();
+    ledger.close().await;
+    let refused = reopen(&path).await.err().expect("it is refused");
+    assert!(matches!(refused, LedgerError::TooNew { found: 999, .. }));
+    let path = folder.path().join("text");
+    std::fs::write(
+        &path,
+        "this is no database, whatever its name says\n".repeat(99),
+    )
+    .unwrap();
+    assert!(reopen(&path).await.is_err());
+}
+
+/// A released schema never changes: a ledger of that version must still open.
+#[test]
+fn the_schema_of_version_1_is_what_it_was() {
+    let hash = blake3::hash(MIGRATIONS[0].as_bytes()).to_hex();
+    assert_eq!(SCHEMA_VERSION as usize, MIGRATIONS.len());
+    assert_eq!(&hash[..16], "0d7a7ee043c8b187", "add a migration instead");
+}
+
+/// Measured, not asserted: `cargo test --release -p cognate-coordinator -- --ignored --nocapture speed`.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "a measurement"]
+async fn speed_of_lease_and_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    println!("SQLite:");
+    measure(reopen(&folder.path().join("ledger")).await.unwrap()).await;
+    if let Some(server) = postgres() {
+        println!("PostgreSQL:");
+        let url = database(&server).await;
+        measure(SqlLedger::postgres(&url, None).await.unwrap()).await;
+    }
+}
+
+async fn measure(ledger: SqlLedger) {
+    let ledger = Arc::new(ledger);
+    let job = ledger
+        .submit(request("r"), new_job("t", 1))
+        .await
+        .unwrap()
+        .job;
+    let who = coordinator("c");
+    let epoch = ledger.steward(job, &who, 600_000).await.unwrap().unwrap();
+    let open = Advance {
+        open: vec![stage(0, 1_000_000, 1_000_000)],
+        ..Advance::default()
+    };
+    ledger.advance(job, epoch, open).await.unwrap();
+    for workers in [1, 32] {
+        let begin = std::time::Instant::now();
+        let each = 6400 / workers / 4;
+        let tasks = (0..workers).map(|w| {
+            let ledger = Arc::clone(&ledger);
+            tokio::spawn(async move {
+                for k in 0..each {
+                    let mut wanted = wants(&format!("w{w}"), &format!("{workers}-{k}"), 1);
+                    wanted.sizing.most_items = 10;
+                    let lease = ledger.lease(wanted).await.unwrap()[0].clone();
+                    let object = result(lease.items, 1, 100_000);
+                    let done = ledger.complete(lease.lease, object).await.unwrap();
+                    assert_eq!(done, Completion::Accepted);
+                }
+            })
+        });
+        for task in tasks.collect::<Vec<_>>() {
+            task.await.unwrap();
+        }
+        let rate = (each * workers) as f64 / begin.elapsed().as_secs_f64();
+        println!("{workers} workers: {rate:.0} lease + complete a second");
+    }
+}

@@ -1,0 +1,288 @@
+//! Chaos: jobs on real processes while workers, coordinators and the database are killed or stand
+//! still at random. Every answer must be the undisturbed one, bit for bit; a report says what it cost.
+//!
+//! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]`
+
+use cognate_tests::builders::katsura;
+use cognate_tests::client::{Submission, accepted, has_ended, total};
+use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
+use cognate_tests::database::Database;
+use std::fmt;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// How long a lease lasts here.
+const LEASE: Duration = Duration::from_secs(2);
+/// Work must go on so soon after a fault: a lease, and three seconds.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Paths of a chunk.
+const CHUNK: u64 = 32;
+/// Workers that are kept alive.
+const WORKERS: usize = 3;
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fault {
+    KillWorker,
+    FreezeWorker,
+    KillCoordinator,
+    FreezeCoordinator,
+    KillDatabase,
+}
+
+impl Fault {
+    const ALL: [Self; 5] = [
+        Self::KillWorker,
+        Self::FreezeWorker,
+        Self::KillCoordinator,
+        Self::FreezeCoordinator,
+        Self::KillDatabase,
+    ];
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::KillWorker => "a worker killed (-9)",
+            Self::FreezeWorker => "a worker stopped for longer than its lease",
+            Self::KillCoordinator => "the coordinator killed (-9)",
+            Self::FreezeCoordinator => "the coordinator stopped for a second",
+            Self::KillDatabase => "the database server killed (-9)",
+        })
+    }
+}
+
+/// The same faults for the same seed (splitmix64: Steele, Lea, Flood 2014).
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, bound: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) % bound
+    }
+}
+
+/// What is asked for.
+struct Wanted {
+    seconds: u64,
+    seed: u64,
+    postgres: bool,
+}
+
+fn wanted() -> Result<Wanted, String> {
+    let mut wanted = Wanted {
+        seconds: 30,
+        seed: 1,
+        postgres: false,
+    };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let value = words.next().ok_or(format!("{word}: a value is missing"))?;
+        let number = || value.parse().map_err(|e| format!("{word} {value}: {e}"));
+        match word.as_str() {
+            "--seconds" => wanted.seconds = number()?,
+            "--seed" => wanted.seed = number()?,
+            "--ledger" if value == "sqlite" => wanted.postgres = false,
+            "--ledger" if value == "postgres" => wanted.postgres = true,
+            _ => {
+                return Err(format!(
+                    "{word} {value}: expected --seconds N, --seed N or --ledger sqlite|postgres"
+                ));
+            }
+        }
+    }
+    Ok(wanted)
+}
+
+fn problem() -> Submission {
+    Submission::of(katsura(11))
+}
+
+fn worker() -> WorkerOptions {
+    WorkerOptions {
+        lane_width: Some(1),
+        ..WorkerOptions::default()
+    }
+}
+
+fn options(ledger: Option<String>) -> CoordinatorOptions {
+    CoordinatorOptions {
+        lease: Some(LEASE),
+        chunk_paths: Some(CHUNK),
+        ledger,
+        ..CoordinatorOptions::default()
+    }
+}
+
+fn main() -> ExitCode {
+    let wanted = match wanted() {
+        Ok(wanted) => wanted,
+        Err(message) => {
+            eprintln!("error: {message}");
+            return ExitCode::from(2);
+        }
+    };
+    let database = match wanted.postgres.then(Database::start) {
+        Some(None) => return ExitCode::SUCCESS,
+        Some(Some(database)) => Some(database),
+        None => None,
+    };
+    let quiet = {
+        let cluster = Cluster::with_workers(1);
+        let answer = cluster.client().solve(&problem());
+        cluster.stop();
+        answer
+    };
+    let mut cluster = Cluster::start(options(database.as_ref().map(Database::url)));
+    let mut logs = Vec::new();
+    for _ in 0..WORKERS {
+        cluster.add_worker(&worker());
+    }
+    let mut dice = Dice(wanted.seed);
+    let (mut jobs, mut paths) = (0, 0);
+    let mut faults: Vec<(Fault, Duration)> = Vec::new();
+    let begin = Instant::now();
+    while begin.elapsed() < Duration::from_secs(wanted.seconds) {
+        let job = cluster.client().submit(&problem());
+        loop {
+            let pause = Duration::from_millis(500 + dice.below(1500));
+            let next = Instant::now() + pause;
+            let mut ended = false;
+            while Instant::now() < next && !ended {
+                let now = cluster.client().progress(&job);
+                ended = now.is_ok_and(|p| has_ended(&p));
+                std::thread::sleep(Duration::from_millis(50));
+            }
+            if ended {
+                break;
+            }
+            let fault = loop {
+                let fault = Fault::ALL[dice.below(5) as usize];
+                if fault != Fault::KillDatabase || database.is_some() {
+                    break fault;
+                }
+            };
+            let before = cluster.client().progress(&job).map_or(0, |p| accepted(&p));
+            let victim = dice.below(WORKERS as u64) as usize;
+            let mut since = Instant::now();
+            match fault {
+                Fault::KillWorker => {
+                    let mut killed = cluster.workers.remove(victim);
+                    killed.kill();
+                    logs.push(killed.log());
+                    cluster.add_worker(&worker());
+                }
+                Fault::FreezeWorker => {
+                    cluster.workers[victim].freeze();
+                    std::thread::sleep(LEASE + Duration::from_millis(500));
+                    cluster.workers[victim].thaw();
+                }
+                Fault::KillCoordinator => {
+                    cluster.kill_coordinator();
+                    cluster.restart_coordinator();
+                }
+                Fault::FreezeCoordinator => {
+                    cluster.coordinator.freeze();
+                    std::thread::sleep(Duration::from_secs(1));
+                    cluster.coordinator.thaw();
+                    since = Instant::now();
+                }
+                Fault::KillDatabase => {
+                    if let Some(database) = &database {
+                        database.kill_and_start();
+                        since = Instant::now();
+                    }
+                }
+            }
+            // Going again: another chunk is accepted, or the job has ended.
+            let client = cluster.client();
+            client.progress_once(&job, "work goes on", |p| {
+                has_ended(p) || accepted(p) > before
+            });
+            faults.push((fault, since.elapsed()));
+            println!("{fault}: on after {:.2} s", since.elapsed().as_secs_f64());
+        }
+        let client = cluster.client();
+        client.wait_until_solved(&job);
+        assert!(
+            client.answer(&job) == quiet,
+            "job {job} has another answer than without faults (seed {})",
+            wanted.seed
+        );
+        let end = client.progress(&job).expect("the job is known");
+        assert_eq!(accepted(&end), total(&end));
+        (jobs, paths) = (jobs + 1, paths + total(&end));
+    }
+    logs.extend(cluster.workers.iter().map(|worker| worker.log()));
+    cluster.stop();
+    report(&wanted, begin.elapsed(), jobs, paths, &faults, &logs)
+}
+
+/// How many paths the workers began, by their logs.
+fn begun(logs: &[String]) -> u64 {
+    let range = |line: &str| -> Option<u64> {
+        let items = line.split("items=").nth(1)?.split_whitespace().next()?;
+        let (first, end) = items.split_once("..")?;
+        Some(end.parse::<u64>().ok()? - first.parse::<u64>().ok()?)
+    };
+    let lines = logs.iter().flat_map(|log| log.lines());
+    let lines = lines.filter(|line| line.contains("tracking lease="));
+    lines.filter_map(range).sum()
+}
+
+fn report(
+    wanted: &Wanted,
+    took: Duration,
+    jobs: u64,
+    paths: u64,
+    faults: &[(Fault, Duration)],
+    logs: &[String],
+) -> ExitCode {
+    let ledger = if wanted.postgres {
+        "PostgreSQL"
+    } else {
+        "SQLite"
+    };
+    println!(
+        "\nChaos on {ledger}, seed {}, {:.0} s",
+        wanted.seed,
+        took.as_secs_f64()
+    );
+    println!("  {jobs} jobs, {paths} paths: each answer as without faults, bit for bit");
+    for kind in Fault::ALL {
+        let mut times: Vec<_> = faults.iter().filter(|f| f.0 == kind).map(|f| f.1).collect();
+        times.sort_unstable();
+        if let Some(longest) = times.last() {
+            println!(
+                "  {:>3} x {kind}: work went on after {:.2} s (median), {:.2} s (longest)",
+                times.len(),
+                times[times.len() / 2].as_secs_f64(),
+                longest.as_secs_f64()
+            );
+        }
+    }
+    let begun = begun(logs);
+    let again = begun.saturating_sub(paths);
+    // Each worker holds two chunks; every fault may cost all that are held.
+    let held = 2 * WORKERS as u64 * CHUNK;
+    let bound = faults.len() as u64 * held + paths / 100;
+    println!(
+        "  {again} paths tracked again, {:.1} a fault; at most {bound} expected",
+        again as f64 / faults.len().max(1) as f64
+    );
+    let late = faults
+        .iter()
+        .filter(|(_, time)| *time > LEASE + PATIENCE)
+        .count();
+    if again > bound || late > 0 || begun < paths {
+        println!(
+            "  NOT AS PROMISED: {late} faults took longer than {:?}",
+            LEASE + PATIENCE
+        );
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}

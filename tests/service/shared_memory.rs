@@ -1,0 +1,136 @@
+//! Workers by shared memory: the same bits as by gRPC, whoever is killed, and gRPC where there is none.
+
+use crate::worker_lost::{nervous, problem, quiet_answer, slow_worker};
+use cognate_tests::client::{accepted, total};
+use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
+use cognate_tests::processes::until;
+
+/// Whether the coordinator offers shared memory here; where not, why is printed.
+fn offered(cluster: &Cluster) -> bool {
+    let log = cluster.coordinator.log();
+    match log.lines().find(|line| line.contains("no shared memory")) {
+        None => true,
+        Some(line) => {
+            println!("skipped: {line}");
+            false
+        }
+    }
+}
+
+fn by(transport: &'static str) -> WorkerOptions {
+    WorkerOptions {
+        transport: Some(transport),
+        ..slow_worker()
+    }
+}
+
+#[test]
+fn two_by_shared_memory_and_one_by_grpc_solve_one_job() {
+    let mut cluster = Cluster::start(nervous());
+    if !offered(&cluster) {
+        return;
+    }
+    for transport in ["auto", "shared-memory", "grpc"] {
+        cluster.add_worker(&by(transport));
+    }
+    let client = cluster.client();
+    until("all three are there", || {
+        (client.workers().len() == 3).then_some(())
+    });
+    let job = client.submit(&problem());
+    client.wait_until_solved(&job);
+    assert!(
+        client.answer(&job) == *quiet_answer(),
+        "the same answer, bit for bit"
+    );
+    let mut ways: Vec<_> = client
+        .workers()
+        .iter()
+        .map(|worker| {
+            assert!(worker.accepted_paths > 0, "{worker:?}");
+            worker.transport.clone()
+        })
+        .collect();
+    ways.sort();
+    assert_eq!(ways, ["grpc", "shared-memory", "shared-memory"]);
+    cluster.stop();
+}
+
+#[test]
+fn killed_workers_leave_nothing_in_the_way() {
+    let mut cluster = Cluster::start(nervous());
+    if !offered(&cluster) {
+        return;
+    }
+    for _ in 0..2 {
+        cluster.add_worker(&by("shared-memory"));
+    }
+    let client = cluster.client();
+    let job = client.submit(&problem());
+    for threshold in [100, 500] {
+        let before =
+            client.progress_once(&job, "some chunks are done", |p| accepted(p) >= threshold);
+        assert!(accepted(&before) < total(&before), "{before:?}");
+        let mut killed = cluster.workers.remove(0);
+        assert!(killed.log().contains("by shared memory"));
+        killed.kill();
+        cluster.add_worker(&by("shared-memory"));
+    }
+    client.wait_until_solved(&job);
+    assert!(
+        client.answer(&job) == *quiet_answer(),
+        "the same answer, bit for bit"
+    );
+    assert!(cluster.workers[1].log().contains("by shared memory"));
+    cluster.stop();
+}
+
+#[test]
+fn workers_outlive_their_coordinator_and_meet_the_next() {
+    let mut cluster = Cluster::start(nervous());
+    if !offered(&cluster) {
+        return;
+    }
+    cluster.add_worker(&by("shared-memory"));
+    let job = cluster.client().submit(&problem());
+    let some = |p: &cognate_protocol::v1::JobProgress| accepted(p) >= 100;
+    cluster
+        .client()
+        .progress_once(&job, "some chunks are done", some);
+    cluster.kill_coordinator();
+    cluster.restart_coordinator();
+    let client = cluster.client();
+    client.wait_until_solved(&job);
+    assert!(
+        client.answer(&job) == *quiet_answer(),
+        "the same answer, bit for bit"
+    );
+    let log = cluster.workers[0].log();
+    assert!(log.contains("shared memory ended; on by gRPC"), "{log}");
+    let again = log.matches("by shared memory").count();
+    assert!(again >= 2, "and again with the next coordinator: {log}");
+    cluster.stop();
+}
+
+#[test]
+fn where_dev_shm_is_too_full_work_goes_by_grpc() {
+    let mut cluster = Cluster::start(CoordinatorOptions {
+        least_free_mib: Some(1 << 40),
+        ..CoordinatorOptions::default()
+    });
+    cluster.add_worker(&WorkerOptions {
+        transport: Some("shared-memory"),
+        ..WorkerOptions::default()
+    });
+    let client = cluster.client();
+    let job = client.submit(&problem());
+    client.wait_until_solved(&job);
+    assert!(client.answer(&job) == *quiet_answer());
+    assert_eq!(client.workers()[0].transport, "grpc");
+    let why = "MiB are wanted";
+    let log = cluster.coordinator.log();
+    assert!(log.contains(why), "the coordinator says why: {log}");
+    let log = cluster.workers[0].log();
+    assert!(log.contains("no shared memory; by gRPC"), "{log}");
+    cluster.stop();
+}

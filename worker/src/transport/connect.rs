@@ -1,0 +1,321 @@
+//! Connect: a channel to a coordinator, with what it asks for: a token, a certificate.
+//!
+//! Workers and clients share it.
+
+use crate::config::Address;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use tonic::metadata::{Ascii, MetadataValue};
+use tonic::service::Interceptor;
+use tonic::transport::{Certificate, Channel, ClientTlsConfig, Endpoint, Identity, Uri};
+use tonic::{Request, Status};
+
+/// How long a coordinator may take to accept a connection.
+const CONNECT: Duration = Duration::from_secs(5);
+/// A connection that is silent for so long is asked whether it lives, also while idle.
+const KEEP_ALIVE: Duration = Duration::from_secs(10);
+/// And is given up if it does not answer within this.
+const KEEP_ALIVE_ANSWER: Duration = Duration::from_secs(10);
+
+/// What a caller may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Submit jobs and read results.
+    Client,
+    /// Track paths.
+    Worker,
+}
+
+impl Role {
+    /// As it is written in a token file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Client => "client",
+            Self::Worker => "worker",
+        }
+    }
+}
+
+/// Fewest characters of a token: what is shorter can be guessed.
+pub const SHORTEST_TOKEN: usize = 16;
+
+/// A file that holds no token, or not what it should.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {what}")]
+pub struct CredentialError {
+    /// Which file, or which option.
+    pub file: String,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+fn wrong(file: &Path, what: impl ToString) -> CredentialError {
+    CredentialError {
+        file: file.display().to_string(),
+        what: what.to_string(),
+    }
+}
+
+/// The tokens of a file with their roles, and the line of each that is malformed refused.
+///
+/// A line is `client TOKEN`, `worker TOKEN`, or a token alone, which is good for both; what
+/// follows `#` is a comment.
+pub fn read_tokens(file: &Path) -> Result<Vec<(Option<Role>, String)>, CredentialError> {
+    let text = std::fs::read_to_string(file).map_err(|error| wrong(file, error))?;
+    let mut tokens = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let (role, token) = match *words {
+            [] => continue,
+            [token] => (None, token),
+            ["client", token] => (Some(Role::Client), token),
+            ["worker", token] => (Some(Role::Worker), token),
+            _ => {
+                let what = format!(
+                    "line {}: expected `client TOKEN`, `worker TOKEN` or a token",
+                    number + 1
+                );
+                return Err(wrong(file, what));
+            }
+        };
+        if token.len() < SHORTEST_TOKEN || !token.bytes().all(|b| b.is_ascii_graphic()) {
+            let what = format!(
+                "line {}: a token has at least {SHORTEST_TOKEN} visible ASCII characters",
+                number + 1
+            );
+            return Err(wrong(file, what));
+        }
+        tokens.push((role, token.to_owned()));
+    }
+    if tokens.is_empty() {
+        return Err(wrong(file, "it holds no token"));
+    }
+    Ok(tokens)
+}
+
+/// The files that a caller names.
+#[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
+pub struct CredentialFiles {
+    /// A file with the token that the coordinator asks for
+    #[arg(long, value_name = "FILE", env = "COGNATE_TOKEN_FILE")]
+    pub token_file: Option<PathBuf>,
+    /// A file with the authority (PEM) that the coordinator's certificate is checked by
+    #[arg(long, value_name = "FILE", env = "COGNATE_TLS_CA")]
+    pub tls_ca: Option<PathBuf>,
+    /// A file with the own certificate chain (PEM), where the coordinator asks for one
+    #[arg(
+        long,
+        value_name = "FILE",
+        env = "COGNATE_TLS_CERTIFICATE",
+        requires = "tls_key"
+    )]
+    pub tls_certificate: Option<PathBuf>,
+    /// A file with the own private key (PEM)
+    #[arg(
+        long,
+        value_name = "FILE",
+        env = "COGNATE_TLS_KEY",
+        requires = "tls_certificate"
+    )]
+    pub tls_key: Option<PathBuf>,
+}
+
+/// What a caller shows and how it checks whom it talks to.
+#[derive(Clone, Debug, Default)]
+pub struct Credentials {
+    bearer: Option<MetadataValue<Ascii>>,
+    tls: Option<ClientTlsConfig>,
+}
+
+impl Credentials {
+    /// Reads the files that are named.
+    pub fn read(files: &CredentialFiles, role: Role) -> Result<Self, CredentialError> {
+        let pem = |file: &PathBuf| std::fs::read(file).map_err(|error| wrong(file, error));
+        let bearer = match &files.token_file {
+            None => None,
+            Some(file) => {
+                let tokens = read_tokens(file)?;
+                let fits = |(of, _): &&(Option<Role>, String)| of.is_none_or(|of| of == role);
+                let Some((_, token)) = tokens.iter().find(fits) else {
+                    return Err(wrong(
+                        file,
+                        format!("it holds no token of a {}", role.name()),
+                    ));
+                };
+                let header = format!("Bearer {token}");
+                let mut header: MetadataValue<Ascii> =
+                    header.parse().map_err(|error| wrong(file, error))?;
+                header.set_sensitive(true);
+                Some(header)
+            }
+        };
+        let tls = match &files.tls_ca {
+            None => None,
+            Some(file) => {
+                let authority = Certificate::from_pem(pem(file)?);
+                let config = ClientTlsConfig::new().ca_certificate(authority);
+                Some(match (&files.tls_certificate, &files.tls_key) {
+                    (Some(certificate), Some(key)) => {
+                        config.identity(Identity::from_pem(pem(certificate)?, pem(key)?))
+                    }
+                    _ => config,
+                })
+            }
+        };
+        Ok(Self { bearer, tls })
+    }
+
+    /// A channel to this address; connected when it is first used. Must be called within a tokio
+    /// runtime.
+    pub fn channel(&self, address: &Address) -> Result<Channel, UnusableAddress> {
+        let unusable = |why: String| UnusableAddress {
+            address: address.clone(),
+            why,
+        };
+        let uri = match address {
+            Address::Tcp(authority) => format!("http://{authority}"),
+            Address::Tls(authority) => format!("https://{authority}"),
+            // The host is never looked up: the connector below goes to the socket.
+            Address::Unix(_) => "http://localhost".to_owned(),
+        };
+        let mut endpoint = Endpoint::from_shared(uri)
+            .map_err(|error| unusable(error.to_string()))?
+            .connect_timeout(CONNECT)
+            .http2_keep_alive_interval(KEEP_ALIVE)
+            .keep_alive_timeout(KEEP_ALIVE_ANSWER)
+            .keep_alive_while_idle(true)
+            .tcp_nodelay(true);
+        if let Address::Tls(_) = address {
+            let Some(tls) = &self.tls else {
+                return Err(unusable(
+                    "--tls-ca names no authority to check it by".into(),
+                ));
+            };
+            endpoint = endpoint
+                .tls_config(tls.clone())
+                .map_err(|error| unusable(innermost(&error)))?;
+        }
+        Ok(match address {
+            Address::Tcp(_) | Address::Tls(_) => endpoint.connect_lazy(),
+            Address::Unix(path) => {
+                let path = path.clone();
+                endpoint.connect_with_connector_lazy(tower::service_fn(move |_: Uri| {
+                    let path = path.clone();
+                    async move {
+                        let stream = tokio::net::UnixStream::connect(path).await?;
+                        Ok::<_, std::io::Error>(hyper_util::rt::TokioIo::new(stream))
+                    }
+                }))
+            }
+        })
+    }
+
+    /// What puts the token into each call.
+    pub fn bearer(&self) -> Bearer {
+        Bearer(self.bearer.clone())
+    }
+}
+
+/// Puts a token into each call.
+#[derive(Clone, Debug, Default)]
+pub struct Bearer(Option<MetadataValue<Ascii>>);
+
+impl Bearer {
+    /// Into the headers of a call that is not made through an interceptor.
+    pub fn mark(&self, headers: &mut http::HeaderMap) {
+        if let Some(token) = &self.0
+            && let Ok(mut value) = http::HeaderValue::from_bytes(token.as_encoded_bytes())
+        {
+            value.set_sensitive(true);
+            headers.insert(http::header::AUTHORIZATION, value);
+        }
+    }
+}
+
+impl Interceptor for Bearer {
+    fn call(&mut self, mut request: Request<()>) -> Result<Request<()>, Status> {
+        if let Some(token) = &self.0 {
+            request
+                .metadata_mut()
+                .insert("authorization", token.clone());
+        }
+        Ok(request)
+    }
+}
+
+/// Why an address cannot be used at all.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{address} cannot be used: {why}")]
+pub struct UnusableAddress {
+    /// Which.
+    pub address: Address,
+    /// Why not.
+    pub why: String,
+}
+
+/// The cause that a person can act on ("connection refused").
+pub fn innermost(error: &dyn std::error::Error) -> String {
+    let mut error = error;
+    while let Some(cause) = error.source() {
+        error = cause;
+    }
+    error.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(text: &str) -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("tokens");
+        std::fs::write(&path, text).unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn tokens_have_roles() {
+        let (_folder, path) =
+            file("# of the laboratory\nclient 0123456789abcdef\nworker fedcba9876543210 # new\n\n");
+        let tokens = read_tokens(&path).unwrap();
+        assert_eq!(tokens[0], (Some(Role::Client), "0123456789abcdef".into()));
+        assert_eq!(tokens[1].0, Some(Role::Worker));
+        let files = CredentialFiles {
+            token_file: Some(path),
+            ..CredentialFiles::default()
+        };
+        let worker = Credentials::read(&files, Role::Worker).unwrap();
+        let mut headers = http::HeaderMap::new();
+        worker.bearer().mark(&mut headers);
+        assert_eq!(headers["authorization"], "Bearer fedcba9876543210");
+        assert!(
+            !format!("{worker:?}").contains("fedcba"),
+            "logs keep it secret"
+        );
+    }
+
+    #[test]
+    fn files_without_a_good_token_are_refused_by_name() {
+        let check = |text: &str, expected: &str| {
+            let (_folder, path) = file(text);
+            let files = CredentialFiles {
+                token_file: Some(path),
+                ..CredentialFiles::default()
+            };
+            let error = Credentials::read(&files, Role::Worker).unwrap_err();
+            let error = error.to_string();
+            assert!(
+                error.contains("tokens: ") && error.contains(expected),
+                "{error}"
+            );
+        };
+        check("", "holds no token");
+        check("worker short", "line 1: a token has at least 16");
+        check(
+            "\nmaster 0123456789abcdef",
+            "line 2: expected `client TOKEN`",
+        );
+        check("client 0123456789abcdef", "no token of a worker");
+    }
+}

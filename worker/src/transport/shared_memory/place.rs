@@ -1,0 +1,383 @@
+//! Place: a coordinator's folder below /dev/shm, and the settings of iceoryx2 that go with it.
+//!
+//! Who can read the token in its file `door` shares host, user and memory with the
+//! coordinator; who can lock that file knows that the coordinator is gone.
+
+use cognate_protocol::v1;
+use iceoryx2::config::Config;
+use iceoryx2::prelude::{
+    AllocationStrategy, FileName, Node, NodeBuilder, Path as IpcPath, SemanticString,
+    SignalHandlingMode, ipc_threadsafe,
+};
+use iceoryx2::service::port_factory::{event, request_response};
+use std::fmt::Debug;
+use std::fs::{File, TryLockError};
+use std::io::{self, Write};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt};
+use std::path::{Path, PathBuf};
+
+/// Version of the frames and of the settings below.
+pub const LAYOUT: u32 = 1;
+/// The largest message, in bytes: what is larger goes by gRPC. Default 16 MiB: the memory for a size
+/// is reserved for several messages of it, and copying is not what large ones wait for.
+pub const LARGEST_MESSAGE: usize = 16 << 20;
+/// Calls that one worker may have open at a time. Default 24: a pull, a renewal, 16 reports,
+/// goodbyes.
+pub const CALLS: usize = 24;
+/// While less is free in /dev/shm, nobody writes there, in bytes. Default 256 MiB: where it is full,
+/// the kernel ends the process that writes.
+pub const LEAST_FREE: u64 = 256 << 20;
+/// Bytes of the first slices; longer ones are made when they are needed.
+pub const FIRST_SLICE: usize = 4096;
+
+/// Workers of one coordinator by this way; more of them go by gRPC.
+const CLIENTS: usize = 64;
+/// Where memory is shared on Linux.
+const ROOT: &str = "/dev/shm";
+/// How the names of all places begin.
+const PREFIX: &str = "cognate-";
+/// The file with the token.
+const DOOR: &str = "door";
+
+/// The kind of all nodes, services and ports.
+pub type Ipc = ipc_threadsafe::Service;
+/// Requests and responses.
+pub type Calls = request_response::PortFactory<Ipc, [u8], (), [u8], ()>;
+/// What wakes the other side.
+pub type Bells = event::PortFactory<Ipc>;
+
+/// Why shared memory is not used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Unusable(pub String);
+
+/// What went wrong, with what was tried.
+pub fn failed<E: Debug>(what: &'static str) -> impl FnOnce(E) -> Unusable {
+    move |error| Unusable(format!("{what}: {error:?}"))
+}
+
+/// A coordinator's folder in shared memory.
+#[derive(Debug)]
+pub struct Place {
+    folder: PathBuf,
+    name: String,
+    token: String,
+    door: File,
+    least_free: u64,
+    ours: bool,
+}
+
+impl Place {
+    /// Makes a new one and locks its door; places of coordinators that are gone are removed.
+    pub fn create(least_free: u64) -> Result<Self, Unusable> {
+        sweep();
+        enough_free(least_free)?;
+        let token = uuid::Uuid::new_v4().simple().to_string();
+        let name = format!("{PREFIX}{}", &token[..8]);
+        let folder = Path::new(ROOT).join(&name);
+        let made = (|| {
+            std::fs::DirBuilder::new().mode(0o700).create(&folder)?;
+            // Locked before it has its name: whoever sweeps meets no unlocked door of the living.
+            let unnamed = folder.join("door.new");
+            let mut door = File::create_new(&unnamed)?;
+            door.lock()?;
+            door.write_all(token.as_bytes())?;
+            std::fs::rename(unnamed, folder.join(DOOR))?;
+            Ok::<_, io::Error>(door)
+        })();
+        Ok(Self {
+            door: made.map_err(failed("no folder in /dev/shm"))?,
+            folder,
+            name,
+            token,
+            least_free,
+            ours: true,
+        })
+    }
+
+    /// The place that a coordinator named, where it is the same on this side.
+    pub fn open(named: &v1::SharedMemory) -> Result<Self, Unusable> {
+        let no = |why: &str| Err(Unusable(why.to_owned()));
+        if named.folder.is_empty() {
+            return no("the coordinator offers none");
+        }
+        if named.layout != LAYOUT {
+            return no("the coordinator's version lays it out differently");
+        }
+        let folder = PathBuf::from(&named.folder);
+        let name = match folder.file_name().and_then(|name| name.to_str()) {
+            Some(name)
+                if folder.parent() == Some(Path::new(ROOT))
+                    && name.strip_prefix(PREFIX).is_some_and(is_short_hex) =>
+            {
+                name.to_owned()
+            }
+            _ => return no("the coordinator names a folder that is none of its kind"),
+        };
+        let (Ok(found), Ok(own)) = (
+            std::fs::symlink_metadata(&folder),
+            std::fs::metadata("/proc/self"),
+        ) else {
+            return no("the coordinator is on another host, or in a container");
+        };
+        if !found.is_dir() || found.uid() != own.uid() {
+            return no("the coordinator runs as another user");
+        }
+        let door = File::open(folder.join(DOOR)).map_err(failed("its door cannot be read"))?;
+        let token = io::read_to_string(&door).map_err(failed("its door cannot be read"))?;
+        if token != named.token {
+            return no("the coordinator is on another host, or in a container");
+        }
+        enough_free(named.least_free_bytes)?;
+        Ok(Self {
+            folder,
+            name,
+            token,
+            door,
+            least_free: named.least_free_bytes,
+            ours: false,
+        })
+    }
+
+    /// As it is named to workers.
+    pub fn named(&self) -> v1::SharedMemory {
+        v1::SharedMemory {
+            folder: self.folder.display().to_string(),
+            token: self.token.clone(),
+            layout: LAYOUT,
+            least_free_bytes: self.least_free,
+        }
+    }
+
+    /// Whether the coordinator that made this place still runs: its lock ends with it.
+    pub fn coordinator_lives(&self) -> bool {
+        if self.ours {
+            return true;
+        }
+        match self.door.try_lock_shared() {
+            Err(TryLockError::WouldBlock) => true,
+            Ok(()) => {
+                // Nothing depends on it: the lock is shared, and ends with the file.
+                let _ = self.door.unlock();
+                false
+            }
+            Err(TryLockError::Error(_)) => false,
+        }
+    }
+
+    /// Whether a message of so many bytes may be written now.
+    pub fn has_room(&self, bytes: usize) -> Result<(), Unusable> {
+        if bytes > LARGEST_MESSAGE {
+            return Err(Unusable(format!(
+                "a message of {bytes} bytes; at most {LARGEST_MESSAGE} go by shared memory"
+            )));
+        }
+        enough_free(self.least_free.saturating_add(2 * bytes as u64))
+    }
+
+    /// A node in this place, with nothing of a configuration file and no signal handlers.
+    pub fn node(&self) -> Result<Node<Ipc>, Unusable> {
+        let mut config = Config::default();
+        let root = IpcPath::new(self.folder.display().to_string().as_bytes());
+        config
+            .global
+            .set_root_path(&root.map_err(failed("the folder's name"))?);
+        let prefix = FileName::new(format!("{}-", self.name).as_bytes());
+        config.global.prefix = prefix.map_err(failed("the folder's name"))?;
+        // Cleaning is the coordinator's, at its own times.
+        config.global.node.cleanup_dead_nodes_on_creation = self.ours;
+        config.global.node.cleanup_dead_nodes_on_destruction = self.ours;
+        config.global.service.cleanup_dead_nodes_on_open = false;
+        NodeBuilder::new()
+            .config(&config)
+            .signal_handling_mode(SignalHandlingMode::Disabled)
+            .create::<Ipc>()
+            .map_err(failed("no node"))
+    }
+
+    /// The service of requests and responses.
+    pub fn calls(&self, node: &Node<Ipc>) -> Result<Calls, Unusable> {
+        let name = "cognate/calls".try_into().map_err(failed("a name"))?;
+        let builder = node
+            .service_builder(&name)
+            .request_response::<[u8], [u8]>()
+            // With it, the oldest message would be dropped in silence.
+            .enable_safe_overflow_for_requests(false)
+            .enable_safe_overflow_for_responses(false)
+            // A request whose asker is gone is not worth answering.
+            .enable_fire_and_forget_requests(false)
+            .max_active_requests_per_client(CALLS)
+            .max_loaned_requests(CALLS)
+            .max_response_buffer_size(1)
+            .max_borrowed_responses_per_pending_response(1)
+            .max_servers(1)
+            .max_clients(CLIENTS)
+            .max_nodes(CLIENTS + 1);
+        if self.ours {
+            builder.create().map_err(failed("no service"))
+        } else {
+            builder.open().map_err(failed("no service"))
+        }
+    }
+
+    /// The events that wake the coordinator.
+    pub fn requests(&self, node: &Node<Ipc>) -> Result<Bells, Unusable> {
+        self.bells(node, "cognate/requests", 1, CLIENTS)
+    }
+
+    /// The events that wake workers, each by the name of its listener.
+    pub fn responses(&self, node: &Node<Ipc>) -> Result<Bells, Unusable> {
+        self.bells(node, "cognate/responses", CLIENTS, 1)
+    }
+
+    fn bells(
+        &self,
+        node: &Node<Ipc>,
+        name: &str,
+        listeners: usize,
+        notifiers: usize,
+    ) -> Result<Bells, Unusable> {
+        let name = name.try_into().map_err(failed("a name"))?;
+        let builder = node
+            .service_builder(&name)
+            .event()
+            .max_listeners(listeners)
+            .max_notifiers(notifiers)
+            .max_nodes(CLIENTS + 1);
+        if self.ours {
+            builder.create().map_err(failed("no event"))
+        } else {
+            builder.open().map_err(failed("no event"))
+        }
+    }
+
+    /// How memory grows: with the size of the messages.
+    pub fn growth() -> AllocationStrategy {
+        AllocationStrategy::PowerOfTwo
+    }
+
+    /// Unlocks the door: workers see that the coordinator leaves.
+    #[must_use]
+    pub fn unlocked(self) -> Self {
+        // Where it cannot be unlocked, it is when this value is dropped.
+        let _ = self.door.unlock();
+        self
+    }
+
+    /// Removes the place with all that stands in it. For its coordinator, when its node is gone.
+    pub fn remove(self) {
+        remove(&self.folder, &self.name);
+    }
+}
+
+fn is_short_hex(text: &str) -> bool {
+    text.len() == 8 && text.bytes().all(|b| b.is_ascii_hexdigit())
+}
+
+/// Refuses where less than so many bytes are free.
+fn enough_free(bytes: u64) -> Result<(), Unusable> {
+    let found = rustix::fs::statvfs(ROOT).map_err(failed("/dev/shm cannot be asked"))?;
+    let free = found.f_bavail.saturating_mul(found.f_frsize);
+    if free >= bytes {
+        Ok(())
+    } else {
+        Err(Unusable(format!(
+            "{} MiB are free in {ROOT}, {} MiB are wanted",
+            free >> 20,
+            bytes >> 20
+        )))
+    }
+}
+
+/// Removes the places of coordinators that are gone.
+fn sweep() {
+    let Ok(entries) = std::fs::read_dir(ROOT) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if !name.strip_prefix(PREFIX).is_some_and(is_short_hex) {
+            continue;
+        }
+        let folder = entry.path();
+        // Another user's cannot be opened for writing, and a living coordinator's cannot be locked.
+        let door = File::options().write(true).open(folder.join(DOOR));
+        if door.is_ok_and(|door| door.try_lock().is_ok()) {
+            remove(&folder, &name);
+        }
+    }
+}
+
+/// What cannot be removed is met again by the next sweep.
+fn remove(folder: &Path, name: &str) {
+    let of_this_place = format!("{name}-");
+    for entry in std::fs::read_dir(ROOT).into_iter().flatten().flatten() {
+        if entry
+            .file_name()
+            .to_string_lossy()
+            .starts_with(&of_this_place)
+        {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+    let _ = std::fs::remove_dir_all(folder);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_known_by_its_token_and_its_coordinator_by_its_lock() {
+        let place = Place::create(1 << 20).unwrap();
+        let seen = Place::open(&place.named()).unwrap();
+        assert!(seen.coordinator_lives());
+        let why = |named: v1::SharedMemory| Place::open(&named).unwrap_err().to_string();
+        let named = || place.named();
+        assert!(
+            why(v1::SharedMemory {
+                token: "another".into(),
+                ..named()
+            })
+            .contains("another host")
+        );
+        assert!(
+            why(v1::SharedMemory {
+                folder: "/etc".into(),
+                ..named()
+            })
+            .contains("none of its kind")
+        );
+        assert!(
+            why(v1::SharedMemory {
+                layout: 0,
+                ..named()
+            })
+            .contains("version")
+        );
+        assert!(
+            why(v1::SharedMemory {
+                least_free_bytes: u64::MAX,
+                ..named()
+            })
+            .contains("free")
+        );
+        assert!(why(v1::SharedMemory::default()).contains("offers none"));
+        assert!(seen.has_room(LARGEST_MESSAGE + 1).is_err());
+        let folder = place.folder.clone();
+        // As a killed coordinator leaves it.
+        drop(place);
+        assert!(folder.exists());
+        assert!(!seen.coordinator_lives());
+        drop(seen);
+        let next = Place::create(1 << 20).unwrap();
+        assert!(!folder.exists(), "the next one has swept it away");
+        next.remove();
+    }
+
+    #[test]
+    fn nothing_is_made_where_nothing_is_free() {
+        let refusal = Place::create(u64::MAX).unwrap_err().to_string();
+        assert!(refusal.contains("free in /dev/shm"), "{refusal}");
+    }
+}

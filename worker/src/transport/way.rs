@@ -1,0 +1,187 @@
+//! Way: how one coordinator is called: by shared memory while it works, else by a connection.
+//!
+//! It stands below the generated client, so that every call is written once, whatever
+//! carries it.
+
+use super::connect::Bearer;
+use super::shared_memory::frame::Response;
+use super::shared_memory::place::Unusable;
+use super::shared_memory::{CallError, SharedMemory};
+use crate::config::{Address, TransportChoice};
+use bytes::Bytes;
+use cognate_protocol::v1::GetSharedMemoryRequest;
+use cognate_protocol::v1::worker_api_client::WorkerApiClient;
+use http_body_util::{BodyExt, Full};
+use std::future::Future;
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
+use tonic::body::Body;
+use tonic::transport::Channel;
+use tower::{BoxError, Service, ServiceExt};
+
+/// How long a coordinator may take to say whether it offers shared memory.
+const ANSWER: Duration = Duration::from_secs(2);
+/// After a refusal it is asked again after this, then after twice as long, and so on.
+const PAUSE: Duration = Duration::from_secs(2);
+/// At the latest after this: somebody may have made room.
+const LONGEST_PAUSE: Duration = Duration::from_secs(300);
+
+/// The ways to one coordinator.
+#[derive(Clone)]
+pub struct Way {
+    channel: Channel,
+    bearer: Bearer,
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    choice: TransportChoice,
+    address: Address,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    memory: Option<Arc<SharedMemory>>,
+    refusals: u32,
+    next: Option<Instant>,
+}
+
+impl Way {
+    /// Over this channel, and by shared memory where the choice allows it.
+    pub fn new(
+        channel: Channel,
+        bearer: Bearer,
+        address: Address,
+        choice: TransportChoice,
+    ) -> Self {
+        let state = Mutex::default();
+        Self {
+            channel,
+            bearer,
+            shared: Arc::new(Shared {
+                choice,
+                address,
+                state,
+            }),
+        }
+    }
+
+    fn state(&self) -> std::sync::MutexGuard<'_, State> {
+        let state = &self.shared.state;
+        state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The shared memory, while it works.
+    fn memory(&self) -> Option<Arc<SharedMemory>> {
+        let mut state = self.state();
+        let memory = state.memory.clone()?;
+        match memory.broken() {
+            None => Some(memory),
+            Some(why) => {
+                tracing::warn!(coordinator = %self.shared.address, why, "shared memory ended; on by gRPC");
+                state.memory = None;
+                state.refusals = 0;
+                state.next = Some(Instant::now() + PAUSE);
+                None
+            }
+        }
+    }
+
+    /// Whether calls go by shared memory now.
+    pub fn by_shared_memory(&self) -> bool {
+        self.memory().is_some()
+    }
+
+    /// Looks for shared memory, where it is wanted, not there, and not refused a moment ago.
+    pub async fn look_for_shared_memory(&self) {
+        if self.shared.choice == TransportChoice::Grpc || self.by_shared_memory() {
+            return;
+        }
+        if self.state().next.is_some_and(|next| Instant::now() < next) {
+            return;
+        }
+        let address = &self.shared.address;
+        match self.connect().await {
+            Ok(memory) => {
+                tracing::info!(coordinator = %address, "by shared memory");
+                let mut state = self.state();
+                state.memory = Some(Arc::new(memory));
+                state.next = None;
+            }
+            Err(Unusable(why)) => {
+                let refusals = {
+                    let mut state = self.state();
+                    let pause = PAUSE.saturating_mul(1 << state.refusals.min(16));
+                    state.next = Some(Instant::now() + pause.min(LONGEST_PAUSE));
+                    state.refusals = state.refusals.saturating_add(1);
+                    state.refusals
+                };
+                if self.shared.choice == TransportChoice::SharedMemory && refusals == 1 {
+                    tracing::warn!(coordinator = %address, why, "no shared memory; by gRPC");
+                } else {
+                    tracing::debug!(coordinator = %address, why, "no shared memory; by gRPC");
+                }
+            }
+        }
+    }
+
+    async fn connect(&self) -> Result<SharedMemory, Unusable> {
+        let mut client =
+            WorkerApiClient::with_interceptor(self.channel.clone(), self.bearer.clone());
+        let asked = client.get_shared_memory(GetSharedMemoryRequest {});
+        let named = match tokio::time::timeout(ANSWER, asked).await {
+            Ok(Ok(named)) => named.into_inner(),
+            Ok(Err(status)) => return Err(Unusable(status.message().to_owned())),
+            Err(_) => return Err(Unusable("the coordinator does not answer".to_owned())),
+        };
+        let connected = tokio::task::spawn_blocking(move || SharedMemory::connect(&named)).await;
+        connected.unwrap_or_else(|error| Err(Unusable(error.to_string())))
+    }
+}
+
+impl Service<http::Request<Body>> for Way {
+    type Response = http::Response<Body>;
+    type Error = BoxError;
+    type Future = Pin<Box<dyn Future<Output = Result<Self::Response, BoxError>> + Send>>;
+
+    fn poll_ready(&mut self, _: &mut Context<'_>) -> Poll<Result<(), BoxError>> {
+        // Each way has its own queue, asked when it is chosen.
+        Poll::Ready(Ok(()))
+    }
+
+    fn call(&mut self, mut request: http::Request<Body>) -> Self::Future {
+        self.bearer.mark(request.headers_mut());
+        let channel = self.channel.clone();
+        let Some(memory) = self.memory() else {
+            return Box::pin(async move { Ok(channel.oneshot(request).await?) });
+        };
+        Box::pin(async move {
+            let (head, body) = request.into_parts();
+            let body = body.collect().await?.to_bytes();
+            match memory.call(head.uri.path(), body.clone()).await {
+                Ok(Response::Answered { headers, body }) => Ok(response(headers, body)),
+                Ok(Response::Declined(why))
+                | Err(CallError::Declined(why) | CallError::Broken(why)) => {
+                    tracing::debug!(path = head.uri.path(), why, "this call by gRPC");
+                    // Every call may be made again, so it does not matter how far it had come.
+                    let again = http::Request::from_parts(head, Body::new(Full::new(body)));
+                    Ok(channel.oneshot(again).await?)
+                }
+            }
+        })
+    }
+}
+
+/// As it would have come over a connection: the status in the trailers.
+fn response(headers: http::HeaderMap, body: Bytes) -> http::Response<Body> {
+    let body = Full::new(body).with_trailers(std::future::ready(Some(Ok(headers))));
+    let mut response = http::Response::new(Body::new(body));
+    let kind = http::HeaderValue::from_static("application/grpc");
+    response
+        .headers_mut()
+        .insert(http::header::CONTENT_TYPE, kind);
+    response
+}
