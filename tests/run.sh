@@ -78,7 +78,7 @@ step "a PostgreSQL server for tests"
 postgres=${TMPDIR:-/tmp}/cognate-pg-$$
 trap 'tests/support/postgres.sh stop "$postgres"' EXIT
 tests/support/postgres.sh start "$postgres" && started=0 || started=$?
-if [ "$started" -eq 77 ]; then
+if [ "$started" -eq 77 ] && command -v apt-get >/dev/null; then
   install postgresql
   tests/support/postgres.sh start "$postgres" && started=0 || started=$?
 fi
