@@ -119,7 +119,7 @@ impl PolyhedralSolve {
                 outcome: match result.outcome {
                     PathOutcome::Failed(failure) => PathOutcome::Failed(failure),
                     // Where a generic system has no solution.
-                    PathOutcome::Regular | PathOutcome::Singular => {
+                    PathOutcome::Regular | PathOutcome::Singular | PathOutcome::Diverging => {
                         PathOutcome::Failed(Failure::EndgameUnsettled)
                     }
                 },

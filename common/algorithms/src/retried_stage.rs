@@ -516,7 +516,7 @@ pub(crate) fn can_be_helped(outcome: PathOutcome) -> bool {
             Failure::InvalidStartPoint | Failure::KilledItsWorker => false,
         },
         // It failed by its result: damaged, or a crossing.
-        PathOutcome::Regular | PathOutcome::Singular => true,
+        PathOutcome::Regular | PathOutcome::Singular | PathOutcome::Diverging => true,
     }
 }
 

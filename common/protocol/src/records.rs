@@ -141,6 +141,7 @@ impl Writer {
         self.0.push(match outcome {
             PathOutcome::Regular => 1,
             PathOutcome::Singular => 2,
+            PathOutcome::Diverging => 3,
             PathOutcome::Failed(Failure::InvalidStartPoint) => 16,
             PathOutcome::Failed(Failure::StepTooSmall) => 17,
             PathOutcome::Failed(Failure::TooManySteps) => 18,
@@ -324,6 +325,7 @@ impl<'a> Reader<'a> {
         let outcome = match self.array::<1>()?[0] {
             1 => PathOutcome::Regular,
             2 => PathOutcome::Singular,
+            3 => PathOutcome::Diverging,
             16 => PathOutcome::Failed(Failure::InvalidStartPoint),
             17 => PathOutcome::Failed(Failure::StepTooSmall),
             18 => PathOutcome::Failed(Failure::TooManySteps),

@@ -111,6 +111,7 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     let point = result.endpoint.to_double();
     let singular = match result.outcome {
         PathOutcome::Failed(_) => return Decision::clear(Verdict::Failed),
+        PathOutcome::Diverging => return Decision::clear(Verdict::AtInfinity),
         // A result that holds no point is as good as none.
         _ if !shape.holds(point) => return Decision::clear(Verdict::Failed),
         _ if !solves(result, tolerances) => return Decision::clear(Verdict::Failed),
@@ -273,6 +274,14 @@ mod tests {
             assert_eq!(verdict(&result), (Verdict::Finite, false), "norm {norm}");
         }
         let result = regular(0, &[(3e-17, 1e-17), (1.0, 0.0)]);
+        assert_eq!(verdict(&result), (Verdict::AtInfinity, false));
+    }
+
+    #[test]
+    fn what_diverges_is_at_infinity_wherever_it_was_left() {
+        let mut result = singular(0, &[(0.05, 0.0), (1.0, 0.0)], 1, &[]);
+        result.outcome = PathOutcome::Diverging;
+        (result.residual, result.accuracy) = (f64::INFINITY, f64::INFINITY);
         assert_eq!(verdict(&result), (Verdict::AtInfinity, false));
     }
 

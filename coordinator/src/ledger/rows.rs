@@ -173,7 +173,7 @@ pub struct Count {
 pub struct Outcomes {
     /// At a regular endpoint.
     pub regular: u64,
-    /// At a singular endpoint.
+    /// At a singular endpoint, or at infinity without one that was settled.
     pub singular: u64,
     /// Before the end.
     pub failed: u64,
@@ -187,7 +187,7 @@ impl Outcomes {
         for result in results.iter().filter(|r| r.certification.is_none()) {
             match result.outcome {
                 PathOutcome::Regular => outcomes.regular += 1,
-                PathOutcome::Singular => outcomes.singular += 1,
+                PathOutcome::Singular | PathOutcome::Diverging => outcomes.singular += 1,
                 PathOutcome::Failed(_) => outcomes.failed += 1,
             }
         }

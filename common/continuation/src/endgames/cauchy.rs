@@ -25,6 +25,12 @@ const FIRST_TURNS: u32 = 4;
 /// A power sum counts as 0 below this part of the largest it could be: sheets that end closer
 /// together than about 1e-6 are told apart by a smaller radius only.
 const COALESCED: f64 = 1e-12;
+/// Smallest exponent with which a coordinate is believed to vanish.
+const LEAST_POWER: f64 = 0.01;
+/// A coordinate is a power of t where its valuations differ by less than this part.
+const UNIFORM: f64 = 0.5;
+/// And goes on to be where their mean changes by less than this part from radius to radius.
+const STEADY: f64 = 0.02;
 /// Means over all samples and over every other one must agree to this before a mean is looked at.
 const RESOLVED: f64 = 1e-3;
 
@@ -42,6 +48,8 @@ pub enum Next {
     Inward(f64),
     /// Two radii agree.
     Settled(Settled),
+    /// The path goes to infinity, as the valuations say; where it ends there is not settled.
+    Diverging,
     /// There is no use in smaller radii.
     Unsettled,
 }
@@ -77,6 +85,10 @@ pub struct Cauchy {
     /// At how many radii the path did not close.
     unclosed: u32,
     noise: f64,
+    /// Valuations of the homogenising coordinates at all samples, sample after sample.
+    valuations: Vec<Complex64>,
+    /// Those that were found at the radius before.
+    powers: Vec<Option<f64>>,
     infinity: Vec<Winding>,
     previous: Option<(u32, Vec<Complex64>)>,
 }
@@ -86,6 +98,16 @@ pub struct Cauchy {
 fn generic_form(x: &[Complex64]) -> Complex64 {
     let mut stream = RandomStream::new(0, Purpose::Probe, 1);
     x.iter().map(|z| z * stream.unit()).sum()
+}
+
+/// The exponent, where all valuations are one positive number.
+fn power<'a>(valuations: impl Iterator<Item = &'a Complex64> + Clone) -> Option<f64> {
+    let count = valuations.clone().count() as f64;
+    let mean = valuations.clone().sum::<Complex64>() / count;
+    let off = valuations.fold(0.0f64, |m, v| m.max((v - mean).norm_sqr()));
+    let uniform = off <= (UNIFORM * mean.re) * (UNIFORM * mean.re);
+    let real = mean.im.abs() <= STEADY * mean.re;
+    (mean.re >= LEAST_POWER && uniform && real).then_some(mean.re)
 }
 
 /// Largest modulus of the difference.
@@ -107,6 +129,7 @@ impl Cauchy {
     pub fn forget(&mut self) {
         self.previous = None;
         self.unclosed = 0;
+        self.powers.clear();
     }
 
     /// All turns made for this path.
@@ -157,6 +180,7 @@ impl Cauchy {
         self.vertex = 0;
         self.turns = 0;
         self.noise = noise;
+        self.valuations.clear();
         self.infinity.resize(homogenizing.len(), Winding::default());
         for (winding, &z) in self.infinity.iter_mut().zip(homogenizing) {
             winding.clear();
@@ -165,14 +189,17 @@ impl Cauchy {
         Next::Vertex { radius, vertex: 1 }
     }
 
-    /// The path stands at the vertex that was asked for. `noise`: relative error of the point.
+    /// The path stands at the vertex that was asked for. `noise`: relative error of the point;
+    /// `valuations`: t x'/x of the homogenising coordinates x.
     pub fn at_vertex(
         &mut self,
         point: &[Complex64],
         noise: f64,
         homogenizing: &[Complex64],
+        valuations: &[Complex64],
         settings: &Settings,
     ) -> Next {
+        self.valuations.extend_from_slice(valuations);
         self.noise = self.noise.max(noise);
         for (winding, &z) in self.infinity.iter_mut().zip(homogenizing) {
             winding.sample(z);
@@ -195,6 +222,9 @@ impl Cauchy {
             if self.turns >= patience.min(settings.max_winding_number) {
                 self.unclosed += 1;
                 self.previous = None;
+                if self.diverges() {
+                    return Next::Diverging;
+                }
                 return self.inward(SHRINKAGE, settings);
             }
             self.add(point);
@@ -279,6 +309,26 @@ impl Cauchy {
         largest.map(|part| part.min(1.0))
     }
 
+    /// Whether some homogenising coordinate is a positive power of t here, and was the same at the
+    /// radius before: its valuation t x'/x is one number all around, and that number stays.
+    ///
+    /// A path to infinity need not close within a few turns for that. (Valuations as evidence of
+    /// divergence: Breiding, Timme, HomotopyContinuation.jl, 2018; Huber, Verschelde, Polyhedral
+    /// end games, 1998.)
+    fn diverges(&mut self) -> bool {
+        let groups = self.infinity.len();
+        let powers: Vec<Option<f64>> = (0..groups)
+            .map(|k| power(self.valuations.iter().skip(k).step_by(groups)))
+            .collect();
+        let stays = |(now, before): (&Option<f64>, &Option<f64>)| match (now, before) {
+            (Some(now), Some(before)) => (now - before).abs() <= STEADY * now,
+            _ => false,
+        };
+        let diverges = powers.iter().zip(&self.powers).any(stays);
+        self.powers = powers;
+        diverges
+    }
+
     fn add(&mut self, point: &[Complex64]) {
         self.samples.push(generic_form(point));
         let even = self.vertex.is_multiple_of(2);
@@ -328,7 +378,7 @@ mod tests {
                 Next::Vertex { .. } => {
                     at += 1;
                     let x = point(radius, at);
-                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &settings);
+                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &[], &settings);
                 }
                 Next::Inward(r) => {
                     radius = r;
@@ -360,6 +410,53 @@ mod tests {
         }
     }
 
+    /// A path with so many sheets that no turn closes: x_0 = t^(1/50) (1 + 0.03 t^(1/50)), or the same
+    /// with a small limit that is not 0.
+    fn drive_unclosed(limit: f64) -> Next {
+        let settings = Settings::default();
+        let circle = roots_of_unity(VERTICES * 50);
+        let mut cauchy = Cauchy::default();
+        let (mut radius, mut at) = (1e-3f64, 0u32);
+        // The real 50th root of r, by Newton's method.
+        let root = |r: f64| {
+            let mut s: f64 = 1.0;
+            for _ in 0..2000 {
+                s -= (s - r / s.powi(49)) / 50.0;
+            }
+            s
+        };
+        let one = Complex64::new(1.0, 0.0);
+        let sample = |radius: f64, at: u32| {
+            let s = circle[(at % (VERTICES * 50)) as usize] * root(radius);
+            let x = s * (one + s * 0.03) + limit;
+            // t d/dt = (s/50) d/ds.
+            (vec![x, one + s], s / 50.0 * (one + s * 0.06) / x)
+        };
+        let (x, _) = sample(radius, 0);
+        let mut next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
+        loop {
+            match next {
+                Next::Vertex { .. } => {
+                    at += 1;
+                    let (x, valuation) = sample(radius, at);
+                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &[valuation], &settings);
+                }
+                Next::Inward(r) => {
+                    (radius, at) = (r, 0);
+                    let (x, _) = sample(radius, 0);
+                    next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
+                }
+                end => return end,
+            }
+        }
+    }
+
+    #[test]
+    fn a_path_that_does_not_close_diverges_by_its_valuation_only() {
+        assert_eq!(drive_unclosed(0.0), Next::Diverging);
+        assert_eq!(drive_unclosed(1.0), Next::Unsettled);
+    }
+
     #[test]
     fn endpoints_that_are_only_close_are_told_apart() {
         // x = 1 +- sqrt(t + d^2) ends at two regular points; large turns see a double one.
@@ -389,7 +486,7 @@ mod tests {
                         let to = circle[(vertex % VERTICES) as usize] * radius;
                         let x = follow(t, to);
                         t = to;
-                        next = cauchy.at_vertex(&x, 1e-15, &[], &settings);
+                        next = cauchy.at_vertex(&x, 1e-15, &[], &[], &settings);
                     }
                     Next::Inward(r) => {
                         // After a closed curve the path is where it began.
@@ -399,7 +496,7 @@ mod tests {
                         next = cauchy.begin(radius, &x, &x, 1e-15, &[]);
                     }
                     Next::Settled(settled) => break settled,
-                    Next::Unsettled => panic!("unsettled at distance {distance}"),
+                    Next::Diverging | Next::Unsettled => panic!("{next:?} at {distance}"),
                 }
             };
             assert_eq!(settled.winding_number, 1, "distance {distance}");

@@ -36,6 +36,8 @@ const ARRIVED: f64 = 1e-7;
 /// A refinement is accepted when its second correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
 
+/// Smallest step around 0, or towards it, as a part of the distance from it.
+const LEAST_ARC: f64 = 1e-9;
 /// Part of the way left below which a step speaks of a singularity beside the path: towards one
 /// at its end, steps are a third of the way or so.
 const PASSING: f64 = 0.1;
@@ -105,6 +107,11 @@ impl<R: Real> Batch<R> {
     /// Where the paths are.
     fn here(&self) -> &[Complex<R>] {
         &self.x[self.newest]
+    }
+
+    /// Where they go.
+    fn tangent_here(&self) -> &[Complex<R>] {
+        &self.tangent[self.newest]
     }
 
     /// Where a path is, in t.
@@ -302,11 +309,15 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let mut remaining = way.norm_sqr();
         remaining.sqrt();
         let reaches = remaining.less_equal(&batch.h);
+        // The last two steps are equal: a tiny last one would show nothing but noise.
+        let mut half = remaining.clone();
+        half.mul(&control(0.5));
         let mut tried = batch.h.clone();
-        tried.min(&remaining);
-        tried.select(batch.refine, &control(0.0));
-        let mut ratio = batch.h.clone();
+        tried.select(half.less_equal(&batch.h), &half);
+        tried.select(reaches, &remaining);
+        let mut ratio = tried.clone();
         ratio.div(&remaining);
+        tried.select(batch.refine, &control(0.0));
         let mut t = batch.t[newest].clone();
         way.scale(&ratio);
         t.add(&way);
@@ -601,8 +612,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         _ => Phase::Sampling,
                     };
                     self.batch.refine(lane);
-                } else if self.lanes[lane].starved >= STARVED
-                    || h < settings.min_step.max(1e-9 * t.norm_sqr().sqrt())
+                } else if self.lanes[lane].starved >= STARVED || h < LEAST_ARC * t.norm_sqr().sqrt()
                 {
                     self.batch
                         .read_here(lane, &mut self.point, &mut self.tangent);
@@ -615,7 +625,11 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 if !step.accepted {
                     return self.give_up(lane, t, Failure::EndgameUnsettled);
                 }
-                let homogenizing = self.homogenizing();
+                let homogenizing = self.homogenizing(false);
+                let valuations = match phase {
+                    Phase::Settling => Vec::new(),
+                    _ => self.valuations(t, &homogenizing),
+                };
                 let path = &mut self.lanes[lane];
                 let next = if phase == Phase::Settling {
                     path.first_turn
@@ -628,8 +642,13 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         &homogenizing,
                     )
                 } else {
-                    path.cauchy
-                        .at_vertex(&self.point, step.correction, &homogenizing, settings)
+                    path.cauchy.at_vertex(
+                        &self.point,
+                        step.correction,
+                        &homogenizing,
+                        &valuations,
+                        settings,
+                    )
                 };
                 self.obey(lane, next);
             }
@@ -709,6 +728,13 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     settled.infinity_turns,
                 );
             }
+            cauchy::Next::Diverging => {
+                let path = &self.lanes[lane];
+                let t = Complex64::new(path.cauchy.radius(), 0.0);
+                let report = crate::refine::Report::unknown();
+                self.record(lane, PathOutcome::Diverging, t, report, None, Vec::new());
+                self.refill(lane);
+            }
             cauchy::Next::Unsettled => {
                 let t = self.batch.t(lane);
                 self.give_up(lane, t, Failure::EndgameUnsettled);
@@ -717,17 +743,34 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// Values of the homogenising coordinates at `self.point`, which is that of the one lane
-    /// where there is one: then with all its digits.
-    fn homogenizing(&self) -> Vec<Complex64> {
+    /// where there is one: then with all its digits. With `back`, at the point less its tangent.
+    fn homogenizing(&self, back: bool) -> Vec<Complex64> {
+        let homotopy = self.room.homotopy;
         if R::WIDTH == 1 {
-            self.room
-                .homotopy
-                .homogenizing(self.context, self.batch.here())
+            let here = self.batch.here();
+            if !back {
+                return homotopy.homogenizing(self.context, here);
+            }
+            let mut point = here.to_vec();
+            for (x, tangent) in point.iter_mut().zip(self.batch.tangent_here()) {
+                x.sub(tangent);
+            }
+            homotopy.homogenizing(self.context, &point)
         } else {
-            let native = |z: &Complex64| Complex { re: z.re, im: z.im };
-            let point: Vec<Complex<f64>> = self.point.iter().map(native).collect();
-            self.room.homotopy.homogenizing((), &point)
+            let native = |z: Complex64| Complex { re: z.re, im: z.im };
+            let both = self.point.iter().zip(&self.tangent);
+            let point: Vec<Complex<f64>> = both
+                .map(|(&x, &tangent)| native(if back { x - tangent } else { x }))
+                .collect();
+            homotopy.homogenizing((), &point)
         }
+    }
+
+    /// t x'/x of the homogenising coordinates, which are linear in the chart's.
+    fn valuations(&self, t: Complex64, homogenizing: &[Complex64]) -> Vec<Complex64> {
+        let back = self.homogenizing(true);
+        let both = homogenizing.iter().zip(back);
+        both.map(|(x, back)| t * (x - back) / x).collect()
     }
 
     /// A path has ended at `self.point`; the lane takes the next one.

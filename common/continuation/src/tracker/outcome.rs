@@ -9,6 +9,9 @@ pub enum PathOutcome {
     Regular,
     /// The endgame settled on an endpoint at which the Jacobian is singular.
     Singular,
+    /// A homogenising coordinate goes to 0 like a positive power of t: the path goes to infinity.
+    /// Where it ends there was not settled.
+    Diverging,
     /// Stopped before that.
     Failed(Failure),
 }

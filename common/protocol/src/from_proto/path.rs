@@ -351,6 +351,7 @@ fn outcome(outcome: i32) -> Result<PathOutcome, ProtocolError> {
     Ok(match M::try_from(outcome) {
         Ok(M::Regular) => PathOutcome::Regular,
         Ok(M::Singular) => PathOutcome::Singular,
+        Ok(M::Diverging) => PathOutcome::Diverging,
         Ok(M::InvalidStartPoint) => PathOutcome::Failed(Failure::InvalidStartPoint),
         Ok(M::StepTooSmall) => PathOutcome::Failed(Failure::StepTooSmall),
         Ok(M::TooManySteps) => PathOutcome::Failed(Failure::TooManySteps),

@@ -160,6 +160,7 @@ fn outcome(outcome: PathOutcome) -> v1::PathOutcome {
     match outcome {
         PathOutcome::Regular => M::Regular,
         PathOutcome::Singular => M::Singular,
+        PathOutcome::Diverging => M::Diverging,
         PathOutcome::Failed(Failure::InvalidStartPoint) => M::InvalidStartPoint,
         PathOutcome::Failed(Failure::StepTooSmall) => M::StepTooSmall,
         PathOutcome::Failed(Failure::TooManySteps) => M::TooManySteps,
