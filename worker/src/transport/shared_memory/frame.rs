@@ -169,7 +169,8 @@ mod tests {
         }
         for at in 0..told.len() {
             let mut changed = told.clone();
-            changed[at] ^= 0x20;
+            // Another bit would only change the case of a header's name, which means nothing.
+            changed[at] ^= 0x01;
             assert_ne!(Response::decode(&changed), Ok(answered()), "at {at}");
         }
     }
