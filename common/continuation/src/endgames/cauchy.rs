@@ -354,36 +354,41 @@ mod tests {
     use super::*;
     use cognate_numeric::roots_of_unity::roots_of_unity;
 
-    /// Drives the endgame along x(s) with s^c = t, all sheets known exactly.
-    fn drive(c: u32, path: &dyn Fn(Complex64) -> Vec<Complex64>) -> (Next, u32) {
+    /// Drives the endgame from t = `radius` along x(s) with s^c = t, all sheets known exactly;
+    /// `valuation` is that of x_0, where it is asked for.
+    fn drive(
+        c: u32,
+        mut radius: f64,
+        path: &dyn Fn(Complex64) -> Vec<Complex64>,
+        valuation: &dyn Fn(Complex64) -> Vec<Complex64>,
+    ) -> (Next, u32) {
         let settings = Settings::default();
         let fine = roots_of_unity(VERTICES * c);
         let mut cauchy = Cauchy::default();
         let root = |r: f64| {
             // The real c-th root of r, by Newton's method.
             let mut s: f64 = 1.0;
-            for _ in 0..400 {
+            for _ in 0..2000 {
                 s -= (s - r / s.powi(c as i32 - 1)) / f64::from(c);
             }
             s
         };
-        let mut radius = 0.05;
         let mut at = 0u32;
-        let point =
-            |radius: f64, at: u32| path(fine[(at % (VERTICES * c)) as usize] * root(radius));
-        let x = point(radius, 0);
+        let place = |radius: f64, at: u32| fine[(at % (VERTICES * c)) as usize] * root(radius);
+        let x = path(place(radius, 0));
         let mut next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
         for _ in 0..10_000 {
             match next {
                 Next::Vertex { .. } => {
                     at += 1;
-                    let x = point(radius, at);
-                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &[], &settings);
+                    let s = place(radius, at);
+                    let x = path(s);
+                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &valuation(s), &settings);
                 }
                 Next::Inward(r) => {
                     radius = r;
                     at = 0;
-                    let x = point(radius, 0);
+                    let x = path(place(radius, 0));
                     next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
                 }
                 _ => break,
@@ -396,9 +401,8 @@ mod tests {
     fn puiseux_series_end_with_their_winding_number_and_limit() {
         let one = Complex64::new(1.0, 0.0);
         for c in 1..=6 {
-            let (next, _) = drive(c, &|s| {
-                vec![s * s * (one + s), one * 2.0 + s - s * s / (one - s)]
-            });
+            let path = |s| vec![s * s * (one + s), one * 2.0 + s - s * s / (one - s)];
+            let (next, _) = drive(c, 0.05, &path, &|_| Vec::new());
             let Next::Settled(settled) = next else {
                 panic!("c = {c}: {next:?}")
             };
@@ -410,51 +414,18 @@ mod tests {
         }
     }
 
-    /// A path with so many sheets that no turn closes: x_0 = t^(1/50) (1 + 0.03 t^(1/50)), or the same
-    /// with a small limit that is not 0.
-    fn drive_unclosed(limit: f64) -> Next {
-        let settings = Settings::default();
-        let circle = roots_of_unity(VERTICES * 50);
-        let mut cauchy = Cauchy::default();
-        let (mut radius, mut at) = (1e-3f64, 0u32);
-        // The real 50th root of r, by Newton's method.
-        let root = |r: f64| {
-            let mut s: f64 = 1.0;
-            for _ in 0..2000 {
-                s -= (s - r / s.powi(49)) / 50.0;
-            }
-            s
-        };
-        let one = Complex64::new(1.0, 0.0);
-        let sample = |radius: f64, at: u32| {
-            let s = circle[(at % (VERTICES * 50)) as usize] * root(radius);
-            let x = s * (one + s * 0.03) + limit;
-            // t d/dt = (s/50) d/ds.
-            (vec![x, one + s], s / 50.0 * (one + s * 0.06) / x)
-        };
-        let (x, _) = sample(radius, 0);
-        let mut next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
-        loop {
-            match next {
-                Next::Vertex { .. } => {
-                    at += 1;
-                    let (x, valuation) = sample(radius, at);
-                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &[valuation], &settings);
-                }
-                Next::Inward(r) => {
-                    (radius, at) = (r, 0);
-                    let (x, _) = sample(radius, 0);
-                    next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
-                }
-                end => return end,
-            }
-        }
-    }
-
+    /// So many sheets that no turn closes: x_0 = t^(1/50) (1 + 0.03 t^(1/50)) goes to 0, the same
+    /// with a limit does not.
     #[test]
     fn a_path_that_does_not_close_diverges_by_its_valuation_only() {
-        assert_eq!(drive_unclosed(0.0), Next::Diverging);
-        assert_eq!(drive_unclosed(1.0), Next::Unsettled);
+        let one = Complex64::new(1.0, 0.0);
+        for (limit, expected) in [(0.0, Next::Diverging), (1.0, Next::Unsettled)] {
+            let x = |s: Complex64| s * (one + s * 0.03) + limit;
+            let path = |s: Complex64| vec![x(s), one + s];
+            // t d/dt = (s/50) d/ds.
+            let valuation = |s: Complex64| vec![s / 50.0 * (one + s * 0.06) / x(s)];
+            assert_eq!(drive(50, 1e-3, &path, &valuation).0, expected);
+        }
     }
 
     #[test]
@@ -508,7 +479,8 @@ mod tests {
     #[test]
     fn a_branch_point_inside_the_first_radius_is_left_outside() {
         let one = Complex64::new(1.0, 0.0);
-        let (next, turns) = drive(1, &|t| vec![one + t, one / (t - 0.01)]);
+        let path = |t| vec![one + t, one / (t - 0.01)];
+        let (next, turns) = drive(1, 0.05, &path, &|_| Vec::new());
         let Next::Settled(settled) = next else {
             panic!("{next:?}")
         };

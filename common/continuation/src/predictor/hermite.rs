@@ -138,7 +138,7 @@ mod tests {
                     }
                 }
                 sum.sub(&power(&ahead, n));
-                assert!(sum.norm_sqr() < 1e-22, "{points} points, degree {n}");
+                assert!(sum.norm_sqr() < 1e-24, "{points} points, degree {n}");
             }
         }
     }

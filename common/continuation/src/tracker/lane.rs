@@ -39,14 +39,6 @@ impl Phase {
             Self::Sampling => "sample",
         }
     }
-
-    /// Phases that consist of one step of length 0.
-    pub fn refines(self) -> bool {
-        matches!(
-            self,
-            Self::Starting | Self::Arriving | Self::Settling | Self::Sampling
-        )
-    }
 }
 
 /// What one path knows of itself.

@@ -183,6 +183,8 @@ pub(super) struct Lockstep<'a, R: Real> {
     room: Room<'a>,
     context: R::Context,
     settings: Settings,
+    /// Larger first corrections than this are not noise of this arithmetic.
+    noise: f64,
     batch: Batch<R>,
     lanes: Vec<Lane>,
     scratch: <Evaluator as Evaluate<R>>::Scratch,
@@ -220,10 +222,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let homotopy = room.homotopy;
         let n = homotopy.dimension();
         let parameters = homotopy.parameter_count();
+        let settings = room.settings();
+        let noise =
+            0.01 * settings.predictor_tolerance * unit_roundoff(room.bits) / unit_roundoff(DOUBLE);
         Self {
             stage: room.stage,
             context,
-            settings: room.settings(),
+            settings,
+            noise,
             batch: Batch::new(context, n, parameters),
             lanes: vec![Lane::default(); R::WIDTH],
             scratch: Evaluate::<R>::scratch(homotopy.evaluator(), context),
@@ -456,9 +462,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
         batch.known[next] = R::Mask::splat(false);
         batch.newest = next;
 
-        // Larger corrections than these are not noise.
-        let small = 0.01 * settings.predictor_tolerance * unit_roundoff(self.room.bits)
-            / unit_roundoff(DOUBLE);
         // What only single paths know: a glance at each, and more where something happened.
         for lane in 0..R::WIDTH {
             if self.lanes[lane].phase == Phase::Idle {
@@ -482,7 +485,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 path.rejections += 1;
                 // A correction that neither Newton's method nor a shorter step makes smaller is
                 // noise.
-                let stuck = step.predictor_error <= small
+                let stuck = step.predictor_error <= self.noise
                     && step.correction > CONTRACTION * step.predictor_error
                     && step.correction > 0.3 * path.last_rejected;
                 path.starved += u32::from(stuck);
@@ -626,12 +629,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     return self.give_up(lane, t, Failure::EndgameUnsettled);
                 }
                 let homogenizing = self.homogenizing(false);
-                let valuations = match phase {
-                    Phase::Settling => Vec::new(),
-                    _ => self.valuations(t, &homogenizing),
-                };
-                let path = &mut self.lanes[lane];
                 let next = if phase == Phase::Settling {
+                    let path = &mut self.lanes[lane];
                     path.first_turn
                         .get_or_insert_with(|| (t.re, self.point.clone()));
                     path.cauchy.begin(
@@ -642,7 +641,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         &homogenizing,
                     )
                 } else {
-                    path.cauchy.at_vertex(
+                    let valuations = self.valuations(t, &homogenizing);
+                    self.lanes[lane].cauchy.at_vertex(
                         &self.point,
                         step.correction,
                         &homogenizing,
