@@ -2,6 +2,7 @@
 
 mod any_split_same_answer;
 mod bad_input;
+mod body_guidance;
 mod certificates;
 mod coordinator_restarted;
 mod lease_expired;

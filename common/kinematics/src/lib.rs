@@ -2,7 +2,7 @@
 //! that can be built. Knows no service: equations and numbers only.
 //!
 //! In reading order: points and angles of the plane; a linkage and its type; what driving it does;
-//! what it is worth; the nine-point problem, from points to classes of linkages.
+//! what it is worth; the nine-point problem, from points to classes of linkages; five poses of a body.
 //!
 //! ```
 //! use cognate_kinematics::linkage::{Linkage, Mobility, Side};
@@ -21,6 +21,7 @@
 #![forbid(unsafe_code)]
 
 pub mod assessment;
+pub mod body_guidance;
 pub mod coupler_curve;
 pub mod drive;
 pub mod linkage;

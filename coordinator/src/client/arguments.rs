@@ -270,6 +270,8 @@ pub struct Solve {
 pub enum Synthesize {
     /// Every four-bar linkage whose coupler point passes nine given points
     NinePoint(NinePoint),
+    /// Every four-bar linkage that takes a body through five given poses
+    BodyGuidance(BodyGuidance),
 }
 
 /// How linkages are shown.
@@ -302,6 +304,30 @@ pub struct NinePoint {
     /// line of JSON for each; every set is answered on a line as soon as it is settled
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "output"])]
     pub targets: Option<PathBuf>,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize body-guidance`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize body-guidance poses.csv
+  cognate synthesize body-guidance poses.csv --output linkages
+
+poses.csv has a header x,y,angle and five rows, angles in degrees. JSON: {\"poses\": [[x, y, angle], ...]}.")]
+pub struct BodyGuidance {
+    /// Five poses: CSV with a header x,y,angle (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// The options of every synthesis.
+#[derive(Clone, Debug, Args)]
+pub struct SynthesisArguments {
     /// Seed of everything random; the same seed gives the same bits
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

@@ -20,7 +20,8 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         | Command::Workers(_)
         | Command::Worker(_)
         | Command::Info(_) => None,
-        Command::Synthesize(Synthesize::NinePoint(c)) => precision(c.precision),
+        Command::Synthesize(Synthesize::NinePoint(c)) => precision(c.common.precision),
+        Command::Synthesize(Synthesize::BodyGuidance(c)) => precision(c.common.precision),
         Command::Fleet(_) => Some("fleet (workers kept in Slurm)".into()),
     };
     match missing {

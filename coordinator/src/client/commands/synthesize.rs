@@ -1,15 +1,19 @@
-//! `cognate synthesize`: from points to linkages, on a coordinator of its own or on a running one.
+//! `cognate synthesize`: from points or poses to linkages, on a coordinator of its own or on a running one.
 
-use crate::client::arguments::{NinePoint, SynthesisFormat, Synthesize};
+use crate::client::arguments::{
+    BodyGuidance, NinePoint, SynthesisArguments, SynthesisFormat, Synthesize,
+};
 use crate::client::connection::Target;
 use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output;
+use crate::client::output::linkages::guides::{self, Guides};
 use crate::client::output::linkages::{self, Sheet};
 use crate::client::output::progress::Progress;
 use crate::client::output::text::{self, Look, counted};
 use crate::client::problem;
-use crate::client::synthesis::{How, nine_points, point_files, sweep};
+use crate::client::synthesis::{How, body_guidance, nine_points, point_files, sweep};
+use cognate_kinematics::body_guidance::Poses;
 use cognate_kinematics::nine_point::family::CLASSES;
 use cognate_kinematics::nine_point::{ClassEnd, PathPoints};
 use std::time::Instant;
@@ -18,12 +22,15 @@ use std::time::Instant;
 enum Task {
     One(String, Box<PathPoints>),
     Many(String, Vec<(String, PathPoints)>),
+    Guidance(String, Poses),
 }
 
 /// Finds all linkages, prints them, stops everything that it started.
 pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
-    let Synthesize::NinePoint(a) = a;
-    let task = read(a)?;
+    let (task, a) = match a {
+        Synthesize::NinePoint(a) => (read(a)?, &a.common),
+        Synthesize::BodyGuidance(a) => (read_poses(a)?, &a.common),
+    };
     if let Some(coordinator) = &a.coordinator {
         let target = Target::read(coordinator, &a.credentials)?;
         return tokio::select! {
@@ -57,7 +64,18 @@ fn read(a: &NinePoint) -> Result<Task, ClientError> {
     Ok(Task::One(short(path), Box::new(points)))
 }
 
-async fn perform(a: &NinePoint, task: &Task, target: &Target) -> Result<Exit, ClientError> {
+fn read_poses(a: &BodyGuidance) -> Result<Task, ClientError> {
+    let (name, content) = problem::read_file(&a.file)?;
+    let poses = point_files::read_poses(&name, &content).map_err(ClientError::Format)?;
+    let short = problem::short_name(&a.file).chars().take(60).collect();
+    Ok(Task::Guidance(short, poses))
+}
+
+async fn perform(
+    a: &SynthesisArguments,
+    task: &Task,
+    target: &Target,
+) -> Result<Exit, ClientError> {
     let how = |name: &str| How {
         seed: a.seed,
         preset: a.preset,
@@ -68,13 +86,14 @@ async fn perform(a: &NinePoint, task: &Task, target: &Target) -> Result<Exit, Cl
     match task {
         Task::One(name, points) => find(a, points, &how(name), target).await,
         Task::Many(name, sets) => find_many(a, sets, &how(name), target).await,
+        Task::Guidance(name, poses) => guide(a, poses, &how(name), target).await,
     }
 }
 
 /// Every set is answered on a line of its own as soon as it and those before it are settled; at
 /// the end standard error says how many paths that were, and which classes were lost.
 async fn find_many(
-    a: &NinePoint,
+    a: &SynthesisArguments,
     sets: &[(String, PathPoints)],
     how: &How,
     target: &Target,
@@ -115,7 +134,7 @@ async fn find_many(
 }
 
 async fn find(
-    a: &NinePoint,
+    a: &SynthesisArguments,
     points: &PathPoints,
     how: &How,
     target: &Target,
@@ -141,4 +160,36 @@ async fn find(
         0 => Exit::Solved,
         _ => Exit::Unsettled,
     })
+}
+
+/// Five poses: dyads, and every pair of them.
+async fn guide(
+    a: &SynthesisArguments,
+    poses: &Poses,
+    how: &How,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let mut progress = Progress::new(a.format != SynthesisFormat::Table, began);
+    let found = body_guidance::dyads(target, poses, how, &mut progress).await;
+    progress.finish();
+    let (dyads, summary) = found?;
+    let ends: Vec<_> = dyads.iter().map(|dyad| dyad.ends).collect();
+    let found = Guides {
+        name: how.name.clone(),
+        poses: poses.clone(),
+        guides: poses.guides(&ends),
+        dyads,
+        elapsed: began.elapsed(),
+        summary,
+    };
+    if let Some(folder) = &a.output {
+        guides::write(folder, &found)?;
+    }
+    output::print(&match a.format {
+        SynthesisFormat::Table => guides::table(&found, Look::of_standard_output()),
+        SynthesisFormat::Json => guides::json(&found),
+        SynthesisFormat::Csv => guides::csv(&found),
+    })?;
+    Ok(output::summary::exit(&found.summary))
 }

@@ -1,11 +1,17 @@
-//! Point files: nine points as CSV with a header `x,y` or as JSON, checked line by line.
+//! Point files: nine points, many sets of them, or five poses, as CSV or as JSON, checked line by line.
 
+use crate::client::output::text::cut;
+use cognate_kinematics::body_guidance::{PoseFault, Poses};
 use cognate_kinematics::nine_point::{PathPoints, PointFault};
+use cognate_kinematics::plane::direction;
 use num_complex::Complex64;
 use serde_json::Value;
 
 /// x and y of a point, and where it stands, in words.
 type Placed = ([Complex64; 2], String);
+
+/// Place and turn of a body, and where they stand, in words.
+type Posed = ((Complex64, Complex64), String);
 
 /// Reads nine points; the message names file, line and field.
 pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
@@ -22,6 +28,65 @@ pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
         csv(name, text)?
     };
     nine(name, &placed)
+}
+
+/// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle],
+/// ...]}`; angles in degrees, counterclockwise, in JSON also as `[cos, sin]`.
+pub fn read_poses(name: &str, content: &[u8]) -> Result<Poses, String> {
+    let text = std::str::from_utf8(content).map_err(|e| {
+        format!(
+            "{name}: is no text: byte {} is not UTF-8",
+            e.valid_up_to() + 1
+        )
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let poses: Vec<Posed> = if text.trim_start().starts_with(['{', '[']) {
+        json_poses(name, text)?
+    } else {
+        let rows = rows(name, text, ["x", "y", "angle"])?.into_iter();
+        let posed = |[x, y, angle]: [f64; 3]| (Complex64::new(x, y), direction(angle));
+        rows.map(|(row, at)| (posed(row), at)).collect()
+    };
+    let found = poses.len();
+    if found != 5 {
+        return Err(format!("{name}: expected five poses, found {found}"));
+    }
+    let places = std::array::from_fn(|k| poses[k].0.0);
+    let turns = std::array::from_fn(|k| poses[k].0.1);
+    Poses::new(places, turns).map_err(|fault| match fault {
+        PoseFault::NotFinite(k) => format!("{name}: {}: {fault}", poses[k].1),
+        PoseFault::Same(j, k) => format!("{name}: {} and {}: {fault}", poses[j].1, poses[k].1),
+        PoseFault::Trivial(_) | PoseFault::Extent(_) => format!("{name}: {fault}"),
+    })
+}
+
+/// `[x, y, angle]`, or `[x, y, [cos, sin]]` for a turn that is known exactly.
+fn json_poses(name: &str, text: &str) -> Result<Vec<Posed>, String> {
+    let value: Value = serde_json::from_str(text)
+        .map_err(|e| format!("{name}:{}:{}: is no JSON: {e}", e.line(), e.column()))?;
+    let list = value.get("poses").unwrap_or(&value);
+    let list = list
+        .as_array()
+        .ok_or_else(|| format!("{name}: expected the field \"poses\", a list of [x, y, angle]"))?;
+    let poses = list.iter().enumerate().map(|(k, pose)| {
+        let at = format!("poses[{k}]");
+        let posed = || {
+            let [x, y, turn] = pose.as_array()?.as_slice() else {
+                return None;
+            };
+            let turn = match turn {
+                Value::Array(_) => complex(turn)?,
+                angle => direction(angle.as_f64()?),
+            };
+            Some((Complex64::new(x.as_f64()?, y.as_f64()?), turn))
+        };
+        let wrong = || {
+            let found = kind(pose);
+            format!("{name}: {at}: expected [x, y, angle] or [x, y, [cos, sin]], found {found}")
+        };
+        Ok((posed().ok_or_else(wrong)?, at.clone()))
+    });
+    poses.collect()
 }
 
 /// Checks that there are nine, and that they are different.
@@ -109,7 +174,7 @@ pub fn read_many(name: &str, content: &[u8]) -> Result<Vec<(String, PathPoints)>
                 .map(|(field, cell)| {
                     let number = finite(cell).map(|x| Complex64::new(x, 0.0));
                     number.ok_or_else(|| {
-                        let cell = super::super::output::text::cut(cell, 40);
+                        let cell = cut(cell, 40);
                         format!("{name}:{line}: {field}: expected a finite number, found `{cell}`")
                     })
                 })
@@ -128,53 +193,60 @@ pub fn read_many(name: &str, content: &[u8]) -> Result<Vec<(String, PathPoints)>
     }
 }
 
-/// A row of numbers below the header `x,y`; commas, semicolons or tabs between. Empty lines and
-/// lines that begin with # are comments.
 fn csv(name: &str, text: &str) -> Result<Vec<Placed>, String> {
+    let rows = rows(name, text, ["x", "y"])?.into_iter();
+    let point = |[x, y]: [f64; 2]| [x, y].map(|c| Complex64::new(c, 0.0));
+    Ok(rows.map(|(row, at)| (point(row), at)).collect())
+}
+
+/// Rows of numbers below a header of these names; commas, semicolons or tabs between. Empty lines
+/// and lines that begin with # are comments.
+fn rows<const N: usize>(
+    name: &str,
+    text: &str,
+    fields: [&str; N],
+) -> Result<Vec<([f64; N], String)>, String> {
     let mut rows = text
         .lines()
         .enumerate()
         .map(|(k, line)| (k + 1, line.trim()))
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let expected = fields.join(",");
     let header = rows.next();
-    let separator = |line: &str| {
-        let known = [',', ';', '\t'];
-        known.into_iter().find(|&c| line.contains(c)).unwrap_or(',')
-    };
     let (line, header) =
-        header.ok_or_else(|| format!("{name}: is empty; expected a header x,y"))?;
-    let between = separator(header);
-    let names: Vec<&str> = header
-        .split(between)
-        .map(|s| s.trim().trim_matches('"'))
+        header.ok_or_else(|| format!("{name}: is empty; expected a header {expected}"))?;
+    let between = [',', ';', '\t'].into_iter().find(|&c| header.contains(c));
+    let between = between.unwrap_or(',');
+    let names = header.split(between);
+    let names: Vec<String> = names
+        .map(|s| s.trim().trim_matches('"').to_lowercase())
         .collect();
-    let names: Vec<String> = names.iter().map(|s| s.to_lowercase()).collect();
-    if names != ["x", "y"] {
-        let header = super::super::output::text::cut(header, 40);
+    if names != fields {
+        let header = cut(header, 40);
         return Err(format!(
-            "{name}:{line}: expected the header x,y, found `{header}`"
+            "{name}:{line}: expected the header {expected}, found `{header}`"
         ));
     }
-    let mut points = vec![];
+    let mut found = vec![];
     for (line, row) in rows {
         let cells: Vec<&str> = row.split(between).map(str::trim).collect();
-        let [x, y] = cells[..] else {
-            let found = cells.len();
-            let s = if found == 1 { "" } else { "s" };
+        if cells.len() != N {
+            let s = if cells.len() == 1 { "" } else { "s" };
             return Err(format!(
-                "{name}:{line}: expected two numbers, x and y, found {found} field{s}"
+                "{name}:{line}: expected {N} numbers, {expected}, found {} field{s}",
+                cells.len()
             ));
-        };
-        let number = |field: &str, cell: &str| {
-            finite(cell).ok_or_else(|| {
-                let cell = super::super::output::text::cut(cell, 40);
+        }
+        let mut numbers = [0.0; N];
+        for ((number, cell), field) in numbers.iter_mut().zip(cells).zip(fields) {
+            *number = finite(cell).ok_or_else(|| {
+                let cell = cut(cell, 40);
                 format!("{name}:{line}: {field}: expected a finite number, found `{cell}`")
-            })
-        };
-        let point = [number("x", x)?, number("y", y)?].map(|c| Complex64::new(c, 0.0));
-        points.push((point, format!("line {line}")));
+            })?;
+        }
+        found.push((numbers, format!("line {line}")));
     }
-    Ok(points)
+    Ok(found)
 }
 
 fn finite(text: &str) -> Option<f64> {
@@ -274,6 +346,47 @@ mod tests {
     }
 
     #[test]
+    fn poses_are_read_and_their_mistakes_named() {
+        let rows = ["0,0,0", "1,0,90", "2,1,45", "3,1,30", "4,0,-60"];
+        let file = |rows: &[&str]| format!("x,y,angle\n{}\n", rows.join("\n"));
+        let poses = read_poses("p.csv", file(&rows).as_bytes()).expect("poses");
+        assert_eq!(poses.turns()[1], Complex64::new(0.0, 1.0));
+        let list = rows.map(|row| format!("[{row}]")).join(", ");
+        let json = format!("{{\"poses\": [{list}]}}");
+        assert_eq!(read_poses("p.json", json.as_bytes()), Ok(poses.clone()));
+        let exact = json.replace("[1,0,90]", "[1, 0, [0, 2]]");
+        assert_eq!(read_poses("p.json", exact.as_bytes()), Ok(poses));
+        let fault = |text: String| read_poses("p.csv", text.as_bytes()).expect_err("not right");
+        let cases = [
+            (file(&rows[..4]), "expected five poses, found 4"),
+            (
+                file(&["0,0,0", "1,0,x"]),
+                "p.csv:3: angle: expected a finite number, found `x`",
+            ),
+            (
+                file(&["0,0,0", "1,0"]),
+                "p.csv:3: expected 3 numbers, x,y,angle, found 2 fields",
+            ),
+            (
+                file(&[rows[0], rows[1], rows[2], rows[3], "1,0,450"]),
+                "line 3 and line 6: poses 2 and 5",
+            ),
+            (
+                file(&rows).replace("x,y,angle", "x,y"),
+                "expected the header x,y,angle",
+            ),
+            (
+                "{\"poses\": [[1, 2]]}".into(),
+                "poses[0]: expected [x, y, angle]",
+            ),
+        ];
+        for (text, expected) in cases {
+            let found = fault(text);
+            assert!(found.contains(expected), "{found}\nexpected {expected}");
+        }
+    }
+
+    #[test]
     fn many_sets_are_read_and_their_mistakes_named() {
         let one = read("p.csv", file(&ROWS).as_bytes()).expect("points");
         let header: Vec<String> = (1..=9).map(|k| format!("x{k},y{k}")).collect();
@@ -342,7 +455,7 @@ mod tests {
             ),
             (
                 with(2, "0.8"),
-                "p.csv:5: expected two numbers, x and y, found 1 field",
+                "p.csv:5: expected 2 numbers, x,y, found 1 field",
             ),
             (with(2, "0.8,1,2"), "found 3 fields"),
             (

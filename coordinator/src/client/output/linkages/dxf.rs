@@ -2,7 +2,7 @@
 //! curve and points, each on a layer of its own, in the units of the points.
 
 use cognate_kinematics::coupler_curve;
-use cognate_kinematics::nine_point::Mechanism;
+use cognate_kinematics::linkage::Linkage;
 use num_complex::Complex64;
 use std::fmt::Write as _;
 
@@ -16,15 +16,13 @@ const LAYERS: [(&str, u8); 5] = [
 ];
 
 /// The drawing, in the position of point 1.
-pub fn drawing(mechanism: &Mechanism, points: &[Complex64; 9]) -> String {
+pub fn drawing(first: &Linkage, points: &[Complex64]) -> String {
     let mut out = Drawing::default();
-    let first = &mechanism.realization.poses[0];
     let [a, b] = first.pivots;
     let [p, q] = first.joints;
     // Marks are a fiftieth of what they mark.
-    let mark = mechanism
-        .assessment
-        .lengths
+    let mark = first
+        .lengths()
         .around()
         .iter()
         .copied()

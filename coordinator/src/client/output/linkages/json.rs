@@ -1,6 +1,7 @@
 //! The sheet as one JSON object: the summary of the first job, with classes and linkages.
 
 use super::{Sheet, word};
+use cognate_kinematics::assessment::Assessment;
 use cognate_kinematics::drive::Drive;
 use cognate_kinematics::linkage::Linkage;
 use cognate_kinematics::nine_point::family::CLASSES;
@@ -112,8 +113,13 @@ fn at(z: Complex64) -> Value {
 }
 
 fn mechanism(name: &str, mechanism: &Mechanism) -> Value {
-    let a = &mechanism.assessment;
-    let first = &mechanism.realization.poses[0];
+    let made = &mechanism.realization;
+    mechanism_value(name, &made.poses, &mechanism.assessment, made.error)
+}
+
+/// A linkage in its positions.
+pub(super) fn mechanism_value(name: &str, poses: &[Linkage], a: &Assessment, error: f64) -> Value {
+    let first = &poses[0];
     let position = |pose: &Linkage| json!({"joints": pose.joints.map(at)});
     json!({
         "name": name,
@@ -134,8 +140,8 @@ fn mechanism(name: &str, mechanism: &Mechanism) -> Value {
         "drives": a.drives.each_ref().map(drive),
         "size": a.size,
         "quality": a.quality(),
-        "error": mechanism.realization.error,
-        "positions": mechanism.realization.poses.iter().map(position).collect::<Value>(),
+        "error": error,
+        "positions": poses.iter().map(position).collect::<Value>(),
     })
 }
 

@@ -2,6 +2,7 @@
 
 pub mod csv;
 pub mod dxf;
+pub mod guides;
 pub mod html;
 pub mod json;
 pub mod table;
@@ -123,6 +124,21 @@ pub fn word(end: ClassEnd) -> &'static str {
 /// Writes the sheet into a folder: summary.json, linkages.csv, linkages.html, and a drawing of
 /// each linkage in dxf/.
 pub fn write(folder: &Path, sheet: &Sheet) -> Result<(), ClientError> {
+    let mut files = vec![
+        ("summary.json".to_owned(), json::sheet(sheet)),
+        ("linkages.csv".to_owned(), csv::sheet(sheet)),
+        ("linkages.html".to_owned(), html::page(sheet)),
+    ];
+    let points = sheet.points.plane();
+    for (name, _, mechanism) in sheet.linkages() {
+        let drawing = dxf::drawing(&mechanism.realization.poses[0], &points);
+        files.push((format!("dxf/{name}.dxf"), drawing));
+    }
+    write_files(folder, files)
+}
+
+/// Writes files into a folder, which is made, with a folder dxf in it.
+fn write_files(folder: &Path, files: Vec<(String, String)>) -> Result<(), ClientError> {
     let failed = |path: &Path, source| ClientError::File {
         action: "cannot write",
         path: path.to_path_buf(),
@@ -130,14 +146,9 @@ pub fn write(folder: &Path, sheet: &Sheet) -> Result<(), ClientError> {
     };
     let drawings = folder.join("dxf");
     std::fs::create_dir_all(&drawings).map_err(|e| failed(&drawings, e))?;
-    let write = |path: &Path, text: String| std::fs::write(path, text).map_err(|e| failed(path, e));
-    write(&folder.join("summary.json"), json::sheet(sheet))?;
-    write(&folder.join("linkages.csv"), csv::sheet(sheet))?;
-    write(&folder.join("linkages.html"), html::page(sheet))?;
-    let points = sheet.points.plane();
-    for (name, _, mechanism) in sheet.linkages() {
-        let path = drawings.join(format!("{name}.dxf"));
-        write(&path, dxf::drawing(mechanism, &points))?;
+    for (name, text) in files {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|e| failed(&path, e))?;
     }
     Ok(())
 }

@@ -196,7 +196,7 @@ fn work(lines: &mut Lines, sheet: &Sheet) {
 }
 
 /// The order of the points, compactly.
-fn order(drive: &Drive) -> String {
+pub(super) fn order(drive: &Drive) -> String {
     match &drive.order {
         None => "-".into(),
         Some(order) => order.iter().map(|k| (k + 1).to_string()).collect(),
