@@ -145,12 +145,17 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
         (StartKind::Given, None) => Err(ApiError::Problem(
             "options.start_solutions: start kind \"given\" needs start solutions".to_owned(),
         )),
-        (StartKind::TotalDegree | StartKind::Multihomogeneous | StartKind::Polyhedral, Some(_)) => {
-            Err(ApiError::Problem(
-                "options.start_solutions: they go with start kind \"given\" or \"auto\" only"
-                    .to_owned(),
-            ))
-        }
+        (
+            StartKind::TotalDegree
+            | StartKind::Multihomogeneous
+            | StartKind::Polyhedral
+            | StartKind::LinearProduct
+            | StartKind::Regeneration,
+            Some(_),
+        ) => Err(ApiError::Problem(
+            "options.start_solutions: they go with start kind \"given\" or \"auto\" only"
+                .to_owned(),
+        )),
         (StartKind::Monodromy, _) => Ok(()),
         _ if options.idle_loops.is_some() || options.expected_solutions.is_some() => {
             Err(ApiError::Problem(

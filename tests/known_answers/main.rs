@@ -5,6 +5,7 @@
 
 mod check;
 mod classical_systems;
+mod every_start;
 mod hard_paths;
 mod isolated_or_not;
 mod mechanisms;

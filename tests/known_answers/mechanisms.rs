@@ -109,7 +109,7 @@ fn the_randomised_system_35_has_4_roots() {
 #[test]
 fn manseur_and_dotys_arm_has_32_real_roots() {
     let name = "six_revolute_manseur_doty_tm8";
-    check_mechanism(name, &shared(name), answer(96, 32, Some(32)));
+    check_mechanism(name, &shared(name), answer(64, 32, Some(32)));
 }
 
 /// 28 points of the motion curve and 12 on lines without a pose; 24 paths end

@@ -44,3 +44,48 @@ pub fn written(input: &str) -> System {
         Err(error) => panic!("{error}"),
     }
 }
+
+/// Inverse kinematics of a general 6R arm by the directions z2..z5 of its inner
+/// axes: lengths, twists, and one vector equation for the way from base to hand.
+pub fn six_revolute_axis_vectors() -> System {
+    let z = |k: usize| -> [String; 3] {
+        match k {
+            1 => ["0", "0", "1"].map(String::from),
+            6 => ["3/13", "4/13", "12/13"].map(String::from),
+            k => ["x", "y", "w"].map(|c| format!("{c}{k}")),
+        }
+    };
+    let dot = |a: &[String; 3], b: &[String; 3]| {
+        format!("{}*{}+{}*{}+{}*{}", a[0], b[0], a[1], b[1], a[2], b[2])
+    };
+    let mut equations = Vec::new();
+    for k in 2..=5 {
+        equations.push(format!("{}-1", dot(&z(k), &z(k))));
+    }
+    for k in 1..=5 {
+        equations.push(format!("{}-{k}/7", dot(&z(k), &z(k + 1))));
+    }
+    for c in 0..3 {
+        let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+        let mut sum = format!("-{}/11", c + 5);
+        for k in 1..=5 {
+            let (a, b) = (z(k), z(k + 1));
+            sum += &format!("+{}/5*({}*{}-{}*{})", k + 2, a[i], b[j], a[j], b[i]);
+            sum += &format!("+{}/3*{}", 2 * k + 1, b[c]);
+        }
+        equations.push(sum);
+    }
+    let names: Vec<String> = (2..=5).flat_map(z).collect();
+    let functions: Vec<String> = (1..=12).map(|i| format!("f{i}")).collect();
+    let lines: Vec<String> = functions
+        .iter()
+        .zip(&equations)
+        .map(|(f, e)| format!("{f} = {e};"))
+        .collect();
+    written(&format!(
+        "variable_group {};\nfunction {};\n{}",
+        names.join(", "),
+        functions.join(", "),
+        lines.join("\n")
+    ))
+}

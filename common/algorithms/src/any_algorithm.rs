@@ -5,6 +5,7 @@ use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
+use crate::regeneration_solve::RegenerationSolve;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
@@ -14,7 +15,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 5;
+const VERSION: u8 = 6;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +30,8 @@ pub enum AnyAlgorithm {
     Certified(Box<CertifiedSolve>),
     /// All isolated solutions of one system, from mixed cells.
     Polyhedral(Box<PolyhedralSolve>),
+    /// All regular solutions of one system, equation by equation.
+    Regeneration(Box<RegenerationSolve>),
 }
 
 /// Why a snapshot cannot be read.
@@ -77,6 +80,9 @@ impl AnyAlgorithm {
             Self::Polyhedral(solve) => {
                 Self::Polyhedral(Box::new(solve.with_max_retries(max_retries)))
             }
+            Self::Regeneration(solve) => {
+                Self::Regeneration(Box::new(solve.with_max_retries(max_retries)))
+            }
         }
     }
 
@@ -87,6 +93,7 @@ impl AnyAlgorithm {
             Self::Monodromy(solve) => &**solve,
             Self::Certified(solve) => &**solve,
             Self::Polyhedral(solve) => &**solve,
+            Self::Regeneration(solve) => &**solve,
         }
     }
 
@@ -95,7 +102,10 @@ impl AnyAlgorithm {
         match self {
             Self::Monodromy(solve) => Some(&**solve),
             Self::Certified(solve) => solve.solve().monodromy(),
-            Self::ZeroDimensional(_) | Self::Parameter(_) | Self::Polyhedral(_) => None,
+            Self::ZeroDimensional(_)
+            | Self::Parameter(_)
+            | Self::Polyhedral(_)
+            | Self::Regeneration(_) => None,
         }
     }
 
@@ -109,6 +119,7 @@ impl AnyAlgorithm {
     pub fn renumbered_results(&self) -> Option<Vec<PathResult>> {
         match self {
             Self::Polyhedral(solve) => Some(solve.results()),
+            Self::Regeneration(solve) => Some(solve.results()),
             Self::Certified(solve) => solve.solve().renumbered_results(),
             Self::ZeroDimensional(_) | Self::Parameter(_) | Self::Monodromy(_) => None,
         }
@@ -127,6 +138,7 @@ impl AnyAlgorithm {
             Self::Monodromy(solve) => &mut **solve,
             Self::Certified(solve) => &mut **solve,
             Self::Polyhedral(solve) => &mut **solve,
+            Self::Regeneration(solve) => &mut **solve,
         }
     }
 }

@@ -16,6 +16,7 @@ pub mod plan;
 pub mod plan_error;
 pub mod polyhedral_solve;
 pub mod progress;
+pub mod regeneration_solve;
 pub mod retried_stage;
 pub mod run_locally;
 pub mod start_costs;

@@ -6,13 +6,17 @@ use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
 use crate::polyhedral_solve::PolyhedralSolve;
+use crate::regeneration_solve::{Levels, RegenerationSolve};
 use crate::retried_stage::MAX_RETRIES;
-use crate::start_costs::{StartKind, Starts, check_equations, checked_degrees, mixed_volume};
+use crate::start_costs::{
+    StartKind, Starts, check_equations, checked_degrees, mixed_volume, set_names,
+};
 use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::start_systems::polyhedral::generic::SOLVING_OPERATIONS;
+use cognate_continuation::start_systems::slices;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Tolerances;
@@ -44,6 +48,10 @@ pub enum StartChoice {
     Monodromy,
     /// From mixed cells.
     Polyhedral,
+    /// From products of linear forms in sets of variables.
+    LinearProduct,
+    /// Equation by equation.
+    Regeneration,
 }
 
 /// Start solutions that are stored as an object.
@@ -205,13 +213,27 @@ fn plan_start_system(
     if choice == StartChoice::Polyhedral {
         return plan_polyhedral(system, parameters, "asked for".to_string(), options);
     }
+    if choice == StartChoice::Regeneration {
+        return plan_regeneration(system, parameters, options);
+    }
     let mut starts = Starts::of(system, options.seed)?;
     if choice == StartChoice::Auto {
         starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
     }
+    if matches!(choice, StartChoice::Auto | StartChoice::LinearProduct) {
+        starts = starts.with_linear_product(system);
+    }
     let (kind, why) = match choice {
         StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
         StartChoice::Multihomogeneous => (StartKind::Multihomogeneous, "asked for".to_string()),
+        StartChoice::LinearProduct => {
+            let sets = starts.linear_product.as_ref();
+            let sets = sets.and_then(|start| start.as_ref().ok());
+            let sets = sets.map_or(String::new(), |(tracked, start, _)| {
+                set_names(tracked, start)
+            });
+            (StartKind::LinearProduct, format!("asked for; {sets}"))
+        }
         _ => starts.choose()?,
     };
     if kind == StartKind::Polyhedral {
@@ -220,6 +242,18 @@ fn plan_start_system(
     let (tracked, start_points) = match kind {
         StartKind::TotalDegree => {
             let (tracked, start, _) = starts.total_degree?;
+            (tracked, start)
+        }
+        StartKind::LinearProduct => {
+            let start = starts.linear_product;
+            let none = || Err("it was not asked for".to_string());
+            let (tracked, start, count) = start
+                .unwrap_or_else(none)
+                .map_err(PlanError::NoLinearProduct)?;
+            if count > MAX_PATHS {
+                let (start, number) = (StartKind::LinearProduct, Some(count));
+                return Err(PlanError::TooManyPaths { start, number });
+            }
             (tracked, start)
         }
         _ => {
@@ -271,6 +305,43 @@ fn plan_polyhedral(
         start,
         paths: volume,
         why,
+    })
+}
+
+/// Equation by equation, the lower degrees first.
+fn plan_regeneration(
+    system: &System,
+    parameters: Vec<Complex64>,
+    options: &PlanOptions,
+) -> Result<Plan, PlanError> {
+    let starts = Starts::of(system, options.seed)?;
+    // A bound of the paths on every level.
+    let (tracked, _, bound) = starts.total_degree?;
+    let degrees = starts.degrees.total;
+    let mut order: Vec<u32> = (0..degrees.len() as u32).collect();
+    order.sort_by_key(|&i| degrees[i as usize]);
+    let levels = Levels {
+        degrees: order.iter().map(|&i| degrees[i as usize]).collect(),
+        order,
+        parameters,
+        settings: options.settings.clone(),
+        seed: options.seed,
+    };
+    let point =
+        slices::common_point(options.seed, tracked.variables.len()).ok_or(PlanError::NoPaths)?;
+    let paths = u64::from(levels.degrees[0].saturating_sub(1).max(1));
+    let tolerances = options.tolerances.clone();
+    let solve = RegenerationSolve::new(levels, point, &tracked, tolerances);
+    Ok(Plan {
+        system: tracked,
+        algorithm: AnyAlgorithm::Regeneration(Box::new(solve))
+            .with_max_retries(options.max_retries),
+        start: StartKind::Regeneration,
+        paths,
+        why: format!(
+            "asked for; equation by equation, at most {bound} paths on a level; solutions that \
+             are singular, or become so on the way, may be missed"
+        ),
     })
 }
 

@@ -135,6 +135,9 @@ pub enum PlanError {
     /// Mixed cells cannot be had.
     #[error("the polyhedral start cannot be used: {0}")]
     NoMixedCells(String),
+    /// No linear-product start.
+    #[error("there is no linear-product start: {0}")]
+    NoLinearProduct(String),
     /// A product of projective spaces has no total degree.
     #[error("a total-degree start needs one homogeneous group or only affine ones")]
     TotalDegreeNeedsOneGroup,

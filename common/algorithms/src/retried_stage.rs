@@ -120,15 +120,16 @@ impl RetriedStage {
         let items = first
             .items()
             .expect("a plan has only stages whose paths can be counted");
+        let targets = first.homotopy.targets();
         Self {
             first: Stage {
                 id: StageId(self.first.id.0 + self.stages.len() as u32),
                 attempt: 0,
                 ..first
             },
-            paths_per_target: items,
+            paths_per_target: items / targets,
             results: Vec::new(),
-            targets: vec![TargetBook::default()],
+            targets: vec![TargetBook::default(); targets as usize],
             stages: Vec::new(),
             wanted: None,
             singular_points: Vec::new(),
@@ -320,8 +321,8 @@ impl RetriedStage {
         self.wanted = (!suspects.is_empty() && attempt < self.max_retries).then_some(suspects);
         if self.wanted.is_none() {
             self.singular_points = self.find_singular_points();
-            // The end of a toric homotopy is another system than the one that is asked.
-            let asked = self.first.homotopy != HomotopyKind::Toric;
+            // Some homotopies end at another system than the one that is asked.
+            let asked = self.first.homotopy.ends_at_the_system();
             self.isolation_wanted = asked && !self.singular_points.is_empty();
         }
     }

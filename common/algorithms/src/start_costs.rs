@@ -3,6 +3,7 @@
 use crate::plan_error::PlanError;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::grouping::best_grouping;
+use cognate_continuation::start_systems::linear_product::guess;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
@@ -25,6 +26,10 @@ pub enum StartKind {
     Monodromy,
     /// Twice as many as the mixed volume: from mixed cells to a generic system, and on.
     Polyhedral,
+    /// As many as products of linear forms, each in a set of variables, have regular solutions.
+    LinearProduct,
+    /// Equation by equation: numbers are known when they are found.
+    Regeneration,
 }
 
 impl std::fmt::Display for StartKind {
@@ -35,6 +40,8 @@ impl std::fmt::Display for StartKind {
             Self::Given => "given",
             Self::Monodromy => "monodromy",
             Self::Polyhedral => "polyhedral",
+            Self::LinearProduct => "linear-product",
+            Self::Regeneration => "regeneration",
         })
     }
 }
@@ -78,6 +85,9 @@ pub struct StartCosts {
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
 
+/// Most steps of one count of the choices of a linear-product start: a fraction of a second.
+const CHOICE_STEPS: u64 = 5_000_000;
+
 /// Most operations that `cognate info` spends on a mixed volume: a few seconds.
 const COUNTING_OPERATIONS: u64 = 2_000_000_000;
 
@@ -94,6 +104,8 @@ pub struct Starts {
     pub multihomogeneous: Result<(System, StartPoints, u64), PlanError>,
     /// Whether the groups are not the file's.
     pub found: Option<FoundGroups>,
+    /// By sets of variables that were found, where it was asked for, or why there are none.
+    pub linear_product: Option<Result<(System, StartPoints, u64), String>>,
     /// The mixed volume, where it was asked for, or why it is not known.
     pub mixed_volume: Option<Result<u64, String>>,
 }
@@ -127,6 +139,7 @@ impl Starts {
             multihomogeneous,
             found,
             mixed_volume: None,
+            linear_product: None,
             combined: (system.equation_count() > system.dimension())
                 .then(|| (system.equation_count(), system.dimension())),
             degrees,
@@ -151,6 +164,17 @@ impl Starts {
         self
     }
 
+    /// The same with a linear-product start.
+    #[must_use]
+    pub fn with_linear_product(mut self, system: &System) -> Self {
+        let groups = match &self.multihomogeneous {
+            Ok((grouped, _, _)) => grouped.groups.as_slice(),
+            Err(_) => &[],
+        };
+        self.linear_product = Some(linear_product(system, groups));
+        self
+    }
+
     fn groups(&self) -> usize {
         self.degrees.by_group.first().map_or(0, Vec::len)
     }
@@ -163,9 +187,25 @@ impl Starts {
             Ok(_) => self.multihomogeneous.as_ref().map_or(0, |m| m.2),
             Err(_) => u64::MAX,
         };
-        if let Some(Ok(volume)) = self.mixed_volume
-            && polyhedral_is_cheaper(volume, fewest)
+        let polyhedral = match self.mixed_volume {
+            Some(Ok(volume)) if polyhedral_is_cheaper(volume, fewest) => Some(volume),
+            _ => None,
+        };
+        if let Some(Ok((tracked, start, number))) = &self.linear_product
+            && linear_product_is_cheaper(*number, fewest)
+            // Then it has no more paths to infinity than the mixed cells have. Others often end
+            // on the sets at infinity where products of forms vanish, and are dear.
+            && self.mixed_volume == Some(Ok(*number))
         {
+            let sets = set_names(tracked, start);
+            let otherwise = match &bezout {
+                Ok((kind, _)) => format!("{fewest} by the {kind} start"),
+                Err(error) => error.to_string(),
+            };
+            let why = format!("{number} paths by {sets}; {otherwise}");
+            return Ok((StartKind::LinearProduct, why));
+        }
+        if let Some(volume) = polyhedral {
             let otherwise = match &bezout {
                 Ok((kind, _)) => format!("{fewest} by the {kind} start"),
                 Err(error) => error.to_string(),
@@ -245,7 +285,6 @@ impl StartCosts {
     pub fn of(system: &System) -> Result<Self, PlanError> {
         let degrees = checked_degrees(system)?;
         let mut notes = BTreeMap::new();
-        notes.insert("linear_product".into(), "not in this version".into());
         let counted = mixed_volume(system, COUNTING_OPERATIONS);
         if let Err(why) = &counted {
             notes.insert("mixed_volume".into(), why.clone());
@@ -254,8 +293,15 @@ impl StartCosts {
         // Degrees of combinations are the same for almost every seed.
         let starts = Starts::of(system, 0).map(|starts| Starts {
             mixed_volume: Some(counted),
-            ..starts
+            ..starts.with_linear_product(system)
         });
+        let product = starts.as_ref().ok().and_then(|s| s.linear_product.as_ref());
+        let (linear_product, note) = match product {
+            Some(Ok((tracked, start, number))) => (Some(*number), set_names(tracked, start)),
+            Some(Err(why)) => (None, why.clone()),
+            None => (None, "the system cannot be solved".to_string()),
+        };
+        notes.insert("linear_product".into(), note);
         let mut number = |name: &str, number: Result<u64, PlanError>| match number {
             Ok(number) => Some(number),
             // A number is a number, even where it is too large or too small to be used.
@@ -309,7 +355,7 @@ impl StartCosts {
                 groups,
                 number: multihomogeneous,
             },
-            linear_product: None,
+            linear_product,
             mixed_volume,
             choice,
             why,
@@ -338,6 +384,85 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
 /// has few of them; so the second leg is not counted in full.
 fn polyhedral_is_cheaper(volume: u64, count: u64) -> bool {
     count > 16 && volume.saturating_add(volume / 2) < count
+}
+
+/// Whether a linear-product start, whose equations are dearer, costs less than another with
+/// `count` paths.
+fn linear_product_is_cheaper(number: u64, count: u64) -> bool {
+    count > 16 && number > 0 && number.saturating_add(number / 8) < count
+}
+
+/// Sets of variables that are guessed from the monomials; `groups` are tried too.
+fn linear_product(
+    system: &System,
+    groups: &[VariableGroup],
+) -> Result<(System, StartPoints, u64), String> {
+    if system.groups.iter().any(|group| group.homogeneous) {
+        return Err("not counted for homogeneous groups".into());
+    }
+    if system.equation_count() > system.dimension() {
+        return Err("not counted for combinations of equations".into());
+    }
+    let supports = supports(system).ok_or("multiplying the equations out takes too long")?;
+    let groups: Vec<Vec<usize>> = groups.iter().map(|g| g.variables.clone()).collect();
+    let variables = system.variables.len();
+    let (sets, count) = guess(&supports, variables, &groups, CHOICE_STEPS)
+        .ok_or("counting the choices of factors takes too long")?;
+    let mut tracked = system.clone();
+    tracked.groups = vec![VariableGroup {
+        variables: (0..variables).collect(),
+        homogeneous: false,
+    }];
+    Ok((tracked, StartPoints::LinearProduct { sets, count }, count))
+}
+
+/// The sets of a linear-product start in words, equations of the same sets together:
+/// `{x} {y, z}^2 | ...`; without end where they are many.
+pub(crate) fn set_names(system: &System, start: &StartPoints) -> String {
+    const MOST: usize = 3;
+    let StartPoints::LinearProduct { sets, .. } = start else {
+        return String::new();
+    };
+    let all = system.variables.len();
+    let one = |set: &[u32]| match set.len() {
+        0 => "{}".to_string(),
+        n if n == all && n > 2 => "{all}".to_string(),
+        _ => {
+            let names: Vec<&str> = set
+                .iter()
+                .map(|&v| system.variables[v as usize].as_str())
+                .collect();
+            format!("{{{}}}", names.join(", "))
+        }
+    };
+    let equations: Vec<String> = sets
+        .iter()
+        .map(|factors| {
+            let runs = factors.chunk_by(|a, b| a == b);
+            let runs: Vec<String> = runs
+                .map(|run| match run.len() {
+                    1 => one(&run[0]),
+                    n => format!("{}^{n}", one(&run[0])),
+                })
+                .collect();
+            runs.join(" ")
+        })
+        .collect();
+    let runs: Vec<String> = equations
+        .chunk_by(|a, b| a == b)
+        .map(|run| match run.len() {
+            1 => run[0].clone(),
+            n => format!("{n} times {}", run[0]),
+        })
+        .collect();
+    let more = match runs.len().saturating_sub(MOST) {
+        0 => String::new(),
+        n => format!(" | and {n} more"),
+    };
+    format!(
+        "the sets {}{more}",
+        runs[..runs.len().min(MOST)].join(" | ")
+    )
 }
 
 /// Names of the variables, group by group.

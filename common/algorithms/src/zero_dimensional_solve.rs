@@ -43,6 +43,9 @@ impl ZeroDimensionalSolve {
             HomotopyKind::Toric | HomotopyKind::Generic { .. } => {
                 panic!("a polyhedral homotopy is planned as a polyhedral solve")
             }
+            HomotopyKind::Slide { .. } | HomotopyKind::Intersect { .. } => {
+                panic!("a regeneration is planned as a regeneration solve")
+            }
         };
         Self {
             paths: RetriedStage::new(first, system, tolerances, 1),

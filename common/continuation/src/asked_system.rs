@@ -76,7 +76,10 @@ impl AskedSystem {
         let zero = Complex64::default();
         let (parameters, targets): (Vec<NodeId>, _) = match kind {
             HomotopyKind::Toric => (Vec::new(), vec![Vec::new()]),
-            HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
+            HomotopyKind::StraightLine { parameters }
+            | HomotopyKind::Generic { parameters }
+            | HomotopyKind::Slide { parameters, .. }
+            | HomotopyKind::Intersect { parameters, .. } => {
                 let values = parameters.iter().map(|&z| exact(&mut out, z)).collect();
                 (values, vec![Vec::new()])
             }

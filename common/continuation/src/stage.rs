@@ -6,6 +6,7 @@ use crate::homotopies::prepare::StartSystem;
 use crate::homotopies::{Homotopy, HomotopyKind};
 use crate::path_result::PathResult;
 use crate::start_points::{DamagedPoints, Digest, StartPoints, StoredPoints};
+use crate::start_systems::linear_product::{LinearProduct, SOLVING_STEPS};
 use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
 use crate::start_systems::total_degree::TotalDegree;
@@ -133,6 +134,27 @@ impl PreparedStage {
             HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
                 fits("parameters", parameters)?;
             }
+            HomotopyKind::Slide {
+                parameters,
+                order,
+                level,
+                ..
+            }
+            | HomotopyKind::Intersect {
+                parameters,
+                order,
+                level,
+            } => {
+                fits("parameters", parameters)?;
+                let mut sorted = order.clone();
+                sorted.sort_unstable();
+                let all = sorted.iter().copied().eq(0..dimension as u32);
+                if !(all && (*level as usize) < dimension && in_order(system)) {
+                    return Err(PrepareError::StartPoints(
+                        "a regeneration takes each equation once, in one affine group of all variables".into(),
+                    ));
+                }
+            }
             HomotopyKind::Toric => {}
             HomotopyKind::PathVariable { parameters } => {
                 fits("parameters", parameters)?;
@@ -162,7 +184,10 @@ impl PreparedStage {
         let (asked, combined, of_system);
         let system = if overdetermined {
             let (kind, chart) = (&stage.homotopy, Chart::new(system, stage.seed));
-            asked = Some(AskedSystem::new(system, &of_asked, kind, chart, stage.seed));
+            // On the way to the system its points are no solutions of it yet.
+            asked = kind
+                .ends_at_the_system()
+                .then(|| AskedSystem::new(system, &of_asked, kind, chart, stage.seed));
             combined = randomize(system, &of_asked, stage.seed);
             of_system = degrees(&combined).map_err(wrong)?;
             &combined
@@ -174,7 +199,11 @@ impl PreparedStage {
         // the system's own coordinates, and go on in projective patches where they run far out.
         let affine = matches!(
             stage.homotopy,
-            HomotopyKind::Parameter { .. } | HomotopyKind::Toric | HomotopyKind::Generic { .. }
+            HomotopyKind::Parameter { .. }
+                | HomotopyKind::Toric
+                | HomotopyKind::Generic { .. }
+                | HomotopyKind::Slide { .. }
+                | HomotopyKind::Intersect { .. }
         );
         let chart = if affine {
             Chart::affine(system, stage.seed)
@@ -231,6 +260,25 @@ impl PreparedStage {
                     })?;
                 Points::Made(StartSystem::Multihomogeneous(made))
             }
+            StartPoints::LinearProduct { sets, count } => {
+                let misfit = |what: &str| PrepareError::StartPoints(what.to_string());
+                let degrees = of_system.total.iter().map(|&d| d as usize);
+                if !(straight && in_order(system) && sets.iter().map(Vec::len).eq(degrees)) {
+                    return Err(misfit(
+                        "a linear-product start has one affine group of all variables and as many sets as degrees",
+                    ));
+                }
+                let n = system.variable_count();
+                let start = LinearProduct::new(sets, n, stage.seed, SOLVING_STEPS)
+                    .map_err(|error| misfit(&error.to_string()))?;
+                if start.count() != *count {
+                    return Err(misfit(&format!(
+                        "the sets have {} start points, not {count}",
+                        start.count()
+                    )));
+                }
+                Points::Made(StartSystem::LinearProduct(Arc::new(start)))
+            }
             StartPoints::Stored { object, count } => {
                 let stored = objects(*object).ok_or(PrepareError::MissingObject(*object))?;
                 if stored.len() as u64 != *count || stored.dimension != system.variable_count() {
@@ -269,11 +317,7 @@ impl PreparedStage {
             }
         };
         if let StartPoints::Selected { indices, .. } = &stage.start_points {
-            let targets = match &stage.homotopy {
-                HomotopyKind::Parameter { targets, .. } => targets.len() as u64,
-                _ => 1,
-            };
-            let end = starts.saturating_mul(targets);
+            let end = starts.saturating_mul(stage.homotopy.targets());
             if indices.iter().any(|&i| i >= end) {
                 return Err(PrepareError::StartPoints(
                     "a selected index is too large".into(),
@@ -356,7 +400,9 @@ impl PreparedStage {
     pub(crate) fn item(&self, item: u64) -> (u64, u64) {
         let origin = self.stage.origin(item);
         match self.stage.homotopy {
-            HomotopyKind::Parameter { .. } => (origin, origin / self.starts),
+            HomotopyKind::Parameter { .. } | HomotopyKind::Slide { .. } => {
+                (origin, origin / self.starts)
+            }
             HomotopyKind::Toric => match &self.points {
                 Points::Made(StartSystem::Toric(s)) => (origin, s.cell(origin) as u64),
                 _ => (origin, 0),
@@ -371,6 +417,7 @@ impl PreparedStage {
         match &self.points {
             Points::Made(StartSystem::TotalDegree(s)) => s.point(chart, origin),
             Points::Made(StartSystem::Multihomogeneous(s)) => s.point(chart, origin),
+            Points::Made(StartSystem::LinearProduct(s)) => s.point(chart, origin),
             Points::Made(StartSystem::Toric(s)) => chart.from_variables(&s.point(origin)),
             Points::Made(StartSystem::Generic(_)) => None,
             Points::Stored(points) => {
@@ -435,6 +482,19 @@ fn sample(points: &Points, chart: &Chart) -> Vec<Vec<Complex64>> {
     (0..count)
         .filter_map(|k| chart.from_variables(points.point(k * points.len() / count)))
         .collect()
+}
+
+/// Whether all variables are one affine group, in order.
+fn in_order(system: &System) -> bool {
+    let [group] = system.groups.as_slice() else {
+        return false;
+    };
+    !group.homogeneous
+        && group
+            .variables
+            .iter()
+            .copied()
+            .eq(0..system.variable_count())
 }
 
 /// The generic system with the monomials of a square one in affine groups.

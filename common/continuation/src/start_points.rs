@@ -1,5 +1,6 @@
 //! StartPoints: any start point by its index, so that a chunk is only a range.
 
+use crate::start_systems::linear_product::SetStructure;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,13 @@ pub enum StartPoints {
         base: Box<StartPoints>,
         /// The chosen indices, ascending.
         indices: Vec<u64>,
+    },
+    /// The regular solutions of products of linear forms in sets of variables: made from the index.
+    LinearProduct {
+        /// The variables of each factor of each equation, ascending.
+        sets: SetStructure,
+        /// How many solutions there are.
+        count: u64,
     },
     /// The solutions of the binomial systems of the mixed cells: made from the index.
     MixedCells {
@@ -171,7 +179,9 @@ impl StartPoints {
                 degrees,
                 dimensions,
             } => crate::start_systems::multihomogeneous::bezout_number(degrees, dimensions),
-            Self::Stored { count, .. } | Self::MixedCells { count } => Some(*count),
+            Self::Stored { count, .. }
+            | Self::MixedCells { count }
+            | Self::LinearProduct { count, .. } => Some(*count),
             Self::Selected { indices, .. } => Some(indices.len() as u64),
         }
     }
@@ -181,9 +191,10 @@ impl StartPoints {
         match self {
             Self::Stored { object, .. } => Some(*object),
             Self::Selected { base, .. } => base.object(),
-            Self::TotalDegree { .. } | Self::Multihomogeneous { .. } | Self::MixedCells { .. } => {
-                None
-            }
+            Self::TotalDegree { .. }
+            | Self::Multihomogeneous { .. }
+            | Self::MixedCells { .. }
+            | Self::LinearProduct { .. } => None,
         }
     }
 

@@ -51,10 +51,7 @@ impl Stage {
         match (&self.homotopy, &self.start_points) {
             // An item of a repetition is named by its index among all targets and starts.
             (_, StartPoints::Selected { indices, .. }) => Some(indices.len() as u64),
-            (HomotopyKind::Parameter { targets, .. }, starts) => {
-                starts.count()?.checked_mul(targets.len() as u64)
-            }
-            (_, starts) => starts.count(),
+            (homotopy, starts) => starts.count()?.checked_mul(homotopy.targets()),
         }
     }
 

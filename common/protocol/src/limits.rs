@@ -70,6 +70,12 @@ pub const CHUNKS_PER_CALL: Limit = Limit {
     what: "chunks in one call",
     value: 10_000,
 };
+/// Factors of one equation of a linear-product start.
+pub const FACTORS: Limit = Limit {
+    name: "FACTORS",
+    what: "factors of an equation",
+    value: 1 << 15,
+};
 /// Bits of precision.
 pub const PRECISION_BITS: Limit = Limit {
     name: "PRECISION_BITS",

@@ -75,6 +75,10 @@ pub enum StartKind {
     Monodromy,
     /// Mixed cells.
     Polyhedral,
+    /// Products of linear forms in sets of variables.
+    LinearProduct,
+    /// Equation by equation.
+    Regeneration,
 }
 
 /// The arithmetic asked for.

@@ -43,9 +43,11 @@ proptest! {
 
     #[test]
     fn stages_come_back(seed: u64) {
-        let stage = Draw::new(seed).stage();
-        let message: v1::Stage = sent(&to_proto::path::stage(&stage));
-        prop_assert_eq!(from_proto::path::stage(&message).unwrap(), stage);
+        let mut draw = Draw::new(seed);
+        for stage in [draw.stage(), draw.later_stage()] {
+            let message: v1::Stage = sent(&to_proto::path::stage(&stage));
+            prop_assert_eq!(from_proto::path::stage(&message).unwrap(), stage);
+        }
     }
 
     #[test]

@@ -100,7 +100,8 @@ pub enum Format {
 /// Where the paths begin, as typed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Start {
-    /// The cheapest of total degree, multihomogeneous and polyhedral; given where start solutions are
+    /// The cheapest of total degree, multihomogeneous, linear product and polyhedral; given where
+    /// start solutions are
     #[default]
     Auto,
     /// As many paths as the product of the degrees
@@ -109,13 +110,11 @@ pub enum Start {
     Multihomogeneous,
     /// From known solutions: --start-solutions
     Given,
-    /// Not in this version
-    #[value(hide = true)]
+    /// Fewer paths, by products of linear forms in sets of variables that are found
     LinearProduct,
     /// As many paths as the mixed volume of the equations' monomials
     Polyhedral,
-    /// Not in this version
-    #[value(hide = true)]
+    /// Equation by equation, on slices: all regular solutions
     Regeneration,
     /// All solutions of a family with parameters from one of them, by loops
     Monodromy,

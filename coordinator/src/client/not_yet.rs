@@ -1,6 +1,6 @@
 //! What belongs to the command line but not to this version: refused with its name, before anything starts.
 
-use super::arguments::{Command, Coordinator, ProblemArguments, Start, Synthesize};
+use super::arguments::{Command, Coordinator, ProblemArguments, Synthesize};
 use super::error::ClientError;
 use crate::intake::MOST_BITS;
 use cognate_protocol::submission::PrecisionChoice;
@@ -31,16 +31,6 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
 }
 
 fn problem(a: &ProblemArguments) -> Option<String> {
-    let start = match a.start {
-        Start::LinearProduct => Some("--start linear-product"),
-        Start::Regeneration => Some("--start regeneration"),
-        Start::Auto
-        | Start::TotalDegree
-        | Start::Multihomogeneous
-        | Start::Given
-        | Start::Monodromy
-        | Start::Polyhedral => None,
-    };
     let flags = [
         (a.deflate, "--deflate (deflation of singular solutions)"),
         (
@@ -48,14 +38,10 @@ fn problem(a: &ProblemArguments) -> Option<String> {
             "--trace-test (completeness of a solution set)",
         ),
     ];
-    start
-        .map(String::from)
-        .or_else(|| {
-            flags
-                .iter()
-                .find(|(asked, _)| *asked)
-                .map(|(_, name)| (*name).into())
-        })
+    flags
+        .iter()
+        .find(|(asked, _)| *asked)
+        .map(|(_, name)| (*name).into())
         .or_else(|| precision(a.precision))
 }
 

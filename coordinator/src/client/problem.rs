@@ -101,7 +101,14 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (Start::Given, None) => {
             return Err(wrong("--start given", "needs --start-solutions FILE"));
         }
-        (Start::TotalDegree | Start::Multihomogeneous | Start::Polyhedral, Some(_)) => {
+        (
+            Start::TotalDegree
+            | Start::Multihomogeneous
+            | Start::Polyhedral
+            | Start::LinearProduct
+            | Start::Regeneration,
+            Some(_),
+        ) => {
             return Err(wrong(
                 "--start-solutions",
                 "only go with --start given, monodromy or auto",
@@ -111,6 +118,8 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (Start::Multihomogeneous, None) => StartKind::Multihomogeneous,
         (Start::Monodromy, _) => StartKind::Monodromy,
         (Start::Polyhedral, None) => StartKind::Polyhedral,
+        (Start::LinearProduct, None) => StartKind::LinearProduct,
+        (Start::Regeneration, None) => StartKind::Regeneration,
         (_, Some(_)) => StartKind::Given,
         // What is not in this version was refused before.
         (_, None) => StartKind::Auto,

@@ -109,6 +109,8 @@ pub fn plan_options(
             StartKind::Given => StartChoice::Given,
             StartKind::Monodromy => StartChoice::Monodromy,
             StartKind::Polyhedral => StartChoice::Polyhedral,
+            StartKind::LinearProduct => StartChoice::LinearProduct,
+            StartKind::Regeneration => StartChoice::Regeneration,
         },
         start_points,
         start_parameters,

@@ -43,7 +43,10 @@ pub fn certified_system(system: &System, seed: u64) -> Result<System, PrepareErr
 /// The parameters at the end of a homotopy, target by target.
 pub fn parameters_at_targets(homotopy: &HomotopyKind, system: &System) -> Vec<Vec<Complex64>> {
     match homotopy {
-        HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
+        HomotopyKind::StraightLine { parameters }
+        | HomotopyKind::Generic { parameters }
+        | HomotopyKind::Slide { parameters, .. }
+        | HomotopyKind::Intersect { parameters, .. } => {
             vec![parameters.clone()]
         }
         // It ends at another system.

@@ -7,6 +7,7 @@
 
 pub mod parameter_path;
 pub mod prepare;
+pub(crate) mod regeneration;
 pub mod toric_path;
 
 use num_complex::Complex64;
@@ -44,4 +45,46 @@ pub enum HomotopyKind {
         /// Values of the system's parameters, if it has any.
         parameters: Vec<Complex64>,
     },
+    /// A level of a regeneration (see `start_systems::slices`): on the first `level` equations
+    /// and on the slices after the level's own, that one moves to each other form of the level.
+    /// Item number i starts at start point `i % starts` and goes to form `1 + i / starts`.
+    Slide {
+        /// Values of the system's parameters, if it has any.
+        parameters: Vec<Complex64>,
+        /// The equations in the order in which they are taken.
+        order: Vec<u32>,
+        /// How many of them hold already.
+        level: u32,
+        /// Number of forms besides the slice: the degree of the next equation, less one.
+        forms: u32,
+    },
+    /// There, from the product of the level's forms to the next equation.
+    Intersect {
+        /// Values of the system's parameters, if it has any.
+        parameters: Vec<Complex64>,
+        /// The equations in the order in which they are taken.
+        order: Vec<u32>,
+        /// How many of them hold already.
+        level: u32,
+    },
+}
+
+impl HomotopyKind {
+    /// How many ends there are for each start point.
+    pub fn targets(&self) -> u64 {
+        match self {
+            Self::Parameter { targets, .. } => targets.len() as u64,
+            Self::Slide { forms, .. } => u64::from(*forms),
+            _ => 1,
+        }
+    }
+
+    /// Whether the paths end at solutions of the system, rather than of one on the way to it.
+    pub fn ends_at_the_system(&self) -> bool {
+        match self {
+            Self::Toric | Self::Slide { .. } => false,
+            Self::Intersect { order, level, .. } => order.len() == *level as usize + 1,
+            _ => true,
+        }
+    }
 }

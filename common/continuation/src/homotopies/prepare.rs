@@ -4,9 +4,11 @@
 //! join the start system, put the rows into the order in which elimination
 //! wants them, compile. All of it is a pure function of system, kind and seed.
 
+use super::regeneration::Level;
 use super::toric_path::ToricPath;
 use super::{HomotopyKind, ParameterPath};
 use crate::chart::{Chart, exact};
+use crate::start_systems::linear_product::LinearProduct;
 use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
 use crate::start_systems::total_degree::TotalDegree;
@@ -33,6 +35,7 @@ use std::vec::IntoIter;
 pub(crate) enum StartSystem {
     TotalDegree(TotalDegree),
     Multihomogeneous(Multihomogeneous),
+    LinearProduct(Arc<LinearProduct>),
     Toric(Arc<ToricStart>),
     Generic(GenericSystem),
 }
@@ -110,13 +113,13 @@ pub(crate) fn normalize(
     scale(out, equations, &exponents);
 }
 
-/// Scales of a system and of the generic one with its monomials, which stand for one homotopy in
-/// every chart: they are taken in the system's own coordinates.
-fn scales_beside_generic(
+/// Scales of a system and of the start equations of a homotopy that goes on in other charts, and
+/// is the same there: they are taken in the system's own coordinates.
+fn scales_beside(
     system: &System,
     degrees: &Degrees,
     parameters: &[Complex64],
-    generic: &GenericSystem,
+    start: impl FnOnce(&mut Expressions, &[Vec<NodeId>]) -> Vec<NodeId>,
     seed: u64,
 ) -> [Vec<i32>; 2] {
     let chart = Chart::affine(system, seed);
@@ -124,7 +127,7 @@ fn scales_beside_generic(
     let coordinates = chart.nodes(&mut out);
     let values: Vec<NodeId> = parameters.iter().map(|&z| exact(&mut out, z)).collect();
     let asked = homogenize(system, degrees, &mut out, &coordinates, &values);
-    let start = generic.constant_equations(system, &degrees.by_group, &mut out, &coordinates);
+    let start = start(&mut out, &coordinates);
     let mut stream = RandomStream::new(seed, Purpose::Probe, 1);
     [asked, start].map(|equations| scales(&out, &equations, chart.dimension(), &[], &mut stream))
 }
@@ -209,7 +212,10 @@ impl Homotopy {
         let coordinates = chart.nodes(&mut out);
         let count = system.parameters.len();
         let parameter_nodes: Vec<NodeId> = match kind {
-            HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
+            HomotopyKind::StraightLine { parameters }
+            | HomotopyKind::Generic { parameters }
+            | HomotopyKind::Slide { parameters, .. }
+            | HomotopyKind::Intersect { parameters, .. } => {
                 parameters.iter().map(|&z| exact(&mut out, z)).collect()
             }
             HomotopyKind::Toric => Vec::new(),
@@ -242,7 +248,10 @@ impl Homotopy {
         let one = Complex64::new(1.0, 0.0);
         let zero = Complex64::default();
         let at_start: Vec<Complex64> = match kind {
-            HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. } => Vec::new(),
+            HomotopyKind::StraightLine { .. }
+            | HomotopyKind::Generic { .. }
+            | HomotopyKind::Slide { .. }
+            | HomotopyKind::Intersect { .. } => Vec::new(),
             HomotopyKind::Toric => toric
                 .iter()
                 .flat_map(|toric| toric.generic().coefficients())
@@ -250,10 +259,21 @@ impl Homotopy {
             HomotopyKind::Parameter { start, .. } => start.clone(),
             HomotopyKind::PathVariable { .. } => vec![one],
         };
+        let level = Level::of(kind, seed);
         let shared_scales = match (kind, start_system) {
-            (HomotopyKind::Generic { parameters }, Some(StartSystem::Generic(generic))) => Some(
-                scales_beside_generic(system, degrees, parameters, generic, seed),
-            ),
+            (HomotopyKind::Generic { parameters }, Some(StartSystem::Generic(generic))) => {
+                let start = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
+                    generic.constant_equations(system, &degrees.by_group, out, coordinates)
+                };
+                Some(scales_beside(system, degrees, parameters, start, seed))
+            }
+            (HomotopyKind::Intersect { parameters, .. }, _) => level.map(|level| {
+                let degree = degrees.total[level.next()];
+                let product = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
+                    vec![level.product(out, &coordinates[0], degree)]
+                };
+                scales_beside(system, degrees, parameters, product, seed)
+            }),
             _ => None,
         };
         match &shared_scales {
@@ -269,6 +289,7 @@ impl Homotopy {
                     }
                     Some(StartSystem::TotalDegree(s)) => s.equations(&mut out, &coordinates[0]),
                     Some(StartSystem::Multihomogeneous(s)) => s.equations(&mut out, &coordinates),
+                    Some(StartSystem::LinearProduct(s)) => s.equations(&mut out, &coordinates[0]),
                     Some(StartSystem::Toric(_)) | None => {
                         panic!("a straight-line homotopy has a start system")
                     }
@@ -302,6 +323,28 @@ impl Homotopy {
             }
             HomotopyKind::PathVariable { .. } => (None, vec![one], vec![vec![zero]]),
             HomotopyKind::Toric => (None, at_start.clone(), vec![at_start.clone()]),
+            HomotopyKind::Slide { .. } => {
+                let level = level.expect("it is a level");
+                let moving = Level::moving_form(&mut out, &coordinates[0]);
+                equations = level.rows(&mut out, &coordinates[0], &equations, moving);
+                let (slice, forms) = level.ends();
+                (None, slice, forms)
+            }
+            HomotopyKind::Intersect { .. } => {
+                let level = level.expect("it is a level");
+                let degree = degrees.total[level.next()];
+                let mut start = [level.product(&mut out, &coordinates[0], degree)];
+                if let Some([_, exponent]) = &shared_scales {
+                    scale(&mut out, &mut start, exponent);
+                }
+                let (of_target, of_start) = (out.parameter(0), out.parameter(1));
+                let f = out.multiply(of_target, equations[level.next()]);
+                let g = out.multiply(of_start, start[0]);
+                let moving = out.add(f, g);
+                equations = level.rows(&mut out, &coordinates[0], &equations, moving);
+                let gamma = generic_unit(seed, Purpose::Gamma);
+                (None, vec![zero, gamma], vec![vec![one, zero]])
+            }
         };
 
         // The order in which elimination meets the rows: from points where the paths begin, or
@@ -334,10 +377,14 @@ impl Homotopy {
         }
         let instructions = InstructionSet::detect();
         let (program, elimination, order) = arrange(&program, &samples, instructions);
-        let polyhedral = matches!(kind, HomotopyKind::Toric | HomotopyKind::Generic { .. });
-        let row_degrees = match polyhedral {
-            true => order.iter().map(|&i| degrees.by_group[i].clone()).collect(),
-            false => Vec::new(),
+        let of_rows = match (kind, level) {
+            (HomotopyKind::Toric | HomotopyKind::Generic { .. }, _) => degrees.by_group.clone(),
+            (_, Some(level)) => level.row_degrees(&degrees.by_group),
+            _ => Vec::new(),
+        };
+        let row_degrees = match of_rows.is_empty() {
+            true => Vec::new(),
+            false => order.iter().map(|&i| of_rows[i].clone()).collect(),
         };
         Self {
             evaluator: Evaluator::new(program.clone(), instructions),

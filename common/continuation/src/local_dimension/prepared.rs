@@ -44,9 +44,10 @@ impl PreparedLocalDimension {
         let (given, targets) = match &stage.homotopy {
             HomotopyKind::StraightLine { parameters }
             | HomotopyKind::Generic { parameters }
+            | HomotopyKind::Intersect { parameters, .. }
             | HomotopyKind::PathVariable { parameters } => (std::slice::from_ref(parameters), 1),
-            HomotopyKind::Toric => {
-                return Err(misfit("a toric homotopy ends at another system"));
+            HomotopyKind::Toric | HomotopyKind::Slide { .. } => {
+                return Err(misfit("a homotopy on the way ends at another system"));
             }
             HomotopyKind::Parameter { targets, .. } => (targets.as_slice(), targets.len() as u64),
         };

@@ -4,6 +4,8 @@
 //! stand together here. Points are made from their index; nothing is stored.
 
 pub mod grouping;
+pub mod linear_product;
 pub mod multihomogeneous;
 pub mod polyhedral;
+pub mod slices;
 pub mod total_degree;

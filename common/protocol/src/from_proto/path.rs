@@ -80,6 +80,24 @@ fn homotopy(m: &v1::Homotopy) -> Result<HomotopyKind, ProtocolError> {
         Kind::Generic(h) => HomotopyKind::Generic {
             parameters: values("generic.parameters", &h.parameters)?,
         },
+        Kind::Slide(h) => {
+            within_limit("slide.order", h.order.len(), sizes::EQUATIONS)?;
+            degrees("slide.forms", &[h.forms], 1)?;
+            HomotopyKind::Slide {
+                parameters: values("slide.parameters", &h.parameters)?,
+                order: h.order.clone(),
+                level: h.level,
+                forms: h.forms,
+            }
+        }
+        Kind::Intersect(h) => {
+            within_limit("intersect.order", h.order.len(), sizes::EQUATIONS)?;
+            HomotopyKind::Intersect {
+                parameters: values("intersect.parameters", &h.parameters)?,
+                order: h.order.clone(),
+                level: h.level,
+            }
+        }
         Kind::PathVariable(h) => HomotopyKind::PathVariable {
             parameters: values("path_variable.parameters", &h.parameters)?,
         },
@@ -143,6 +161,25 @@ fn start_points(m: &v1::StartPoints) -> Result<StartPoints, ProtocolError> {
             object: digest("stored.object", &p.object)?,
             count: p.count,
         },
+        Kind::LinearProduct(p) => {
+            let field = "linear_product.equations";
+            within_limit(field, p.equations.len(), sizes::EQUATIONS)?;
+            for (i, equation) in p.equations.iter().enumerate() {
+                let field = format!("{field}[{i}].sets");
+                within_limit(&field, equation.sets.len(), limits::FACTORS)?;
+                for set in &equation.sets {
+                    within_limit(&field, set.variables.len(), sizes::VARIABLES)?;
+                }
+            }
+            let sets = |equation: &v1::EquationSets| {
+                let sets = equation.sets.iter();
+                sets.map(|set| set.variables.clone()).collect()
+            };
+            StartPoints::LinearProduct {
+                sets: p.equations.iter().map(sets).collect(),
+                count: p.count,
+            }
+        }
         Kind::MixedCells(p) => StartPoints::MixedCells { count: p.count },
         Kind::Selected(p) => {
             let base = required("selected.base", p.base.as_deref())?;

@@ -89,6 +89,8 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             Ok(v1::StartKind::Given) => StartKind::Given,
             Ok(v1::StartKind::Monodromy) => StartKind::Monodromy,
             Ok(v1::StartKind::Polyhedral) => StartKind::Polyhedral,
+            Ok(v1::StartKind::LinearProduct) => StartKind::LinearProduct,
+            Ok(v1::StartKind::Regeneration) => StartKind::Regeneration,
             Err(_) => {
                 return Err(ProtocolError::invalid(
                     "start",

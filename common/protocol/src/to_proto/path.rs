@@ -51,6 +51,26 @@ fn homotopy(homotopy: &HomotopyKind) -> v1::Homotopy {
             HomotopyKind::Generic { parameters } => Kind::Generic(v1::Generic {
                 parameters: complexes(parameters),
             }),
+            HomotopyKind::Slide {
+                parameters,
+                order,
+                level,
+                forms,
+            } => Kind::Slide(v1::Slide {
+                parameters: complexes(parameters),
+                order: order.clone(),
+                level: *level,
+                forms: *forms,
+            }),
+            HomotopyKind::Intersect {
+                parameters,
+                order,
+                level,
+            } => Kind::Intersect(v1::Intersect {
+                parameters: complexes(parameters),
+                order: order.clone(),
+                level: *level,
+            }),
             HomotopyKind::PathVariable { parameters } => Kind::PathVariable(v1::PathVariable {
                 parameters: complexes(parameters),
             }),
@@ -79,6 +99,20 @@ fn start_points(points: &StartPoints) -> v1::StartPoints {
             }),
             StartPoints::Stored { object, count } => Kind::Stored(v1::Stored {
                 object: digest(*object),
+                count: *count,
+            }),
+            StartPoints::LinearProduct { sets, count } => Kind::LinearProduct(v1::LinearProduct {
+                equations: sets
+                    .iter()
+                    .map(|factors| v1::EquationSets {
+                        sets: factors
+                            .iter()
+                            .map(|set| v1::VariableSet {
+                                variables: set.clone(),
+                            })
+                            .collect(),
+                    })
+                    .collect(),
                 count: *count,
             }),
             StartPoints::MixedCells { count } => Kind::MixedCells(v1::MixedCells { count: *count }),

@@ -35,6 +35,8 @@ pub fn options(options: &Options) -> v1::Options {
             StartKind::Given => v1::StartKind::Given,
             StartKind::Monodromy => v1::StartKind::Monodromy,
             StartKind::Polyhedral => v1::StartKind::Polyhedral,
+            StartKind::LinearProduct => v1::StartKind::LinearProduct,
+            StartKind::Regeneration => v1::StartKind::Regeneration,
         }
         .into(),
         groups: options

@@ -202,7 +202,9 @@ impl Draw {
                 StartKind::Given,
                 StartKind::Monodromy,
                 StartKind::Polyhedral,
-            ][self.below(6)],
+                StartKind::LinearProduct,
+                StartKind::Regeneration,
+            ][self.below(8)],
             groups: self.some(|draw| {
                 vec![
                     vec!["x".to_owned()],
@@ -258,6 +260,32 @@ impl Draw {
             endgame_tolerance: 1e-8,
             precision_bits: [53, 106, 212][self.below(3)],
             max_precision_bits: [53, 1024][self.below(2)],
+        }
+    }
+
+    /// A stage of a kind that came later; the golden files are drawn from those before.
+    pub fn later_stage(&mut self) -> Stage {
+        let parameters = vec![self.complex()];
+        let (order, level) = (vec![1, 0], 1);
+        Stage {
+            homotopy: match self.below(2) {
+                0 => HomotopyKind::Slide {
+                    parameters,
+                    order,
+                    level,
+                    forms: 1 + self.index(3),
+                },
+                _ => HomotopyKind::Intersect {
+                    parameters,
+                    order,
+                    level,
+                },
+            },
+            start_points: StartPoints::LinearProduct {
+                sets: vec![vec![vec![0, 1], vec![1]], vec![Vec::new()]],
+                count: 3,
+            },
+            ..self.stage()
         }
     }
 

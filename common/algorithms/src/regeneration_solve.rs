@@ -1,0 +1,317 @@
+//! All regular isolated solutions of one system, equation by equation (regeneration).
+//!
+//! Level k holds the regular solutions of the first k equations on random
+//! slices; each level is two stages: slide the slice of the level to as many
+//! forms as the next equation has degrees, then deform the product of the forms
+//! into the equation. What goes to infinity or is singular on the way is no
+//! beginning of a regular solution and is left behind; what fails is named as
+//! failed in the end. (Hauenstein, Sommese, Wampler 2011.)
+
+use crate::any_algorithm::AnyAlgorithm;
+use crate::certified_solve::Certifiable;
+use crate::opening::Opening;
+use crate::progress::{StageProgress, VerdictCounts};
+use crate::retried_stage::RetriedStage;
+use crate::{Next, PathAlgorithm, Progress};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::{PathIndex, PathResult};
+use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_solutions::classification::{Tolerances, Verdict};
+use cognate_solutions::solution_set::{History, SolutionSet};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What does not change from level to level.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Levels {
+    /// The equations in the order in which they are taken.
+    pub order: Vec<u32>,
+    /// Their degrees, in that order.
+    pub degrees: Vec<u32>,
+    /// Values of the system's parameters.
+    pub parameters: Vec<Complex64>,
+    /// How paths are tracked.
+    pub settings: Settings,
+    /// Seed of the slices and of everything else.
+    pub seed: u64,
+}
+
+/// Equation by equation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RegenerationSolve {
+    levels: Levels,
+    level: u32,
+    stage: RetriedStage,
+    /// The points that the open level began with, one after the other.
+    points: Vec<Complex64>,
+    /// Points of the stage that have to be stored before it can be opened.
+    unsent: Option<Vec<Complex64>>,
+    variables: usize,
+    /// Paths that failed on the levels before.
+    lost: Vec<PathResult>,
+    /// The stages of the levels before.
+    behind: Vec<StageProgress>,
+    /// What was tracked again on them, crossings that were found there and resolved.
+    repeated: [u64; 3],
+    /// No level is to be opened any more.
+    last: bool,
+}
+
+impl RegenerationSolve {
+    /// The solve that begins with this point on all slices. `system` is square up to
+    /// combinations, in one affine group whose variables stand in order.
+    ///
+    /// # Panics
+    /// When there is no level.
+    pub fn new(
+        levels: Levels,
+        point: Vec<Complex64>,
+        system: &System,
+        tolerances: Tolerances,
+    ) -> Self {
+        assert!(
+            !levels.order.is_empty() && levels.order.len() == levels.degrees.len(),
+            "a level for each equation"
+        );
+        let variables = point.len();
+        let (first, sent) = open(
+            &levels,
+            0,
+            slides(&levels, 0),
+            &point,
+            variables,
+            StageId(0),
+        );
+        let targets = targets(&first);
+        Self {
+            stage: RetriedStage::new(first, system, tolerances, targets),
+            last: levels.order.len() == 1 && !slides(&levels, 0),
+            levels,
+            level: 0,
+            points: point,
+            unsent: Some(sent),
+            variables,
+            lost: Vec::new(),
+            behind: Vec::new(),
+            repeated: [0; 3],
+        }
+    }
+
+    /// The same with another limit of repetitions.
+    #[must_use]
+    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
+        self.stage = self.stage.with_max_retries(max_retries);
+        self
+    }
+
+    /// Puts the next stage in the place of one of which all is known; false after the last.
+    fn advance(&mut self) -> bool {
+        if self.last {
+            return false;
+        }
+        let slid = matches!(self.stage.first().homotopy, HomotopyKind::Slide { .. });
+        let mut found = match slid {
+            // The first form is the slice: there nothing moves.
+            true => self.points.clone(),
+            false => Vec::new(),
+        };
+        let shape = self.stage.shape();
+        for (result, decision) in self.stage.results().iter().zip(self.stage.decisions()) {
+            let regular = decision.verdict == Verdict::Finite;
+            let point = shape.to_variables(result.endpoint.to_double());
+            if regular && point.iter().all(|z| z.re.is_finite() && z.im.is_finite()) {
+                found.extend(point);
+            } else if slid || decision.verdict == Verdict::Failed {
+                // From one generic slice to another all solutions are regular.
+                self.lost.push(result.clone());
+            }
+        }
+        let number = self.levels.order.len() as u32;
+        if !slid {
+            self.level += 1;
+            self.points.clone_from(&found);
+        }
+        if found.is_empty() || self.level == number {
+            self.last = true;
+            return false;
+        }
+        let slide = !slid && slides(&self.levels, self.level);
+        let progress = self.stage.progress("").stages;
+        let id = progress.last().map_or(StageId(0), |s| StageId(s.id.0 + 1));
+        self.behind.extend(progress);
+        for target in 0..targets(self.stage.first()) as usize {
+            let history = self.stage.history(target, true);
+            self.repeated[0] += history.retracked;
+            self.repeated[1] += history.crossings_found;
+            self.repeated[2] += history.crossings_resolved;
+        }
+        let (first, sent) = open(&self.levels, self.level, slide, &found, self.variables, id);
+        self.stage = self.stage.followed_by(first, 0);
+        self.unsent = Some(sent);
+        self.last = self.level + 1 == number && !slide;
+        true
+    }
+
+    /// The last results of the paths that the answer counts: those of the last level, and after
+    /// them those that were lost before it.
+    pub fn results(&self) -> Vec<PathResult> {
+        let mut results = match self.last && self.reached_the_system() {
+            true => self.stage.results().to_vec(),
+            false => Vec::new(),
+        };
+        for lost in &self.lost {
+            let failure = match lost.outcome {
+                PathOutcome::Failed(failure) => failure,
+                PathOutcome::Regular | PathOutcome::Singular | PathOutcome::Diverging => {
+                    Failure::EndgameUnsettled
+                }
+            };
+            results.push(PathResult {
+                origin: PathIndex(results.len() as u64),
+                outcome: PathOutcome::Failed(failure),
+                t: Complex64::new(1.0, 0.0),
+                ..lost.clone()
+            });
+        }
+        results
+    }
+
+    /// Whether the present stage ends at the system that is asked.
+    fn reached_the_system(&self) -> bool {
+        self.stage.first().homotopy.ends_at_the_system()
+    }
+
+    fn description(&self) -> String {
+        format!("equation {} of {}", self.level + 1, self.levels.order.len())
+    }
+}
+
+/// Whether the level has more forms than the slice.
+fn slides(levels: &Levels, level: u32) -> bool {
+    levels.degrees[level as usize] > 1
+}
+
+fn targets(stage: &Stage) -> u64 {
+    stage.homotopy.targets()
+}
+
+/// A stage of a level and the points where it begins.
+fn open(
+    levels: &Levels,
+    level: u32,
+    slide: bool,
+    points: &[Complex64],
+    variables: usize,
+    id: StageId,
+) -> (Stage, Vec<Complex64>) {
+    let parameters = levels.parameters.clone();
+    let order = levels.order.clone();
+    let homotopy = match slide {
+        true => HomotopyKind::Slide {
+            parameters,
+            order,
+            level,
+            forms: levels.degrees[level as usize] - 1,
+        },
+        false => HomotopyKind::Intersect {
+            parameters,
+            order,
+            level,
+        },
+    };
+    let stored = StoredPoints {
+        dimension: variables,
+        coordinates: points.to_vec(),
+    };
+    let stage = Stage {
+        id,
+        work: Work::Track,
+        homotopy,
+        start_points: stored.as_start(),
+        settings: levels.settings.clone(),
+        seed: levels.seed,
+        attempt: 0,
+    };
+    (stage, stored.coordinates)
+}
+
+impl PathAlgorithm for RegenerationSolve {
+    fn next(&mut self) -> Next {
+        loop {
+            match self.stage.next_stage() {
+                Next::Open(mut opening) => {
+                    if let Some(coordinates) = self.unsent.take() {
+                        let Opening { objects, .. } = &mut *opening;
+                        objects.push(Arc::new(StoredPoints {
+                            dimension: self.variables,
+                            coordinates,
+                        }));
+                    }
+                    return Next::Open(opening);
+                }
+                Next::Done if self.advance() => {}
+                other => return other,
+            }
+        }
+    }
+
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        self.stage.absorb(stage, results);
+    }
+
+    fn progress(&self) -> Progress {
+        let present = self.stage.progress(&self.description());
+        let mut stages = self.behind.clone();
+        stages.extend(present.stages);
+        let at_the_system = self.reached_the_system();
+        let mut paths = match at_the_system {
+            true => present.paths,
+            false => VerdictCounts::default(),
+        };
+        paths.failed += self.lost.len() as u64;
+        Progress {
+            description: present.description,
+            stages,
+            paths,
+            done: present.done && self.last,
+        }
+    }
+
+    fn snapshot(&self) -> Vec<u8> {
+        AnyAlgorithm::Regeneration(Box::new(self.clone())).to_bytes()
+    }
+
+    fn certifiable(&self) -> Option<Certifiable> {
+        let mut certifiable = self.stage.certifiable();
+        if !self.reached_the_system() {
+            certifiable.points.clear();
+        }
+        certifiable.homotopy = HomotopyKind::StraightLine {
+            parameters: self.levels.parameters.clone(),
+        };
+        Some(certifiable)
+    }
+
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+        let results = self.results();
+        let mut history = History {
+            retracked: self.repeated[0],
+            crossings_found: self.repeated[1],
+            crossings_resolved: self.repeated[2],
+            complete_start: false,
+        };
+        for target in 0..targets(self.stage.first()) as usize {
+            let present = self.stage.history(target, false);
+            history.retracked += present.retracked;
+            history.crossings_found += present.crossings_found;
+            history.crossings_resolved += present.crossings_resolved;
+        }
+        let parameters = &self.levels.parameters;
+        vec![self.stage.set_of(system, parameters, &results, &history)]
+    }
+}

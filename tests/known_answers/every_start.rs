@@ -1,0 +1,144 @@
+//! The same solutions by every start that applies: linear products and regeneration beside the others.
+
+use crate::check::{Answer, SEEDS, check, solve};
+use cognate_algorithms::PlanOptions;
+use cognate_algorithms::plan::StartChoice::{
+    self, LinearProduct, Polyhedral, Regeneration, TotalDegree,
+};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::named::{Named, caprasse, katsura, noon};
+use cognate_systems::system::System;
+use cognate_tests::systems::{shared, six_revolute_axis_vectors, written};
+
+fn options(start: StartChoice, seed: u64) -> PlanOptions {
+    PlanOptions {
+        start,
+        seed,
+        ..PlanOptions::default()
+    }
+}
+
+fn solved(system: &System, start: StartChoice, seed: u64) -> SolutionSet {
+    let (_, mut sets) = solve(system, &options(start, seed), &|_| None);
+    sets.remove(0)
+}
+
+/// Every start finds this many nonsingular solutions, the same ones, and no path fails.
+fn check_same(name: &str, system: &System, nonsingular: u64, starts: &[StartChoice]) {
+    for seed in SEEDS.take(5) {
+        let mut first: Option<Vec<Vec<num_complex::Complex64>>> = None;
+        for &start in starts {
+            let set = solved(system, start, seed);
+            let at = format!("{name}, {start:?}, seed {seed}");
+            assert_eq!(set.paths.failed, 0, "{at}: {:?}", set.failed);
+            assert_eq!(
+                set.counts.nonsingular, nonsingular,
+                "{at}: {:?}",
+                set.warnings
+            );
+            assert!(set.settled(), "{at}");
+            let points: Vec<_> = set
+                .solutions
+                .iter()
+                .filter(|solution| !solution.singular)
+                .map(|solution| solution.variables.0.iter().map(|(_, z)| *z).collect())
+                .collect();
+            let Some(expected) = &first else {
+                first = Some(points);
+                continue;
+            };
+            for point in &points {
+                let near = |other: &Vec<num_complex::Complex64>| {
+                    let pairs = other.iter().zip(point);
+                    pairs.fold(0.0f64, |m, (a, b)| {
+                        m.max((a - b).norm_sqr() / (1.0 + b.norm_sqr()))
+                    }) < 1e-12
+                };
+                assert_eq!(expected.iter().filter(|o| near(o)).count(), 1, "{at}");
+            }
+        }
+    }
+}
+
+fn check_named(named: &Named, name: &str, starts: &[StartChoice]) {
+    let count = named.finite_solutions.unwrap_or(0);
+    check_same(name, &named.system, count, starts);
+}
+
+const ALL: &[StartChoice] = &[TotalDegree, LinearProduct, Polyhedral, Regeneration];
+
+#[test]
+fn classical_systems_by_every_start() {
+    check_named(&katsura(6), "katsura-6", ALL);
+    check_named(&noon(4), "noon-4", ALL);
+}
+
+/// Survey: six assemblies. By products of linear forms as by the two groups.
+#[test]
+fn three_rpr_platform() {
+    let starts = [
+        TotalDegree,
+        StartChoice::Multihomogeneous,
+        LinearProduct,
+        Regeneration,
+    ];
+    check_same("3-RPR", &shared("three_rpr_real6"), 6, &starts);
+}
+
+/// Sixteen postures of a general arm (Tsai and Morgan 1985).
+#[test]
+fn six_revolute_arm_by_its_axes() {
+    let starts = [StartChoice::Auto, Regeneration];
+    check_same("6R by axes", &six_revolute_axis_vectors(), 16, &starts);
+}
+
+/// 3^n - 2n paths of a linear-product start, every one to a solution (Verschelde, Cools 1993).
+#[test]
+fn noon_5_by_linear_products_has_no_path_too_many() {
+    let answer = Answer {
+        paths: 233,
+        nonsingular: 233,
+        ..Answer::default()
+    };
+    let by_products = options(LinearProduct, 0);
+    check(
+        "noon-5, linear product",
+        &noon(5).system,
+        &by_products,
+        answer,
+    );
+}
+
+/// Singular solutions are reached by a linear-product start as by any complete one.
+#[test]
+fn caprasse_keeps_its_multiplicities_by_linear_products() {
+    for seed in [1, 2, 3] {
+        let set = solved(&caprasse().system, LinearProduct, seed);
+        assert_eq!(set.paths.failed, 0, "{:?}", set.failed);
+        assert_eq!((set.counts.nonsingular, set.counts.singular), (24, 8));
+        assert_eq!(set.counts.with_multiplicity, 56);
+    }
+}
+
+/// More equations than unknowns: combinations are regenerated, and what solves only them is excess.
+#[test]
+fn an_overdetermined_system_by_regeneration() {
+    let system = written(
+        "variable_group x, y; function f1, f2, f3; \
+         f1 = x*y; f2 = x*(x - y - 1); f3 = y*(x - y - 1);",
+    );
+    for seed in SEEDS {
+        let set = solved(&system, Regeneration, seed);
+        assert_eq!((set.counts.nonsingular, set.paths.failed), (3, 0));
+        assert_eq!(set.paths.excess, Some(1));
+    }
+}
+
+/// x^2 + 1 = 0 twice: after the first equation nothing is left that solves the second alone.
+#[test]
+fn a_system_without_solutions_ends_without_any() {
+    let system = written("variable_group x, y; function f, g; f = x*y - 1; g = x*y - 2;");
+    let set = solved(&system, Regeneration, 1);
+    assert_eq!((set.counts.distinct, set.paths.failed), (0, 0));
+    assert!(set.settled());
+}
