@@ -2,17 +2,18 @@
 //!
 //! Not all paths of eco-6 are settled yet: what is asked of them is that none is lost in silence.
 
-use crate::check::{SEEDS, solve};
+use crate::check::solve;
 use crate::classical_systems::check_named;
 use cognate_algorithms::PlanOptions;
 use cognate_algorithms::plan::StartChoice;
 use cognate_systems::named::{eco, reimer};
 
-/// Five or six of its 162 paths by total degree run into a very singular point at infinity that takes more than
-/// double-doubles. Every one of them must be named, and the 16 solutions must all be there.
+/// By total degree, two to four of its 162 paths come so near to others (1e-14 and less, half-way,
+/// where they are larger than 1e14) that they take too many steps with hundreds of bits. Every one
+/// of them must be named, and the 16 solutions must all be there.
 #[test]
 fn eco_6_names_every_path_that_it_does_not_settle() {
-    for seed in SEEDS {
+    for seed in 1..=2 {
         let options = PlanOptions {
             seed,
             start: StartChoice::TotalDegree,
@@ -23,7 +24,7 @@ fn eco_6_names_every_path_that_it_does_not_settle() {
         assert_eq!((paths.total, paths.sum()), (162, 162), "seed {seed}");
         assert_eq!(counts.nonsingular, 16, "seed {seed}");
         assert_eq!(sets[0].failed.len() as u64, paths.failed, "seed {seed}");
-        assert!(paths.failed <= 12, "seed {seed}: {} failed", paths.failed);
+        assert!(paths.failed <= 6, "seed {seed}: {} failed", paths.failed);
         assert_eq!(sets[0].settled(), paths.failed == 0, "seed {seed}");
     }
 }
@@ -31,4 +32,20 @@ fn eco_6_names_every_path_that_it_does_not_settle() {
 #[test]
 fn reimer_4_has_36_solutions() {
     check_named("reimer-4", &reimer(4), 120, 36);
+}
+
+/// With this seed one of the 64 polyhedral paths passes by infinity half-way, where it is as large
+/// as 4e13: on the way there other paths come near, and doubles no longer tell them apart.
+#[test]
+fn eco_8_keeps_the_path_that_passes_by_infinity() {
+    let options = PlanOptions {
+        seed: 1_913_475_225,
+        start: StartChoice::Polyhedral,
+        ..PlanOptions::default()
+    };
+    let (_, sets) = solve(&eco(8).system, &options, &|_| None);
+    let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+    assert_eq!((paths.total, paths.finite, paths.failed), (64, 64, 0));
+    assert_eq!((paths.retracked, counts.nonsingular), (0, 64));
+    assert!(paths.highest_precision_bits > 53);
 }

@@ -74,7 +74,6 @@ pub struct Settled {
 pub struct Cauchy {
     radius: f64,
     start: Vec<Complex64>,
-    start_tangent: Vec<Complex64>,
     sum: Vec<Complex64>,
     even_sum: Vec<Complex64>,
     /// A generic linear form of each sample, for the power sums.
@@ -150,9 +149,9 @@ impl Cauchy {
         self.radius
     }
 
-    /// Where the present turns began: point and tangent at t = radius.
-    pub fn start(&self) -> (&[Complex64], &[Complex64]) {
-        (&self.start, &self.start_tangent)
+    /// Where the present turns began, at t = radius.
+    pub fn start(&self) -> &[Complex64] {
+        &self.start
     }
 
     /// The path stands at real t = radius: the turns begin here.
@@ -162,15 +161,12 @@ impl Cauchy {
         &mut self,
         radius: f64,
         point: &[Complex64],
-        tangent: &[Complex64],
         noise: f64,
         homogenizing: &[Complex64],
     ) -> Next {
         self.radius = radius;
         self.start.clear();
         self.start.extend_from_slice(point);
-        self.start_tangent.clear();
-        self.start_tangent.extend_from_slice(tangent);
         self.sum.clear();
         self.sum.extend_from_slice(point);
         self.even_sum.clear();
@@ -376,7 +372,7 @@ mod tests {
         let mut at = 0u32;
         let place = |radius: f64, at: u32| fine[(at % (VERTICES * c)) as usize] * root(radius);
         let x = path(place(radius, 0));
-        let mut next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
+        let mut next = cauchy.begin(radius, &x, 1e-15, &x[..1]);
         for _ in 0..10_000 {
             match next {
                 Next::Vertex { .. } => {
@@ -389,7 +385,7 @@ mod tests {
                     radius = r;
                     at = 0;
                     let x = path(place(radius, 0));
-                    next = cauchy.begin(radius, &x, &x, 1e-15, &x[..1]);
+                    next = cauchy.begin(radius, &x, 1e-15, &x[..1]);
                 }
                 _ => break,
             }
@@ -450,7 +446,7 @@ mod tests {
             let mut radius = 0.05;
             let mut t = Complex64::new(radius, 0.0);
             let x = follow(Complex64::new(1.0, 0.0), t);
-            let mut next = cauchy.begin(radius, &x, &x, 1e-15, &[]);
+            let mut next = cauchy.begin(radius, &x, 1e-15, &[]);
             let settled = loop {
                 match next {
                     Next::Vertex { vertex, .. } => {
@@ -464,7 +460,7 @@ mod tests {
                         let to = Complex64::new(r, 0.0);
                         let x = follow(t, to);
                         (t, radius) = (to, r);
-                        next = cauchy.begin(radius, &x, &x, 1e-15, &[]);
+                        next = cauchy.begin(radius, &x, 1e-15, &[]);
                     }
                     Next::Settled(settled) => break settled,
                     Next::Diverging | Next::Unsettled => panic!("{next:?} at {distance}"),

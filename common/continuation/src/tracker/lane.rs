@@ -1,7 +1,7 @@
 //! Lane: what one path knows of itself between steps.
 
+use super::digits::Digits;
 use crate::endgames::cauchy::Cauchy;
-use num_complex::Complex64;
 
 /// Where a path is in its life. The order is that of the life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -54,6 +54,9 @@ pub(crate) struct Lane {
     pub steps: u32,
     pub rejections: u32,
     pub evaluations: u32,
+    /// Steps of any kind; those with more digits than double-doubles count as often as they take
+    /// the digits of these.
+    pub effort: u64,
     /// Highest precision so far.
     pub highest_bits: u32,
     /// How often it went up a rung.
@@ -65,7 +68,7 @@ pub(crate) struct Lane {
     /// Second Newton correction of the last of these rejections.
     pub last_rejected: f64,
     /// Where the turns around 0 began in this room: t and the point.
-    pub first_turn: Option<(f64, Vec<Complex64>)>,
+    pub first_turn: Option<(f64, Vec<Digits>)>,
     pub cauchy: Cauchy,
 }
 
@@ -74,6 +77,7 @@ impl Lane {
     pub fn begin(&mut self, item: u64, origin: u64, target: u64) {
         (self.item, self.origin, self.target) = (item, origin, target);
         (self.steps, self.rejections, self.evaluations) = (0, 0, 0);
+        self.effort = 0;
         (self.highest_bits, self.climbs) = (0, 0);
         self.cauchy.clear();
     }

@@ -7,7 +7,10 @@
 //! a path are those of the same path alone (W = 1 is a width). What a room
 //! (a chart and an arithmetic) cannot do, another may: see `rooms`.
 
+use super::batch::Batch;
+use super::digits::Digits;
 use super::lane::{Lane, Phase};
+use super::limits::{Limits, MOST_ROUNDS, basin};
 use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
 use super::rooms::{Departure, Door, Ended, Room, Waiting};
@@ -21,7 +24,7 @@ use crate::stage::PreparedStage;
 use crate::step_control::next_step;
 use cognate_machine_code::Evaluator;
 use cognate_numeric::linear_algebra::matrix::Matrix;
-use cognate_numeric::precision::{DOUBLE, unit_roundoff};
+use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::{Complex, Mask, Real};
 use cognate_systems::evaluation::Evaluate;
@@ -29,12 +32,14 @@ use num_complex::Complex64;
 
 /// A step is accepted when the second Newton correction is at most this part of the first.
 const CONTRACTION: f64 = 0.1;
+/// And on the higher rungs, where other paths are near, the third at most this part of the second:
+/// while a first correction is made up of what every path has, the later ones show where between
+/// two paths the prediction fell.
+const CONVERGENCE: f64 = 0.01;
 /// Largest first correction at which a start point is believed.
 const START_ERROR: f64 = 1e-3;
 /// Farthest that the last Newton steps may move a regular endpoint.
 const ARRIVED: f64 = 1e-7;
-/// A refinement is accepted when its second correction is below this: then it is noise.
-const REFINED: f64 = 1e-6;
 
 /// Smallest step around 0, or towards it, as a part of the distance from it.
 const LEAST_ARC: f64 = 1e-9;
@@ -45,6 +50,8 @@ const PASSING: f64 = 0.1;
 const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
+/// With such a condition number a path may go down a rung.
+const TAME: f64 = 1e8;
 /// So many rejections since the last accepted step that only noise explains send a path to the
 /// next rung.
 const STARVED: u32 = 2;
@@ -52,129 +59,10 @@ const STARVED: u32 = 2;
 /// is not for want of digits.
 const ENDGAME_BITS: u32 = 212;
 
-/// The paths of all lanes: coordinates in the chart.
-///
-/// The points stand in a ring. Every step fills the oldest slot: in lanes that moved with the new
-/// point, in all others with a copy of the point where they still are, and the slot that was
-/// copied no longer counts there. So nothing is shifted, and which points count in a lane is known
-/// from its own steps alone.
-struct Batch<R: Real> {
-    x: [Vec<Complex<R>>; POINTS],
-    tangent: [Vec<Complex<R>>; POINTS],
-    t: [Complex<R::Control>; POINTS],
-    /// In which lanes a slot's point counts; where a path is, always.
-    known: [R::Mask; POINTS],
-    /// The slot where the paths are.
-    newest: usize,
-    target: Complex<R::Control>,
-    /// Wanted length of the next step.
-    h: R::Control,
-    /// Lanes whose next step has length 0.
-    refine: R::Mask,
-    /// Lanes whose last step was not rejected.
-    may_grow: R::Mask,
-    a: Vec<Complex<R>>,
-    b: Vec<Complex<R>>,
-    exchanges: R::Control,
-}
-
-impl<R: Real> Batch<R> {
-    fn new(context: R::Context, dimension: usize, parameters: usize) -> Self {
-        let points = || vec![Complex::<R>::zero(context); dimension];
-        let control = |v: f64| R::Control::from_f64((), v);
-        Self {
-            x: std::array::from_fn(|_| points()),
-            tangent: std::array::from_fn(|_| points()),
-            t: std::array::from_fn(|_| Complex::from_f64((), 1.0, 0.0)),
-            known: [R::Mask::splat(false); POINTS],
-            newest: 0,
-            target: Complex::from_f64((), 1.0, 0.0),
-            h: control(0.0),
-            refine: R::Mask::splat(true),
-            may_grow: R::Mask::splat(true),
-            a: vec![Complex::zero(context); parameters],
-            b: vec![Complex::zero(context); parameters],
-            exchanges: control(0.0),
-        }
-    }
-
-    /// The slot with the points of so many steps ago.
-    #[inline(always)]
-    fn slot(&self, age: usize) -> usize {
-        (self.newest + age) % POINTS
-    }
-
-    /// Where the paths are.
-    fn here(&self) -> &[Complex<R>] {
-        &self.x[self.newest]
-    }
-
-    /// Where they go.
-    fn tangent_here(&self) -> &[Complex<R>] {
-        &self.tangent[self.newest]
-    }
-
-    /// Where a path is, in t.
-    fn t(&self, lane: usize) -> Complex64 {
-        self.t[self.newest].lane(lane)
-    }
-
-    /// The slot of the last point behind a path.
-    fn before(&self, lane: usize) -> usize {
-        (1..POINTS)
-            .map(|age| self.slot(age))
-            .find(|&slot| self.known[slot].lane(lane))
-            .expect("the path has moved")
-    }
-
-    /// The points behind a lane no longer belong to where it goes.
-    fn forget_history(&mut self, lane: usize) {
-        for known in &mut self.known {
-            known.set_lane(lane, false);
-        }
-    }
-
-    fn read(
-        &self,
-        lane: usize,
-        slot: usize,
-        point: &mut Vec<Complex64>,
-        tangent: &mut Vec<Complex64>,
-    ) {
-        point.clear();
-        point.extend(self.x[slot].iter().map(|z| z.lane(lane)));
-        tangent.clear();
-        tangent.extend(self.tangent[slot].iter().map(|z| z.lane(lane)));
-    }
-
-    fn read_here(&self, lane: usize, point: &mut Vec<Complex64>, tangent: &mut Vec<Complex64>) {
-        self.read(lane, self.newest, point, tangent);
-    }
-
-    fn write(&mut self, lane: usize, t: Complex64, point: &[Complex64], tangent: &[Complex64]) {
-        let slot = self.newest;
-        for (z, value) in self.x[slot].iter_mut().zip(point) {
-            z.set_lane(lane, *value);
-        }
-        for (z, value) in self.tangent[slot].iter_mut().zip(tangent) {
-            z.set_lane(lane, *value);
-        }
-        self.t[slot].set_lane(lane, t);
-        self.forget_history(lane);
-    }
-
-    /// The lane's next step has length 0.
-    fn refine(&mut self, lane: usize) {
-        self.refine.set_lane(lane, true);
-    }
-
-    /// The lane's next steps lead to `target`, the first at most `h` long.
-    fn follow(&mut self, lane: usize, target: Complex64, h: f64) {
-        self.target.set_lane(lane, target);
-        self.h.set_lane(lane, h);
-        self.refine.set_lane(lane, false);
-        self.may_grow.set_lane(lane, true);
-    }
+/// Where a path enters a room.
+enum Entry {
+    Start(Vec<Complex64>),
+    Arrival(Vec<Digits>),
 }
 
 /// All lanes of one room.
@@ -183,8 +71,8 @@ pub(super) struct Lockstep<'a, R: Real> {
     room: Room<'a>,
     context: R::Context,
     settings: Settings,
-    /// Larger first corrections than this are not noise of this arithmetic.
-    noise: f64,
+    on_the_way: Limits,
+    around_zero: Limits,
     batch: Batch<R>,
     lanes: Vec<Lane>,
     scratch: <Evaluator as Evaluate<R>>::Scratch,
@@ -207,6 +95,8 @@ struct Step {
     /// First and second Newton correction, relative.
     predictor_error: f64,
     correction: f64,
+    /// Estimated distance within which Newton's method converges.
+    basin: f64,
     /// Largest coordinate of the point that was tried.
     size: f64,
 }
@@ -223,13 +113,16 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let n = homotopy.dimension();
         let parameters = homotopy.parameter_count();
         let settings = room.settings();
-        let noise =
-            0.01 * settings.predictor_tolerance * unit_roundoff(room.bits) / unit_roundoff(DOUBLE);
+        assert!(
+            room.bits == DOUBLE || R::WIDTH == 1,
+            "on the higher rungs there is one lane"
+        );
         Self {
             stage: room.stage,
             context,
+            on_the_way: Limits::on_the_way(room.bits, &settings),
+            around_zero: Limits::around_zero(room.bits, &settings),
             settings,
-            noise,
             batch: Batch::new(context, n, parameters),
             lanes: vec![Lane::default(); R::WIDTH],
             scratch: Evaluate::<R>::scratch(homotopy.evaluator(), context),
@@ -264,15 +157,15 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let homotopy = self.room.homotopy;
         loop {
             let path = &mut self.lanes[lane];
-            let (t, exchanges, start) = if let Some(item) = self.waiting.items.next() {
+            let (t, exchanges, entry) = if let Some(item) = self.waiting.items.next() {
                 let (origin, target) = self.stage.item(item);
                 path.begin(item, origin, target);
-                let start = self.stage.start_point(origin);
-                (Complex64::new(1.0, 0.0), 0.0, start)
+                let entry = self.stage.start_point(origin).map(Entry::Start);
+                (Complex64::new(1.0, 0.0), 0.0, entry)
             } else if let Some(departure) = self.waiting.departures.pop_front() {
                 *path = departure.lane;
-                let start = homotopy.chart().point(&departure.point);
-                (departure.t, departure.exchanges, start)
+                let entry = departure.point.map(Entry::Arrival);
+                (departure.t, departure.exchanges, entry)
             } else {
                 path.phase = Phase::Idle;
                 return;
@@ -287,8 +180,13 @@ impl<'a, R: Real> Lockstep<'a, R> {
             for (slot, value) in self.batch.b.iter_mut().zip(b) {
                 slot.set_lane(lane, value);
             }
-            if let Some(point) = start {
-                self.batch.write(lane, t, &point, &point);
+            if let Some(entry) = entry {
+                match entry {
+                    Entry::Start(point) => self.batch.write(lane, t, &point),
+                    Entry::Arrival(point) => {
+                        self.batch.write_digits(self.context, lane, t, &point);
+                    }
+                }
                 self.batch.follow(lane, t, 0.0);
                 self.batch.refine(lane);
                 return;
@@ -368,10 +266,16 @@ impl<'a, R: Real> Lockstep<'a, R> {
             &mut self.p,
             &mut self.dp,
         );
-        let mut corrections = [control(0.0), control(0.0)];
+        // In doubles both are the same, and above there is one lane.
+        let limits = match self.lanes[0].phase {
+            Phase::Idle | Phase::Starting | Phase::Approaching => self.on_the_way,
+            _ => self.around_zero,
+        };
+        let rounds = limits.rounds;
+        let mut corrections: [R::Control; MOST_ROUNDS] = std::array::from_fn(|_| control(0.0));
         let mut size = control(0.0);
-        for (round, correction) in corrections.iter_mut().enumerate() {
-            if round == 0 {
+        for (round, correction) in corrections.iter_mut().enumerate().take(rounds) {
+            if round + 1 < rounds {
                 homotopy.evaluator().jacobian(
                     &candidate,
                     &self.p,
@@ -411,7 +315,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             correction.sqrt();
             correction.div(&size);
         }
-        let [first, second] = &corrections;
+        let [first, second, third] = &corrections;
 
         // Accept: the correction contracts, and what is left of it is below the tolerance.
         let limit = control(settings.predictor_tolerance);
@@ -425,14 +329,22 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let converging = second
             .less_equal(&contracted)
             .and(left.less_equal(&allowed));
-        let mut noise = control(0.1);
-        noise.mul(&tolerance);
+        // In doubles there are two corrections, and the second is the last.
+        let last = if rounds == MOST_ROUNDS { third } else { second };
+        let mut settled = last.less_equal(&control(limits.settled));
+        if rounds == MOST_ROUNDS {
+            let mut quadratically = control(CONVERGENCE);
+            quadratically.mul(second);
+            settled = settled.or(converging.and(third.less_equal(&quadratically)));
+        } else {
+            settled = settled.or(converging);
+        }
         let moved = first
             .less_equal(&limit)
-            .and(converging.or(second.less_equal(&noise)))
+            .and(settled)
             .and(batch.refine.not());
-        let refined = second
-            .less_equal(&control(REFINED))
+        let refined = last
+            .less_equal(&control(limits.refined))
             .and(first.less_equal(&control(START_ERROR)))
             .and(batch.refine);
         let accepted = moved.or(refined);
@@ -468,12 +380,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 continue;
             }
             let path = &mut self.lanes[lane];
-            path.evaluations += 2;
+            path.evaluations += limits.rounds as u32;
+            path.effort += u64::from((self.room.bits / DOUBLE_DOUBLE).max(1));
             let step = Step {
                 accepted: accepted.lane(lane),
                 arrived: accepted.lane(lane) && reaches.lane(lane),
                 predictor_error: first.lane(lane),
                 correction: second.lane(lane),
+                basin: basin(first.lane(lane), second.lane(lane), limits.crowd),
                 size: size.lane(lane),
             };
             if refining.lane(lane) {
@@ -485,7 +399,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 path.rejections += 1;
                 // A correction that neither Newton's method nor a shorter step makes smaller is
                 // noise.
-                let stuck = step.predictor_error <= self.noise
+                let stuck = step.predictor_error <= limits.noise
                     && step.correction > CONTRACTION * step.predictor_error
                     && step.correction > 0.3 * path.last_rejected;
                 path.starved += u32::from(stuck);
@@ -515,20 +429,21 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let phase = self.lanes[lane].phase;
         let t = self.batch.t(lane);
         let h = self.batch.h.lane(lane);
-        let steps = self.lanes[lane].steps + self.lanes[lane].rejections;
-        if steps > settings.max_steps {
-            self.batch
-                .read_here(lane, &mut self.point, &mut self.tangent);
+        if self.lanes[lane].effort > u64::from(settings.max_steps) {
             return self.fail_and_refill(lane, t, Failure::TooManySteps);
         }
         match phase {
             Phase::Idle => {}
             Phase::Starting => {
+                if !step.accepted {
+                    let failure = match self.lanes[lane].steps {
+                        0 => Failure::InvalidStartPoint,
+                        _ => Failure::StepTooSmall,
+                    };
+                    return self.give_up(lane, t, failure);
+                }
                 self.batch
                     .read_here(lane, &mut self.point, &mut self.tangent);
-                if !step.accepted {
-                    return self.give_up(lane, t, Failure::InvalidStartPoint);
-                }
                 // With the tangent alone the error is about (h |x'|/|x|)^2 / 2.
                 let speed = norm(&self.tangent) / norm(&self.point);
                 let mut reach = settings.predictor_tolerance;
@@ -547,9 +462,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     self.lanes[lane].phase = Phase::Arriving;
                     self.batch.refine(lane);
                 } else if self.room.beyond && (step.size > FAR || at_end) {
-                    self.batch
-                        .read_here(lane, &mut self.point, &mut self.tangent);
                     self.leave(lane, t, Door::Beyond);
+                } else if self.room.up && step.basin < self.on_the_way.crowd {
+                    self.give_up(lane, t, Failure::StepTooSmall);
                 } else if step.accepted
                     && self.room.down
                     && self.lanes[lane].may_go_down()
@@ -557,15 +472,18 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 {
                     self.batch
                         .read_here(lane, &mut self.point, &mut self.tangent);
-                    self.leave(lane, t, Door::Down);
+                    let target = self.lanes[lane].target;
+                    if self.refiner.condition_at(&self.point, t, target) <= TAME {
+                        self.leave(lane, t, Door::Down);
+                    } else {
+                        self.lanes[lane].steps_here = 0;
+                    }
                 } else if at_end {
                     self.lanes[lane].phase = Phase::Settling;
                     self.batch.refine(lane);
                 } else if self.lanes[lane].starved >= STARVED
                     || h < settings.min_step * t.re.max(settings.endgame_radius)
                 {
-                    self.batch
-                        .read_here(lane, &mut self.point, &mut self.tangent);
                     self.give_up(lane, t, Failure::StepTooSmall);
                 }
             }
@@ -586,19 +504,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     return self.finish(lane, PathOutcome::Regular, report, None, Vec::new());
                 }
                 // Back to the last point before 0, from where the turns begin.
-                let slot = self.batch.before(lane);
-                let before = self.batch.t[slot].lane(lane);
-                self.batch
-                    .read(lane, slot, &mut self.point, &mut self.tangent);
+                let before = self.batch.step_back(lane);
                 if self.room.beyond {
                     return self.leave(lane, before, Door::Beyond);
                 }
-                let (point, tangent) = (
-                    std::mem::take(&mut self.point),
-                    std::mem::take(&mut self.tangent),
-                );
-                self.batch.write(lane, before, &point, &tangent);
-                (self.point, self.tangent) = (point, tangent);
                 if before.re > settings.endgame_boundary {
                     let boundary = Complex64::new(settings.endgame_boundary, 0.0);
                     self.batch.follow(lane, boundary, 0.1 * before.re);
@@ -617,29 +526,23 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     self.batch.refine(lane);
                 } else if self.lanes[lane].starved >= STARVED || h < LEAST_ARC * t.norm_sqr().sqrt()
                 {
-                    self.batch
-                        .read_here(lane, &mut self.point, &mut self.tangent);
                     self.give_up(lane, t, Failure::StepTooSmall);
                 }
             }
             Phase::Settling | Phase::Sampling => {
-                self.batch
-                    .read_here(lane, &mut self.point, &mut self.tangent);
                 if !step.accepted {
                     return self.give_up(lane, t, Failure::EndgameUnsettled);
                 }
+                self.batch
+                    .read_here(lane, &mut self.point, &mut self.tangent);
                 let homogenizing = self.homogenizing(false);
                 let next = if phase == Phase::Settling {
+                    self.batch.drop_anchor(lane);
                     let path = &mut self.lanes[lane];
                     path.first_turn
-                        .get_or_insert_with(|| (t.re, self.point.clone()));
-                    path.cauchy.begin(
-                        t.re,
-                        &self.point,
-                        &self.tangent,
-                        step.correction,
-                        &homogenizing,
-                    )
+                        .get_or_insert_with(|| (t.re, self.batch.digits(lane)));
+                    path.cauchy
+                        .begin(t.re, &self.point, step.correction, &homogenizing)
                 } else {
                     let valuations = self.valuations(t, &homogenizing);
                     self.lanes[lane].cauchy.at_vertex(
@@ -687,12 +590,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         );
                     }
                 }
-                let path = &self.lanes[lane];
-                let (point, tangent) = path.cauchy.start();
-                let t = Complex64::new(path.cauchy.radius(), 0.0);
-                self.batch.write(lane, t, point, tangent);
+                let from = self.lanes[lane].cauchy.radius();
+                self.batch.return_to_anchor(lane, from);
                 self.batch
-                    .follow(lane, Complex64::new(radius, 0.0), 0.1 * t.re);
+                    .follow(lane, Complex64::new(radius, 0.0), 0.1 * from);
                 self.lanes[lane].phase = Phase::Inward;
             }
             cauchy::Next::Settled(settled) => {
@@ -702,7 +603,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 // A condition number that stops growing towards t = 0 belongs to a regular
                 // endpoint; one that grows with the accuracy of the point to a singular one.
                 let near = self.refiner.condition_at(
-                    self.lanes[lane].cauchy.start().0,
+                    self.lanes[lane].cauchy.start(),
                     Complex64::new(settled.radius, 0.0),
                     target,
                 );
@@ -807,15 +708,29 @@ impl<'a, R: Real> Lockstep<'a, R> {
         // The turns around 0 are made again from the beginning, which lies on the real axis.
         match self.lanes[lane].first_turn.take() {
             Some((radius, point)) => {
-                self.point = point;
-                self.leave(lane, Complex64::new(radius, 0.0), door);
+                self.depart(lane, Complex64::new(radius, 0.0), point, door);
             }
             None => self.leave(lane, t, door),
         }
     }
 
-    /// The path goes on in another room from `self.point`.
+    /// The path goes on in another room from where it is.
     fn leave(&mut self, lane: usize, t: Complex64, door: Door) {
+        let point = self.batch.digits(lane);
+        self.depart(lane, t, point, door);
+    }
+
+    /// The path goes on in another room from this point of this one's chart.
+    fn depart(&mut self, lane: usize, t: Complex64, point: Vec<Digits>, door: Door) {
+        let point = match (door, self.stage.homotopy_beyond()) {
+            (Door::Beyond, Some(beyond)) => {
+                let rounded: Vec<Complex64> = point.iter().map(Digits::rounded).collect();
+                let coordinates = self.room.homotopy.chart().homogeneous(&rounded);
+                let there = beyond.chart().point(&coordinates);
+                there.map(|point| point.into_iter().map(Digits::from).collect())
+            }
+            _ => Some(point),
+        };
         let mut path = self.lanes[lane].clone();
         path.cauchy.forget();
         if door == Door::Up {
@@ -824,14 +739,17 @@ impl<'a, R: Real> Lockstep<'a, R> {
         self.ended.departures.push(Departure {
             lane: path,
             t,
-            point: self.room.homotopy.chart().homogeneous(&self.point),
+            point,
             exchanges: self.batch.exchanges.lane(lane),
             door,
         });
         self.refill(lane);
     }
 
+    /// The path fails where it is.
     fn fail_and_refill(&mut self, lane: usize, t: Complex64, why: Failure) {
+        self.batch
+            .read_here(lane, &mut self.point, &mut self.tangent);
         self.fail(lane, t, why);
         self.refill(lane);
     }

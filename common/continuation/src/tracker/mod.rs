@@ -3,7 +3,10 @@
 //! [`lockstep`] follows many paths at once, always in the same phase of a step;
 //! [`lane`] is what one of them knows of itself between steps.
 
-pub mod lane;
+mod batch;
+mod digits;
+pub(crate) mod lane;
+mod limits;
 pub mod lockstep;
 pub mod observer;
 pub mod outcome;

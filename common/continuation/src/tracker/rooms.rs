@@ -6,6 +6,7 @@
 //! each time), and down again when it has passed the difficult place. What a
 //! path does is a function of the path alone, whoever shares its rooms.
 
+use super::digits::Digits;
 use super::lane::Lane;
 use super::lockstep::Lockstep;
 use super::observer::Observer;
@@ -38,8 +39,8 @@ pub(super) enum Door {
 pub(super) struct Departure {
     pub lane: Lane,
     pub t: Complex64,
-    /// Homogeneous coordinates, group after group.
-    pub point: Vec<Complex64>,
+    /// In the chart of the room where it goes; `None` where that chart misses it.
+    pub point: Option<Vec<Digits>>,
     pub exchanges: f64,
     pub door: Door,
 }

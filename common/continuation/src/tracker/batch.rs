@@ -1,0 +1,206 @@
+//! Batch: where the paths of all lanes are, where they were, and where they go next.
+
+use super::digits::Digits;
+use crate::predictor::hermite::POINTS;
+use cognate_numeric::scalar::{Complex, Mask, Real};
+use num_complex::Complex64;
+
+/// The paths of all lanes: coordinates in the chart.
+///
+/// The points stand in a ring. Every step fills the oldest slot: in lanes that moved with the new
+/// point, in all others with a copy of the point where they still are, and the slot that was
+/// copied no longer counts there. So nothing is shifted, and which points count in a lane is known
+/// from its own steps alone.
+pub(super) struct Batch<R: Real> {
+    pub x: [Vec<Complex<R>>; POINTS],
+    pub tangent: [Vec<Complex<R>>; POINTS],
+    /// Where the turns around 0 begin.
+    anchor: Vec<Complex<R>>,
+    anchor_tangent: Vec<Complex<R>>,
+    pub t: [Complex<R::Control>; POINTS],
+    /// In which lanes a slot's point counts; where a path is, always.
+    pub known: [R::Mask; POINTS],
+    /// The slot where the paths are.
+    pub newest: usize,
+    pub target: Complex<R::Control>,
+    /// Wanted length of the next step.
+    pub h: R::Control,
+    /// Lanes whose next step has length 0.
+    pub refine: R::Mask,
+    /// Lanes whose last step was not rejected.
+    pub may_grow: R::Mask,
+    pub a: Vec<Complex<R>>,
+    pub b: Vec<Complex<R>>,
+    pub exchanges: R::Control,
+}
+
+impl<R: Real> Batch<R> {
+    pub fn new(context: R::Context, dimension: usize, parameters: usize) -> Self {
+        let points = || vec![Complex::<R>::zero(context); dimension];
+        let control = |v: f64| R::Control::from_f64((), v);
+        Self {
+            x: std::array::from_fn(|_| points()),
+            tangent: std::array::from_fn(|_| points()),
+            anchor: points(),
+            anchor_tangent: points(),
+            t: std::array::from_fn(|_| Complex::from_f64((), 1.0, 0.0)),
+            known: [R::Mask::splat(false); POINTS],
+            newest: 0,
+            target: Complex::from_f64((), 1.0, 0.0),
+            h: control(0.0),
+            refine: R::Mask::splat(true),
+            may_grow: R::Mask::splat(true),
+            a: vec![Complex::zero(context); parameters],
+            b: vec![Complex::zero(context); parameters],
+            exchanges: control(0.0),
+        }
+    }
+
+    /// The slot with the points of so many steps ago.
+    #[inline(always)]
+    pub fn slot(&self, age: usize) -> usize {
+        (self.newest + age) % POINTS
+    }
+
+    /// Where the paths are.
+    pub fn here(&self) -> &[Complex<R>] {
+        &self.x[self.newest]
+    }
+
+    /// Where they go.
+    pub fn tangent_here(&self) -> &[Complex<R>] {
+        &self.tangent[self.newest]
+    }
+
+    /// Where a path is, in t.
+    pub fn t(&self, lane: usize) -> Complex64 {
+        self.t[self.newest].lane(lane)
+    }
+
+    /// The slot of the last point behind a path.
+    pub fn before(&self, lane: usize) -> usize {
+        (1..POINTS)
+            .map(|age| self.slot(age))
+            .find(|&slot| self.known[slot].lane(lane))
+            .expect("the path has moved")
+    }
+
+    /// The points behind a lane no longer belong to where it goes.
+    pub fn forget_history(&mut self, lane: usize) {
+        for known in &mut self.known {
+            known.set_lane(lane, false);
+        }
+    }
+
+    pub fn read(
+        &self,
+        lane: usize,
+        slot: usize,
+        point: &mut Vec<Complex64>,
+        tangent: &mut Vec<Complex64>,
+    ) {
+        point.clear();
+        point.extend(self.x[slot].iter().map(|z| z.lane(lane)));
+        tangent.clear();
+        tangent.extend(self.tangent[slot].iter().map(|z| z.lane(lane)));
+    }
+
+    pub fn read_here(&self, lane: usize, point: &mut Vec<Complex64>, tangent: &mut Vec<Complex64>) {
+        self.read(lane, self.newest, point, tangent);
+    }
+
+    /// A path begins at this point.
+    pub fn write(&mut self, lane: usize, t: Complex64, point: &[Complex64]) {
+        let slot = self.newest;
+        let both = self.x[slot].iter_mut().zip(&mut self.tangent[slot]);
+        for ((x, tangent), value) in both.zip(point) {
+            x.set_lane(lane, *value);
+            tangent.set_lane(lane, *value);
+        }
+        self.arrive(lane, t);
+    }
+
+    /// A path comes from elsewhere, with all its digits.
+    pub fn write_digits(
+        &mut self,
+        context: R::Context,
+        lane: usize,
+        t: Complex64,
+        point: &[Digits],
+    ) {
+        let (slot, only) = (self.newest, one_lane::<R>(lane));
+        let both = self.x[slot].iter_mut().zip(&mut self.tangent[slot]);
+        for ((x, tangent), digits) in both.zip(point) {
+            let value = digits.value::<R>(context);
+            x.select(only, &value);
+            tangent.select(only, &value);
+        }
+        self.arrive(lane, t);
+    }
+
+    /// A lane is somewhere else than it was.
+    pub fn arrive(&mut self, lane: usize, t: Complex64) {
+        self.t[self.newest].set_lane(lane, t);
+        self.forget_history(lane);
+    }
+
+    /// A path's point with all its digits.
+    pub fn digits(&self, lane: usize) -> Vec<Digits> {
+        self.here().iter().map(|z| Digits::of(z, lane)).collect()
+    }
+
+    /// Remembers where a lane is.
+    pub fn drop_anchor(&mut self, lane: usize) {
+        let (slot, only) = (self.newest, one_lane::<R>(lane));
+        for i in 0..self.anchor.len() {
+            self.anchor[i].select(only, &self.x[slot][i]);
+            self.anchor_tangent[i].select(only, &self.tangent[slot][i]);
+        }
+    }
+
+    /// Takes a lane back to where it was at real `t`.
+    pub fn return_to_anchor(&mut self, lane: usize, t: f64) {
+        let (slot, only) = (self.newest, one_lane::<R>(lane));
+        for i in 0..self.anchor.len() {
+            self.x[slot][i].select(only, &self.anchor[i]);
+            self.tangent[slot][i].select(only, &self.anchor_tangent[i]);
+        }
+        self.arrive(lane, Complex64::new(t, 0.0));
+    }
+
+    /// Takes a lane back by one step; gives its t there.
+    pub fn step_back(&mut self, lane: usize) -> Complex64 {
+        let (from, to, only) = (self.before(lane), self.newest, one_lane::<R>(lane));
+        for points in [&mut self.x, &mut self.tangent] {
+            let [from, to] = points
+                .get_disjoint_mut([from, to])
+                .expect("they are two slots");
+            for (to, from) in to.iter_mut().zip(from) {
+                to.select(only, from);
+            }
+        }
+        let t = self.t[from].lane(lane);
+        self.arrive(lane, t);
+        t
+    }
+
+    /// The lane's next step has length 0.
+    pub fn refine(&mut self, lane: usize) {
+        self.refine.set_lane(lane, true);
+    }
+
+    /// The lane's next steps lead to `target`, the first at most `h` long.
+    pub fn follow(&mut self, lane: usize, target: Complex64, h: f64) {
+        self.target.set_lane(lane, target);
+        self.h.set_lane(lane, h);
+        self.refine.set_lane(lane, false);
+        self.may_grow.set_lane(lane, true);
+    }
+}
+
+/// The mask of one lane.
+fn one_lane<R: Real>(lane: usize) -> R::Mask {
+    let mut only = R::Mask::splat(false);
+    only.set_lane(lane, true);
+    only
+}
