@@ -1,12 +1,10 @@
-//! Limits: which relative sizes an arithmetic can tell, and when it is too coarse for two paths.
+//! Limits: which relative sizes an arithmetic can tell.
 
 use super::settings::Settings;
 use cognate_numeric::precision::{DOUBLE, unit_roundoff};
 
 /// Newton rounds of a step on the way on the higher rungs; elsewhere two.
 pub(super) const MOST_ROUNDS: usize = 3;
-/// In doubles, paths closer together than this need more digits.
-const CROWD: f64 = 1e-7;
 /// A refinement is accepted when its last correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
 
@@ -21,8 +19,6 @@ pub(super) struct Limits {
     pub refined: f64,
     /// Larger first corrections than this are not noise.
     pub noise: f64,
-    /// Paths closer together than this need more digits.
-    pub crowd: f64,
 }
 
 impl Limits {
@@ -34,7 +30,6 @@ impl Limits {
             settled: 0.1 * settings.tolerance,
             refined: REFINED,
             noise: 0.01 * settings.predictor_tolerance * finer(bits),
-            crowd: CROWD,
         }
     }
 
@@ -48,7 +43,6 @@ impl Limits {
             rounds: if bits > DOUBLE { MOST_ROUNDS } else { 2 },
             settled: half * limits.settled,
             refined: half * limits.refined,
-            crowd: half * limits.crowd,
             ..limits
         }
     }
@@ -57,15 +51,4 @@ impl Limits {
 /// The unit roundoff as a part of that of doubles.
 fn finer(bits: u32) -> f64 {
     unit_roundoff(bits) / unit_roundoff(DOUBLE)
-}
-
-/// Successive corrections d, d' of Newton's method give the size of its basin, about d^2 / d'
-/// (Deuflhard, Newton Methods for Nonlinear Problems, 2004, affine covariant theory). Where d is
-/// far below what is asked about they say nothing.
-pub(super) fn basin(d: f64, next: f64, asked: f64) -> f64 {
-    if d > 0.1 * asked && next > 0.0 {
-        d * (d / next)
-    } else {
-        f64::INFINITY
-    }
 }

@@ -10,7 +10,7 @@
 use super::batch::Batch;
 use super::digits::Digits;
 use super::lane::{Lane, Phase};
-use super::limits::{Limits, MOST_ROUNDS, basin};
+use super::limits::{Limits, MOST_ROUNDS};
 use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
 use super::rooms::{Departure, Door, Ended, Room, Waiting};
@@ -51,7 +51,7 @@ const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
 /// With such a condition number a path may go down a rung.
-const TAME: f64 = 1e8;
+const TAME: f64 = 1e10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
 /// next rung.
 const STARVED: u32 = 2;
@@ -95,8 +95,6 @@ struct Step {
     /// First and second Newton correction, relative.
     predictor_error: f64,
     correction: f64,
-    /// Estimated distance within which Newton's method converges.
-    basin: f64,
     /// Largest coordinate of the point that was tried.
     size: f64,
 }
@@ -387,7 +385,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 arrived: accepted.lane(lane) && reaches.lane(lane),
                 predictor_error: first.lane(lane),
                 correction: second.lane(lane),
-                basin: basin(first.lane(lane), second.lane(lane), limits.crowd),
                 size: size.lane(lane),
             };
             if refining.lane(lane) {
@@ -463,8 +460,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     self.batch.refine(lane);
                 } else if self.room.beyond && (step.size > FAR || at_end) {
                     self.leave(lane, t, Door::Beyond);
-                } else if self.room.up && step.basin < self.on_the_way.crowd {
-                    self.give_up(lane, t, Failure::StepTooSmall);
                 } else if step.accepted
                     && self.room.down
                     && self.lanes[lane].may_go_down()
