@@ -101,4 +101,7 @@ step "chaos: half a minute of random kills on either ledger"
 # Built above with everything else; `cargo run` of one package would build half of it once more.
 target/release/chaos --seconds 15 --seed 1
 target/release/chaos --seconds 15 --seed 2 --ledger postgres
+
+step "many solves: 20 seeds each on one warm coordinator"
+target/release/many_solves
 printf '\nall tests passed\n'

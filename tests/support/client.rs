@@ -197,8 +197,8 @@ impl Client {
     ///
     /// # Panics
     /// When it does not say it.
-    pub fn answer(&self, job: &str) -> Answer {
-        let job = job.to_owned();
+    pub fn answer(&self, id: &str) -> Answer {
+        let job = id.to_owned();
         let call = |mut client: ClientApiClient<Channel>| async move {
             let request = v1::StreamSolutionsRequest { job: job.clone() };
             let mut stream = client.stream_solutions(request).await?.into_inner();
@@ -206,24 +206,37 @@ impl Client {
             while let Some(solution) = stream.message().await? {
                 solutions.push(solution);
             }
-            let request = v1::StreamPathsRequest { job: job.clone() };
+            let request = v1::StreamPathsRequest { job };
             let mut stream = client.stream_paths(request).await?.into_inner();
             let mut paths = Vec::new();
             while let Some(path) = stream.message().await? {
                 paths.push(path);
             }
-            let request = v1::GetSummaryRequest { job };
-            let summary = client.get_summary(request).await?.into_inner();
-            let counts = summary.counts.unwrap_or_default();
-            Ok(Answer {
-                solutions,
-                paths,
-                counts,
-            })
+            Ok((solutions, paths))
         };
         match self.call(call) {
-            Ok(answer) => answer,
+            Ok((solutions, paths)) => Answer {
+                solutions,
+                paths,
+                counts: self.counts(id),
+            },
             Err(status) => panic!("no answer: {status}"),
+        }
+    }
+
+    /// The counts of a solved job.
+    ///
+    /// # Panics
+    /// When it does not say them.
+    pub fn counts(&self, job: &str) -> v1::SummaryCounts {
+        let request = v1::GetSummaryRequest {
+            job: job.to_owned(),
+        };
+        let call =
+            |mut client: ClientApiClient<Channel>| async move { client.get_summary(request).await };
+        match self.call(call) {
+            Ok(response) => response.into_inner().counts.unwrap_or_default(),
+            Err(status) => panic!("no summary: {status}"),
         }
     }
 

@@ -1,0 +1,183 @@
+//! Many solves: the same systems over and over on one warm coordinator with two workers, each time
+//! with another seed. Every count must be the published one every time; a table says what it took.
+//!
+//! `cargo run --release -p cognate-tests --bin many_solves -- [--solves 1000] [--hard 100] [--large 3]`
+
+use cognate_protocol::v1::SummaryCounts;
+use cognate_systems::formats::{self, FileSettings, Format};
+use cognate_systems::named::{Named, cyclic, eco, katsura, noon};
+use cognate_systems::system::System;
+use cognate_tests::client::{Client, Submission};
+use cognate_tests::cluster::Cluster;
+use cognate_tests::systems::shared;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// A system and how many solutions it has.
+struct Subject {
+    name: &'static str,
+    text: String,
+    solutions: u64,
+}
+
+impl Subject {
+    fn new(name: &'static str, system: &System, solutions: u64) -> Self {
+        let text = formats::write(Format::Bertini, system, &FileSettings::default());
+        Self {
+            name,
+            text: text.expect("systems of our own can be written"),
+            solutions,
+        }
+    }
+
+    fn named(name: &'static str, named: &Named) -> Self {
+        let solutions = named.finite_solutions.expect("its count is published");
+        Self::new(name, &named.system, solutions)
+    }
+}
+
+/// What is solved how often.
+fn groups(wanted: &Wanted) -> [(u64, Vec<Subject>); 3] {
+    [
+        (
+            wanted.solves,
+            vec![
+                Subject::named("katsura-6", &katsura(6)),
+                Subject::named("cyclic-5", &cyclic(5)),
+                Subject::named("noon-4", &noon(4)),
+                Subject::new("3-RPR", &shared("three_rpr_real6"), 6),
+                Subject::new("Stewart-Gough", &shared("stewart_gough_dietmaier"), 40),
+                Subject::new("6R, 8 quadrics", &shared("six_revolute_puma560_tm8"), 16),
+                Subject::new("five poses", &shared("burmester_five_poses_real4"), 4),
+            ],
+        ),
+        (
+            wanted.hard,
+            vec![
+                Subject::named("cyclic-7", &cyclic(7)),
+                Subject::named("eco-8", &eco(8)),
+            ],
+        ),
+        (
+            wanted.large,
+            vec![Subject::named("katsura-17", &katsura(17))],
+        ),
+    ]
+}
+
+/// How often each is solved: few times where nothing is said.
+struct Wanted {
+    solves: u64,
+    hard: u64,
+    large: u64,
+}
+
+fn wanted() -> Result<Wanted, String> {
+    let mut wanted = Wanted {
+        solves: 20,
+        hard: 2,
+        large: 0,
+    };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let value = words.next().ok_or(format!("{word}: a number is missing"))?;
+        let number = value.parse().map_err(|e| format!("{word} {value}: {e}"))?;
+        match word.as_str() {
+            "--solves" => wanted.solves = number,
+            "--hard" => wanted.hard = number,
+            "--large" => wanted.large = number,
+            _ => {
+                return Err(format!(
+                    "{word}: expected --solves N, --hard N or --large N"
+                ));
+            }
+        }
+    }
+    Ok(wanted)
+}
+
+/// What all solves of one system together showed.
+#[derive(Default)]
+struct Tally {
+    solves: u64,
+    paths: u64,
+    retracked: u64,
+    failed: u64,
+    /// Seeds with another count, or with paths that are in no class.
+    wrong: Vec<u64>,
+    took: Duration,
+}
+
+impl Tally {
+    fn take(&mut self, seed: u64, wanted: u64, counts: &SummaryCounts) {
+        let classes = counts.paths_finite
+            + counts.paths_singular
+            + counts.paths_positive_dimensional.unwrap_or(0)
+            + counts.paths_excess.unwrap_or(0)
+            + counts.paths_at_infinity
+            + counts.paths_failed;
+        self.solves += 1;
+        self.paths += counts.paths_total;
+        self.retracked += counts.paths_retracked;
+        self.failed += counts.paths_failed;
+        if counts.solutions_nonsingular != wanted || classes != counts.paths_total {
+            self.wrong.push(seed);
+        }
+    }
+}
+
+fn solve(client: &Client, subject: &Subject, times: u64) -> Tally {
+    let mut tally = Tally::default();
+    let begin = Instant::now();
+    for seed in 1..=times {
+        let mut submission = Submission::of(subject.text.clone());
+        submission.options.seed = Some(seed);
+        let job = client.submit(&submission);
+        client.wait_until_solved(&job);
+        tally.take(seed, subject.solutions, &client.counts(&job));
+    }
+    tally.took = begin.elapsed();
+    tally
+}
+
+fn main() -> ExitCode {
+    let wanted = match wanted() {
+        Ok(wanted) => wanted,
+        Err(message) => {
+            eprintln!("error: {message}");
+            return ExitCode::from(2);
+        }
+    };
+    let cluster = Cluster::with_workers(2);
+    let client = cluster.client();
+    println!(
+        "system          solutions  solves  right      paths  failed  tracked again  ms a solve"
+    );
+    let mut good = true;
+    for (times, subjects) in groups(&wanted) {
+        for subject in subjects.iter().filter(|_| times > 0) {
+            let tally = solve(&client, subject, times);
+            println!(
+                "{:<15} {:>9}  {:>6} {:>6} {:>10}  {:>6}  {:>13}  {:>10.1}",
+                subject.name,
+                subject.solutions,
+                tally.solves,
+                tally.solves - tally.wrong.len() as u64,
+                tally.paths,
+                tally.failed,
+                tally.retracked,
+                tally.took.as_secs_f64() * 1e3 / times as f64
+            );
+            if !tally.wrong.is_empty() {
+                println!("  NOT RIGHT with seeds {:?}", tally.wrong);
+            }
+            good &= tally.wrong.is_empty() && tally.failed == 0;
+        }
+    }
+    cluster.stop();
+    if good {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
