@@ -1,37 +1,12 @@
-//! Whole solves against PHCpack's black box and Bertini 2, on the same systems in the same run.
+//! Whole solves by every start, against other programs on the same file in the same run.
 //!
-//! `cargo bench -p cognate-tests --bench end_to_end [-- NAME]`, on one thread. CPU seconds: ours of
+//! `cargo bench -p cognate-tests --bench end_to_end [-- NAME]`, on one thread. Ours: CPU seconds of
 //! planning (choosing a start, mixed volumes) and of solving (compiling, tracking, endgames,
-//! classification), best of three seeds; `phc -b -0` (apt: `phcpack`, where it is installed) of its
-//! process, which starts in milliseconds; Bertini 2 (`BERTINI_PYTHON` names a Python with the
-//! package `bertini2`) of its solve alone, without starting Python. A peer is stopped after
-//! 120 CPU seconds.
-//!
-//! Figures of 2026-11-21, two shared cores of an AMD EPYC with AVX-512, `phc` 2.4.86; other builds
-//! ran beside it on both sides. What is not here has not been measured since the starts changed:
-//!
-//! ```text
-//! system          start or program                   paths distinct  plan s  solve s  paths/s
-//! noon-5          auto: total-degree                   243      233   0.000   0.0040    61046
-//! noon-5          linear-product                       233      233   0.000   0.0159    14613
-//! noon-5          polyhedral                           233      233   0.000   0.0358     6507
-//! noon-5          phc -b                                        233             1.97  494 times ours
-//! cyclic-7        auto: polyhedral                     924      924   0.017   0.1328     6957
-//! cyclic-7        phc -b                                        924             9.71   65 times ours
-//! 6R, 8 quadrics  auto: linear-product                  64       32   0.000   0.0264     2426
-//! 6R, 8 quadrics  multihomogeneous                      96       32   0.000   0.0480     2001
-//! 6R, 8 quadrics  regeneration                          48       32   0.000   0.1978      243
-//! 6R, 8 quadrics  phc -b                                         40             0.63   24 times ours
-//! Stewart-Gough   auto: total-degree                   128       40   0.006   0.1153     1111
-//! Stewart-Gough   polyhedral                           128       40   0.000   0.2283      561
-//! ```
-//!
-//! Cyclic-7 is not asked by linear products: many of those paths to infinity climb to large numbers
-//! of digits, and it takes minutes.
-//!
-//! `phc -b` chooses its start itself: on most of these a polyhedral one. Bertini 2 starts by total
-//! degree. What a line says of ours is the start that stands there.
+//! classification), the median of three seeds. Figures and what peers need: `end_to_end.md`.
 
+mod peers;
+
+use crate::peers::{Answer, Peers};
 use cognate_algorithms::plan::StartChoice;
 use cognate_algorithms::run_locally::run_locally;
 use cognate_algorithms::{PlanOptions, plan};
@@ -40,10 +15,11 @@ use cognate_systems::named::{cyclic, eco, katsura, noon, reimer};
 use cognate_systems::system::System;
 use cognate_tests::systems::{shared, six_revolute_axis_vectors};
 use std::path::Path;
-use std::process::Command;
 
-/// CPU seconds after which a peer is stopped.
+/// CPU seconds after which a peer is stopped, where `PEER_SECONDS` does not say otherwise.
 const PATIENCE: u32 = 120;
+/// Every start is measured with seeds from 1 to here.
+const SEEDS: u64 = 3;
 
 /// CPU seconds of this thread so far; `None` where the system does not tell.
 fn cpu_seconds() -> Option<f64> {
@@ -52,69 +28,81 @@ fn cpu_seconds() -> Option<f64> {
     Some(nanoseconds * 1e-9)
 }
 
-/// What a shell prints that runs this under the limit of CPU seconds.
-fn shell(script: &str, arguments: &[&Path]) -> Result<String, String> {
-    let output = Command::new("bash")
-        .arg("-c")
-        .arg(format!("ulimit -t {PATIENCE}; {script}"))
-        .arg("bash")
-        .args(arguments)
-        .env("BERTINI_NUM_THREADS", "1")
-        .output()
-        .map_err(|error| error.to_string())?;
-    if !output.status.success() {
-        return Err("-".into());
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+/// One start on one system, over all seeds.
+struct Measured {
+    label: String,
+    paths: u64,
+    /// Fewest that a seed finds.
+    distinct: u64,
+    /// Of all seeds together.
+    failed: u64,
+    /// Medians, in CPU seconds.
+    planning: f64,
+    solving: f64,
 }
 
-/// CPU seconds of `phc -b` on this file and the solutions that it lists, or why there are none.
-fn phc(input: &Path, folder: &Path) -> Result<(f64, u64), String> {
-    let copy = folder.join("phc_input"); // phc writes into its input
-    std::fs::copy(input, &copy).map_err(|error| error.to_string())?;
-    let output = folder.join("phc_output");
-    let _ = std::fs::remove_file(&output);
-    let script = "TIMEFORMAT='%U %S'; { time phc -b -0 \"$1\" \"$2\" >/dev/null 2>&1; } 2>&1";
-    let text = shell(script, &[&copy, &output])?;
-    let words = text.split_whitespace();
-    let times: Vec<f64> = words.filter_map(|t| t.parse().ok()).collect();
-    let found = std::fs::read_to_string(&copy).unwrap_or_default();
-    // "THE SOLUTIONS :" and on the next line their number and dimension.
-    let mut lines = found
-        .lines()
-        .skip_while(|line| !line.contains("THE SOLUTIONS"));
-    let count = lines
-        .nth(1)
-        .and_then(|line| line.split_whitespace().next()?.parse().ok());
-    match (&times[..], count) {
-        ([user, system], Some(count)) => Ok((user + system, count)),
-        _ => Err("-".into()),
+impl Measured {
+    fn line(&self) -> String {
+        let rate = self.paths as f64 / self.solving;
+        let mut line = format!(
+            "{:33} {:6} {:8} {:7.3} {:8.4} {rate:8.0}",
+            self.label, self.paths, self.distinct, self.planning, self.solving
+        );
+        if self.failed > 0 {
+            line += &format!("  {} failed in {SEEDS} runs", self.failed);
+        }
+        line
     }
 }
 
-/// CPU seconds of Bertini 2 on this system and the finite solutions that it finds.
-fn bertini(system: &System, folder: &Path) -> Result<(f64, u64), String> {
-    let python = std::env::var("BERTINI_PYTHON").map_err(|_| "-")?;
-    let text = formats::write(Format::Bertini, system, &FileSettings::default())
-        .map_err(|error| error.to_string())?;
-    let inner = text.split_once("INPUT").map_or("", |(_, rest)| rest);
-    let inner = inner.split("END;").next().unwrap_or("");
-    let (input, program) = (folder.join("bertini_input"), folder.join("bertini.py"));
-    let script = "import sys, time, tempfile, bertini\n\
-                  system = bertini.parse.system(open(sys.argv[1]).read())\n\
-                  before = time.process_time()\n\
-                  found = bertini.solve(system, seed=1, directory=tempfile.mkdtemp(), show_progress=False)\n\
-                  print(time.process_time() - before, len(found))\n";
-    std::fs::write(&input, inner).map_err(|error| error.to_string())?;
-    std::fs::write(&program, script).map_err(|error| error.to_string())?;
-    let text = shell(
-        "\"$1\" \"$2\" \"$3\" 2>/dev/null",
-        &[Path::new(&python), &program, &input],
-    )?;
-    let mut words = text.split_whitespace();
-    let seconds = words.next().and_then(|word| word.parse().ok());
-    let count = words.next().and_then(|word| word.parse().ok());
-    seconds.zip(count).ok_or_else(|| "-".into())
+fn median(mut of: Vec<f64>) -> f64 {
+    of.sort_by(f64::total_cmp);
+    of[of.len() / 2]
+}
+
+/// Ours with every seed; `Ok(Err(reason))` where the start does not apply.
+fn measure(
+    system: &System,
+    start: StartChoice,
+) -> Result<Result<Measured, String>, Box<dyn std::error::Error>> {
+    let (mut planning, mut solving) = (Vec::new(), Vec::new());
+    let mut measured: Option<Measured> = None;
+    for seed in 1..=SEEDS {
+        let options = PlanOptions {
+            start,
+            seed,
+            ..PlanOptions::default()
+        };
+        let clock = || cpu_seconds().ok_or("no /proc/thread-self/schedstat here");
+        let begin = clock()?;
+        let mut plan = match plan(system, &options) {
+            Ok(plan) => plan,
+            Err(error) => return Ok(Err(format!("{start:?}: {error}"))),
+        };
+        let planned = clock()?;
+        let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 16)?;
+        solving.push(clock()? - planned);
+        planning.push(planned - begin);
+        let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+        let before = measured.as_ref();
+        measured = Some(Measured {
+            label: match start {
+                StartChoice::Auto => format!("auto: {}", plan.start),
+                _ => plan.start.to_string(),
+            },
+            paths: paths.total,
+            distinct: before.map_or(counts.distinct, |m| m.distinct.min(counts.distinct)),
+            failed: before.map_or(0, |m| m.failed) + paths.failed,
+            planning: 0.0,
+            solving: 0.0,
+        });
+    }
+    let measured = measured.ok_or("there are seeds")?;
+    Ok(Ok(Measured {
+        planning: median(planning),
+        solving: median(solving),
+        ..measured
+    }))
 }
 
 /// The system as one PHCpack file, written and read again: what both sides solve.
@@ -125,44 +113,34 @@ fn written(system: &System, input: &Path) -> Result<System, Box<dyn std::error::
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    use StartChoice::{
-        Auto, LinearProduct, Multihomogeneous, Polyhedral, Regeneration, TotalDegree,
-    };
+    use StartChoice::{Auto, LinearProduct, Multihomogeneous, Polyhedral, Regeneration};
     let folder = tempfile::tempdir()?;
+    let patience = match std::env::var("PEER_SECONDS") {
+        Ok(seconds) => seconds.parse().map_err(|_| "PEER_SECONDS: a number")?,
+        Err(_) => PATIENCE,
+    };
     let only: Option<String> = std::env::args().nth(1).filter(|a| !a.starts_with('-'));
     println!(
         "{:15} {:33} {:>6} {:>8} {:>7} {:>8} {:>8}",
         "system", "start or program", "paths", "distinct", "plan s", "solve s", "paths/s"
     );
     for (name, system, others) in [
-        (
-            "noon-5",
-            noon(5).system,
-            &[TotalDegree, LinearProduct, Polyhedral][..],
-        ),
-        ("reimer-5", reimer(5).system, &[Polyhedral]),
-        ("eco-8", eco(8).system, &[TotalDegree, LinearProduct]),
-        ("cyclic-7", cyclic(7).system, &[TotalDegree]),
-        (
-            "katsura-10",
-            katsura(10).system,
-            &[Polyhedral, Regeneration],
-        ),
+        ("noon-5", noon(5).system, &[LinearProduct, Polyhedral][..]),
+        ("reimer-5", reimer(5).system, &[]),
+        ("eco-8", eco(8).system, &[]),
+        ("cyclic-7", cyclic(7).system, &[]),
+        ("katsura-10", katsura(10).system, &[]),
         (
             "Stewart-Gough",
             shared("stewart_gough_dietmaier"),
             &[Polyhedral],
         ),
         (
-            "6R, 8 quadrics",
+            "6R-8",
             shared("six_revolute_manseur_doty_tm8"),
             &[Multihomogeneous, Regeneration],
         ),
-        (
-            "6R, axes",
-            six_revolute_axis_vectors(),
-            &[Multihomogeneous, Polyhedral, Regeneration],
-        ),
+        ("6R-12", six_revolute_axis_vectors(), &[Polyhedral]),
     ] {
         if only.as_ref().is_some_and(|only| only != name) {
             continue;
@@ -172,60 +150,36 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut system = written(&system, &input)?;
         // PHCpack's format knows no groups; ours are those of the file.
         system.groups = groups;
-        let mut best_of_all = f64::INFINITY;
+        let mut ours = f64::INFINITY;
         let starts: Vec<StartChoice> = [Auto].iter().chain(others).copied().collect();
         for start in starts {
-            let (mut best, mut planning) = (f64::INFINITY, f64::INFINITY);
-            let mut line = String::new();
-            for seed in 1..=3 {
-                let options = PlanOptions {
-                    start,
-                    seed,
-                    ..PlanOptions::default()
-                };
-                let clock = || cpu_seconds().ok_or("no /proc/thread-self/schedstat here");
-                let begin = clock()?;
-                let mut plan = match plan(&system, &options) {
-                    Ok(plan) => plan,
-                    Err(error) => {
-                        line = error.to_string();
-                        break;
-                    }
-                };
-                let planned = clock()?;
-                let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 16)?;
-                let solved = clock()? - planned;
-                planning = planning.min(planned - begin);
-                best = best.min(solved);
-                let (paths, counts) = (&sets[0].paths, &sets[0].counts);
-                let label = match start {
-                    Auto => format!("auto: {}", plan.start),
-                    _ => plan.start.to_string(),
-                };
-                let rate = paths.total as f64 / best;
-                line = format!(
-                    "{label:33} {:6} {:8} {planning:7.3} {best:8.4} {rate:8.0}",
-                    paths.total, counts.distinct
-                );
-                if paths.failed > 0 {
-                    line += &format!("  {} failed", paths.failed);
+            match measure(&system, start)? {
+                Ok(measured) => {
+                    ours = ours.min(measured.planning + measured.solving);
+                    println!("{name:15} {}", measured.line());
                 }
+                Err(refused) => println!("{name:15} {refused}"),
             }
-            best_of_all = best_of_all.min(best + planning);
-            println!("{name:15} {line}");
         }
-        for (program, answer) in [
-            ("phc -b", phc(&input, folder.path())),
-            ("bertini2", bertini(&system, folder.path())),
-        ] {
+        let peers = Peers {
+            input: &input,
+            system: &system,
+            folder: folder.path(),
+            patience,
+        };
+        for (program, answer) in peers.answers() {
             match answer {
-                Ok((seconds, count)) => println!(
+                Answer::Found { seconds, count } => println!(
                     "{name:15} {program:33} {:>6} {count:8} {:>7} {seconds:8.2}  {:.1} times ours",
                     "",
                     "",
-                    seconds / best_of_all
+                    seconds / ours
                 ),
-                Err(why) => println!("{name:15} {program:33} {why}"),
+                Answer::Stopped(limit) => println!(
+                    "{name:15} {program:33} stopped after {limit} CPU seconds: more than {:.0} times ours",
+                    f64::from(limit) / ours
+                ),
+                Answer::None(why) => println!("{name:15} {program:33} {why}"),
             }
         }
     }
