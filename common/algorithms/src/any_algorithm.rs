@@ -15,7 +15,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 6;
+const VERSION: u8 = 7;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,13 +115,14 @@ impl AnyAlgorithm {
     }
 
     /// The last results of all paths by the numbers that people see, where a stage counts its
-    /// paths by others.
+    /// paths by others, or not all of them.
     pub fn renumbered_results(&self) -> Option<Vec<PathResult>> {
         match self {
             Self::Polyhedral(solve) => Some(solve.results()),
             Self::Regeneration(solve) => Some(solve.results()),
             Self::Certified(solve) => solve.solve().renumbered_results(),
-            Self::ZeroDimensional(_) | Self::Parameter(_) | Self::Monodromy(_) => None,
+            Self::ZeroDimensional(solve) => solve.paths().results_with_images(),
+            Self::Parameter(_) | Self::Monodromy(_) => None,
         }
     }
 

@@ -9,7 +9,7 @@ use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::{Levels, RegenerationSolve};
 use crate::retried_stage::MAX_RETRIES;
 use crate::start_costs::{
-    StartKind, Starts, check_equations, checked_degrees, mixed_volume, set_names,
+    HALVED, StartKind, Starts, check_equations, checked_degrees, mixed_volume, set_names,
 };
 use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
@@ -225,7 +225,13 @@ fn plan_start_system(
     }
     let (kind, why) = match choice {
         StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
-        StartChoice::Multihomogeneous => (StartKind::Multihomogeneous, "asked for".to_string()),
+        StartChoice::Multihomogeneous => {
+            let why = match starts.halved() {
+                true => format!("asked for; {HALVED}"),
+                false => "asked for".to_string(),
+            };
+            (StartKind::Multihomogeneous, why)
+        }
         StartChoice::LinearProduct => {
             let sets = starts.linear_product.as_ref();
             let sets = sets.and_then(|start| start.as_ref().ok());

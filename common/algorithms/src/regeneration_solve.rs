@@ -304,6 +304,7 @@ impl PathAlgorithm for RegenerationSolve {
             crossings_found: self.repeated[1],
             crossings_resolved: self.repeated[2],
             complete_start: false,
+            images: 0,
         };
         for target in 0..targets(self.stage.first()) as usize {
             let present = self.stage.history(target, false);

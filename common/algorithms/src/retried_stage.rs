@@ -15,12 +15,15 @@ use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Decision, Tolerances, Verdict, classify};
+use cognate_solutions::degenerate::{ASKED, DeclaredSets};
+use cognate_solutions::images::with_images;
 use cognate_solutions::path_crossing::{CrossingBook, coincidences, crossings};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// How often a path is tracked again at most, before it counts as failed.
@@ -46,6 +49,8 @@ struct TargetBook {
 pub struct RetriedStage {
     first: Stage,
     shape: PointShape,
+    /// Sets of which a few endpoints are asked whether they are isolated.
+    declared: DeclaredSets,
     tolerances: Tolerances,
     max_retries: u16,
     /// Paths for each target; the targets' paths follow each other.
@@ -68,7 +73,10 @@ pub struct RetriedStage {
 impl RetriedStage {
     /// A stage that is not open yet, with its number of targets.
     pub fn new(first: Stage, system: &System, tolerances: Tolerances, targets: u64) -> Self {
-        Self::with_shape(first, PointShape::of(system), tolerances, targets)
+        Self {
+            declared: DeclaredSets::of(system),
+            ..Self::with_shape(first, PointShape::of(system), tolerances, targets)
+        }
     }
 
     /// The same, where only the shape of the system's points is at hand.
@@ -88,6 +96,7 @@ impl RetriedStage {
         Self {
             first,
             shape,
+            declared: DeclaredSets::default(),
             tolerances,
             max_retries: MAX_RETRIES,
             paths_per_target: items / targets,
@@ -159,6 +168,18 @@ impl RetriedStage {
         all.unwrap_or(&[])
     }
 
+    /// These results of one target, and the images of their paths where they have some.
+    fn with_images<'a>(&self, results: &'a [PathResult]) -> Cow<'a, [PathResult]> {
+        let exchange = self.first.start_points.exchange();
+        with_images(results, self.paths_per_target, exchange, &self.shape)
+    }
+
+    /// The last results of all paths and of their images; none where no path has one.
+    pub fn results_with_images(&self) -> Option<Vec<PathResult>> {
+        let exchange = self.first.start_points.exchange();
+        exchange.map(|_| self.with_images(&self.results).into_owned())
+    }
+
     /// How its points are laid out.
     pub fn shape(&self) -> &PointShape {
         &self.shape
@@ -223,8 +244,10 @@ impl RetriedStage {
             .iter()
             .map(|paths| {
                 let accuracy = |path: &&u64| self.results[**path as usize].accuracy;
+                // What is known of an image is known of its path.
                 let best = paths
                     .iter()
+                    .filter(|&&path| path < self.results.len() as u64)
                     .min_by(|a, b| accuracy(a).total_cmp(&accuracy(b)))
                     .expect("a point is where a path ends");
                 let result = &self.results[*best as usize];
@@ -252,7 +275,11 @@ impl RetriedStage {
     fn question(&self, accuracy: f64, target: u64, paths: u64) -> Question {
         let book = &self.targets[target as usize];
         // Paths of which the end is not known may all belong there.
-        let lost = self.lost + book.verdicts.failed + book.crossings.paths().count() as u64;
+        let failed = match self.first.start_points.exchange() {
+            Some(_) => 2 * book.verdicts.failed,
+            None => book.verdicts.failed,
+        };
+        let lost = self.lost + failed + book.crossings.paths().count() as u64;
         // Other homotopies may leave out paths, and then fewer than the multiplicity end there.
         let complete = matches!(
             self.first.homotopy,
@@ -296,8 +323,9 @@ impl RetriedStage {
             for (result, paths) in results.zip(&self.singular_points) {
                 taken += 1;
                 for &path in paths {
-                    let result = result.local_dimension.clone();
-                    self.results[path as usize].local_dimension = result;
+                    if let Some(tracked) = self.results.get_mut(path as usize) {
+                        tracked.local_dimension.clone_from(&result.local_dimension);
+                    }
                 }
             }
             assert_eq!(taken, items, "a stage is absorbed as a whole");
@@ -327,17 +355,22 @@ impl RetriedStage {
         }
     }
 
-    /// The paths that end at one singular finite point, for each such point.
+    /// The paths that end at one singular finite point, for each such point; with an exchange for
+    /// one of each two points, images among the paths.
     fn find_singular_points(&self) -> Vec<Vec<u64>> {
         let size = self.paths_per_target.max(1) as usize;
         let mut points = Vec::new();
-        for results in self.results.chunks(size) {
-            let singular: Vec<bool> = results
+        for (target, tracked) in self.results.chunks(size).enumerate() {
+            let results = &*self.with_images(tracked);
+            let decide = |result| classify(result, &self.shape, &self.tolerances);
+            let decisions: Vec<Decision> = results.iter().map(decide).collect();
+            let mut singular: Vec<bool> = decisions
                 .iter()
-                .map(|result| {
-                    classify(result, &self.shape, &self.tolerances).verdict == Verdict::Singular
-                })
+                .map(|decision| decision.verdict == Verdict::Singular)
                 .collect();
+            for place in self.not_asked(target, results, &decisions) {
+                singular[place] = false;
+            }
             let clusters = coincidences(
                 results,
                 &self.shape,
@@ -347,16 +380,46 @@ impl RetriedStage {
             );
             let paths =
                 |members: Vec<usize>| members.iter().map(|&m| results[m].origin.0).collect();
-            points.extend(clusters.into_iter().map(paths));
+            let known = |members: &Vec<usize>| members.iter().any(|&m| m < tracked.len());
+            points.extend(clusters.into_iter().filter(known).map(paths));
         }
         points
+    }
+
+    /// The endpoints in declared sets that are what a few others in the set are.
+    fn not_asked(
+        &self,
+        target: usize,
+        results: &[PathResult],
+        decisions: &[Decision],
+    ) -> Vec<usize> {
+        let parameters: &[Complex64] = match &self.first.homotopy {
+            HomotopyKind::StraightLine { parameters }
+            | HomotopyKind::PathVariable { parameters }
+            | HomotopyKind::Generic { parameters }
+            | HomotopyKind::Slide { parameters, .. }
+            | HomotopyKind::Intersect { parameters, .. } => parameters,
+            HomotopyKind::Parameter { targets, .. } => &targets[target],
+            HomotopyKind::Toric => &[],
+        };
+        let (shape, tolerances) = (&self.shape, &self.tolerances);
+        let sets = (self.declared).members(parameters, results, decisions, shape, tolerances);
+        let mut rest = Vec::new();
+        for mut members in sets {
+            members.sort_by(|&a, &b| results[a].accuracy.total_cmp(&results[b].accuracy));
+            rest.extend(members.into_iter().skip(ASKED));
+        }
+        rest
     }
 
     /// Brings all verdicts up to date; returns the paths to track again, ascending.
     fn judge(&mut self) -> Vec<u64> {
         let mut suspects = Vec::new();
         let size = self.paths_per_target.max(1) as usize;
-        for (target, results) in self.results.chunks(size).enumerate() {
+        for (target, tracked) in self.results.chunks(size).enumerate() {
+            let exchange = self.first.start_points.exchange();
+            let paths = self.paths_per_target;
+            let results = &*with_images(tracked, paths, exchange, &self.shape);
             let decisions: Vec<Decision> = results
                 .iter()
                 .map(|result| classify(result, &self.shape, &self.tolerances))
@@ -376,7 +439,7 @@ impl RetriedStage {
                     .collect(),
             );
             book.verdicts = VerdictCounts::default();
-            for (result, decision) in results.iter().zip(&decisions) {
+            for (result, decision) in tracked.iter().zip(&decisions) {
                 match decision.verdict {
                     Verdict::Finite => book.verdicts.finite += 1,
                     Verdict::Singular => book.verdicts.singular += 1,
@@ -391,7 +454,15 @@ impl RetriedStage {
                     }
                 }
             }
-            suspects.extend(book.crossings.paths());
+            // An image is tracked again by its path.
+            let of_path = |path| {
+                if exchange.is_some() {
+                    path % paths
+                } else {
+                    path
+                }
+            };
+            suspects.extend(book.crossings.paths().map(of_path));
         }
         suspects.sort_unstable();
         suspects.dedup();
@@ -443,7 +514,7 @@ impl RetriedStage {
         let size = self.paths_per_target.max(1) as usize;
         let mut points = Vec::new();
         for (target, results) in (0u64..).zip(self.results.chunks(size)) {
-            for result in results {
+            for result in &*self.with_images(results) {
                 let decision = classify(result, &self.shape, &self.tolerances);
                 if decision.verdict == Verdict::Finite {
                     points.push(CertifiablePoint {
@@ -476,7 +547,7 @@ impl RetriedStage {
             .get(target * size..(target + 1) * size)
             .unwrap_or(&[]);
         let history = self.history(target, complete_start);
-        self.set_of(system, parameters, results, &history)
+        self.set_of(system, parameters, &self.with_images(results), &history)
     }
 
     /// What was done for the paths of one target.
@@ -487,6 +558,10 @@ impl RetriedStage {
             crossings_found: book.crossings.found(),
             crossings_resolved: book.crossings.resolved(),
             complete_start,
+            images: match self.first.start_points.exchange() {
+                Some(_) => self.paths_per_target,
+                None => 0,
+            },
         }
     }
 

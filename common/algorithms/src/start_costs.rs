@@ -2,6 +2,7 @@
 
 use crate::plan_error::PlanError;
 use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::start_systems::grouping::best_grouping;
 use cognate_continuation::start_systems::linear_product::guess;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
@@ -87,6 +88,9 @@ const MAX_CHOICE_STATES: u64 = 100_000;
 
 /// Most steps of one count of the choices of a linear-product start: a fraction of a second.
 const CHOICE_STEPS: u64 = 5_000_000;
+
+/// Why a start by groups has half as many paths as its number.
+pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
 
 /// Most operations that `cognate info` spends on a mixed volume: a few seconds.
 const COUNTING_OPERATIONS: u64 = 2_000_000_000;
@@ -175,6 +179,12 @@ impl Starts {
         self
     }
 
+    /// Whether the paths by groups are one of each two that a symmetry takes to each other.
+    pub(crate) fn halved(&self) -> bool {
+        let start = self.multihomogeneous.as_ref();
+        start.is_ok_and(|(_, start, _)| start.exchange().is_some())
+    }
+
     fn groups(&self) -> usize {
         self.degrees.by_group.first().map_or(0, Vec::len)
     }
@@ -214,6 +224,10 @@ impl Starts {
             return Ok((StartKind::Polyhedral, why));
         }
         let (kind, why) = bezout?;
+        let why = match (kind, self.halved()) {
+            (StartKind::Multihomogeneous, true) => format!("{why}; {HALVED}"),
+            _ => why,
+        };
         let why = match self.combined {
             Some((equations, unknowns)) => {
                 let s = if unknowns == 1 { "" } else { "s" };
@@ -563,9 +577,14 @@ fn multihomogeneous(system: &System, degrees: &Degrees) -> Result<(StartPoints, 
             groups: dimensions.len(),
         });
     }
+    // What is combined at random has no symmetry.
+    let square = system.equation_count() == system.dimension();
     let start = StartPoints::Multihomogeneous {
         degrees: degrees.by_group.clone(),
         dimensions,
+        exchange: square
+            .then(|| Exchange::of(system, &degrees.by_group))
+            .flatten(),
     };
     let count = counted(&start, StartKind::Multihomogeneous)?;
     Ok((start, count))

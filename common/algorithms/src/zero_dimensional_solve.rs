@@ -95,3 +95,80 @@ impl PathAlgorithm for ZeroDimensionalSolve {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::plan::StartChoice;
+    use crate::run_locally::run_locally;
+    use crate::{PathAlgorithm, PlanOptions, plan};
+    use cognate_solutions::solution_set::SolutionSet;
+    use cognate_systems::formats;
+    use num_complex::Complex64;
+
+    fn solve(text: &str, start: StartChoice) -> (u64, SolutionSet) {
+        let problem = formats::read("test", text.as_bytes());
+        let system = problem.expect("a problem of this test").system;
+        let options = PlanOptions {
+            start,
+            seed: 7,
+            ..PlanOptions::default()
+        };
+        let mut plan = plan(&system, &options).expect("a plan");
+        let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+        assert!(plan.algorithm.progress().done);
+        (plan.paths, sets.expect("paths").remove(0))
+    }
+
+    fn values(set: &SolutionSet) -> Vec<Vec<Complex64>> {
+        let of = |s: &cognate_solutions::solution::Solution| {
+            s.variables.0.iter().map(|(_, z)| *z).collect()
+        };
+        set.solutions.iter().map(of).collect()
+    }
+
+    #[test]
+    fn one_half_and_its_images_are_the_whole() {
+        let problem = |symmetry: &str| {
+            format!(
+                r#"{{"variables": ["x", "u", "y", "v"], "groups": [["x", "u"], ["v", "y"]],
+                    "equations": ["x^2 - u*x + 3*u - 2", "x*y + u + v - 5",
+                                  "y^2 - v*y + 3*v - 2", "2*u*v + x*v + y*u - 1"]{symmetry}}}"#
+            )
+        };
+        let groups = StartChoice::Multihomogeneous;
+        let (paths, whole) = solve(&problem(""), groups);
+        assert_eq!((paths, whole.paths.total, whole.paths.images), (8, 8, 0));
+        let swap = r#", "symmetry": [{"permutation": {"x": "y", "y": "x", "u": "v", "v": "u"}}]"#;
+        let (paths, half) = solve(&problem(swap), groups);
+        assert_eq!((paths, half.paths.total, half.paths.images), (4, 8, 4));
+        assert!(half.settled() && whole.settled());
+        assert_eq!(half.paths.finite, whole.paths.finite);
+        assert_eq!(half.counts.distinct, whole.counts.distinct);
+        assert!(half.counts.distinct > 2, "{half:?}");
+        let all = values(&whole);
+        for found in values(&half) {
+            let near = |other: &Vec<Complex64>| {
+                let pairs = found.iter().zip(other);
+                pairs.map(|(z, w)| (z - w).norm_sqr()).sum::<f64>() < 1e-18
+            };
+            assert_eq!(all.iter().filter(|other| near(other)).count(), 1);
+        }
+        let classes = &half.classes;
+        assert_eq!(classes.count, classes.complete, "every orbit is whole");
+    }
+
+    #[test]
+    fn a_few_endpoints_on_a_named_set_say_what_the_others_are() {
+        // The line x = 0, and three points off it.
+        let text = r#"{"variables": ["x", "y"],
+            "equations": ["x*(x^2 + y - 3)", "x*(x*y - 2*x - y + 5)"],
+            "degenerate": {"x = 0": {"equations": ["x"]}, "y = 1": {"equations": ["y - 1"]}}}"#;
+        let (paths, set) = solve(text, StartChoice::TotalDegree);
+        assert_eq!((paths, set.paths.finite, set.paths.failed), (9, 3, 0));
+        let on_line = set.paths.degenerate["x = 0"];
+        assert!(on_line > 3, "more than are asked: {:?}", set.paths);
+        assert_eq!(set.paths.positive_dimensional, Some(on_line));
+        assert_eq!(set.paths.degenerate["y = 1"], 0);
+        assert!(set.warnings.is_empty(), "{:?}", set.warnings);
+    }
+}

@@ -6,6 +6,7 @@
 //! tracker sees; solutions at infinity are ordinary points of it (survey, section 6.3).
 //! The affine chart has the patch `y_0 = 1`: infinity is far away in it, and programs are short.
 
+use crate::start_systems::exchange::Exchange;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::{Complex, Real};
@@ -88,6 +89,34 @@ impl Chart {
             group.patch[0] = Complex64::new(1.0, 0.0);
         }
         chart
+    }
+
+    /// The same patch for groups that are exchanged.
+    pub(crate) fn with_exchange(mut self, exchange: &Exchange) -> Self {
+        for (k, &to) in exchange.groups.iter().enumerate() {
+            if k < to {
+                self.groups[to].patch = self.exchanged(&self.groups[k].patch, k, exchange);
+            }
+        }
+        self
+    }
+
+    /// The image of a linear form in the homogeneous coordinates of group `k`.
+    pub(crate) fn exchanged(
+        &self,
+        form: &[Complex64],
+        k: usize,
+        exchange: &Exchange,
+    ) -> Vec<Complex64> {
+        let (group, other) = (&self.groups[k], &self.groups[exchange.groups[k]]);
+        let offset = usize::from(!group.homogeneous);
+        let mut image = form.to_vec();
+        for (place, &v) in other.variables.iter().enumerate() {
+            let from = exchange.variables[v];
+            let from = group.variables.iter().position(|&w| w == from);
+            image[offset + place] = form[offset + from.expect("groups are exchanged as a whole")];
+        }
+        image
     }
 
     /// Number of coordinates that the tracker sees.

@@ -205,10 +205,16 @@ impl PreparedStage {
                 | HomotopyKind::Slide { .. }
                 | HomotopyKind::Intersect { .. }
         );
-        let chart = if affine {
-            Chart::affine(system, stage.seed)
-        } else {
-            Chart::new(system, stage.seed)
+        let exchange = stage.start_points.exchange();
+        if exchange.is_some_and(|exchange| overdetermined || !exchange.fits(system)) {
+            return Err(PrepareError::StartPoints(
+                "the exchange is none of the system's groups and equations".into(),
+            ));
+        }
+        let chart = match (affine, exchange) {
+            (true, _) => Chart::affine(system, stage.seed),
+            (false, None) => Chart::new(system, stage.seed),
+            (false, Some(exchange)) => Chart::new(system, stage.seed).with_exchange(exchange),
         };
         let base = match &stage.start_points {
             StartPoints::Selected { base, .. } => base,
@@ -244,14 +250,18 @@ impl PreparedStage {
             StartPoints::Multihomogeneous {
                 degrees,
                 dimensions,
+                exchange,
             } => {
+                let exchange = exchange.as_ref();
                 let fits = straight
                     && *degrees == of_system.by_group
                     && dimensions.len() == chart.group_count()
                     && (0..dimensions.len())
                         .all(|k| dimensions[k] as usize == chart.group_size(k) - 1);
                 let made = fits
-                    .then(|| Multihomogeneous::new(degrees, dimensions, &chart, stage.seed))
+                    .then(|| {
+                        Multihomogeneous::new(degrees, dimensions, exchange, &chart, stage.seed)
+                    })
                     .flatten()
                     .ok_or_else(|| {
                         PrepareError::StartPoints(

@@ -1,6 +1,8 @@
 //! StartPoints: any start point by its index, so that a chunk is only a range.
 
+use crate::start_systems::exchange::Exchange;
 use crate::start_systems::linear_product::SetStructure;
+use crate::start_systems::multihomogeneous::Choices;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +30,8 @@ pub enum StartPoints {
         degrees: Vec<Vec<u32>>,
         /// Dimension of each group: how many equations take their factor from it.
         dimensions: Vec<u32>,
+        /// Of each two start points that this takes to each other one is meant.
+        exchange: Option<Exchange>,
     },
     /// Given points, stored as one object.
     Stored {
@@ -178,11 +182,28 @@ impl StartPoints {
             Self::Multihomogeneous {
                 degrees,
                 dimensions,
-            } => crate::start_systems::multihomogeneous::bezout_number(degrees, dimensions),
+                exchange,
+            } => {
+                let choices = Choices::of_half(degrees, dimensions, exchange.as_ref());
+                choices.map(|choices| choices.count())
+            }
             Self::Stored { count, .. }
             | Self::MixedCells { count }
             | Self::LinearProduct { count, .. } => Some(*count),
             Self::Selected { indices, .. } => Some(indices.len() as u64),
+        }
+    }
+
+    /// The exchange that takes one half of the start system's solutions to the other, where only
+    /// one half is meant.
+    pub fn exchange(&self) -> Option<&Exchange> {
+        match self {
+            Self::Multihomogeneous { exchange, .. } => exchange.as_ref(),
+            Self::Selected { base, .. } => base.exchange(),
+            Self::TotalDegree { .. }
+            | Self::Stored { .. }
+            | Self::MixedCells { .. }
+            | Self::LinearProduct { .. } => None,
         }
     }
 

@@ -5,14 +5,16 @@
 //! bound on its error, when every variable may be off as far as its group's
 //! largest (running error analysis; Higham, Accuracy and Stability, section 3.3).
 
-use crate::classification::{Tolerances, error_bound};
-use crate::field::{Field, ManyBits, evaluate};
+use crate::classification::{Decision, Tolerances, Verdict, error_bound};
+use crate::field::{Field, ManyBits, evaluate, extract, of_node};
 use crate::point_shape::{PointShape, largest};
+use cognate_continuation::path_result::PathResult;
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_systems::expression::{Function, NodeId};
-use cognate_systems::system::{DegenerateSet, System};
+use cognate_systems::expression::{Function, Node, NodeId};
+use cognate_systems::system::{DegenerateSet, System, VariableGroup};
 use num_complex::Complex64;
 use rug::Complex;
+use serde::{Deserialize, Serialize};
 
 /// Values with a bound on the error beside each.
 struct Bounded(ManyBits);
@@ -25,6 +27,11 @@ fn size(z: &Complex) -> f64 {
     (re * re + im * im).sqrt()
 }
 
+/// Whether 0 is within the error.
+fn vanishes((value, error): &Value) -> bool {
+    error.is_finite() && size(value) <= *error
+}
+
 impl Bounded {
     /// A number that is exactly known.
     fn known(value: Complex) -> Value {
@@ -33,6 +40,37 @@ impl Bounded {
 
     fn double(&self, z: Complex64) -> Complex {
         Complex::with_val(self.0.0, (z.re, z.im))
+    }
+
+    /// Each may be off as far as its group's largest.
+    fn variables(
+        &self,
+        groups: &[VariableGroup],
+        values: &[Complex64],
+        accuracy: f64,
+        tolerances: &Tolerances,
+    ) -> Vec<Value> {
+        let error = error_bound(
+            accuracy,
+            tolerances.degenerate_factor,
+            tolerances.degenerate_floor,
+        );
+        let known = values.iter().map(|&z| Self::known(self.double(z)));
+        let mut variables: Vec<Value> = known.collect();
+        for group in groups {
+            let members: Vec<Complex64> = group.variables.iter().map(|&v| values[v]).collect();
+            // The homogenising coordinate of an affine group is 1 here.
+            let scale = largest(&members).max(if group.homogeneous { 0.0 } else { 1.0 });
+            for &v in &group.variables {
+                variables[v].1 = error * scale;
+            }
+        }
+        variables
+    }
+
+    fn parameters(&self, values: &[Complex64]) -> Vec<Value> {
+        let known = |&p: &Complex64| Self::known(self.double(p));
+        values.iter().map(known).collect()
     }
 }
 
@@ -78,34 +116,101 @@ pub fn lies_in(
         DegenerateSet::Equations(nodes) => nodes,
     };
     let field = Bounded(ManyBits(128));
-    let error = error_bound(
-        accuracy,
-        tolerances.degenerate_factor,
-        tolerances.degenerate_floor,
-    );
-    let mut variables: Vec<Value> = values
-        .iter()
-        .map(|&z| Bounded::known(field.double(z)))
-        .collect();
-    for group in &system.groups {
-        let members: Vec<Complex64> = group.variables.iter().map(|&v| values[v]).collect();
-        // The homogenising coordinate of an affine group is 1 here.
-        let scale = largest(&members).max(if group.homogeneous { 0.0 } else { 1.0 });
-        for &v in &group.variables {
-            variables[v].1 = error * scale;
+    let variables = field.variables(&system.groups, values, accuracy, tolerances);
+    let parameters = field.parameters(parameters);
+    let found = evaluate(&field, &system.expressions, roots, &variables, &parameters);
+    found.is_some_and(|values| values.iter().all(vanishes))
+}
+
+/// The named sets that are given by equations, apart from their system: where an endpoint lies on
+/// one, it is known what kind of end it is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DeclaredSets {
+    /// The expressions of all sets, and no other.
+    nodes: Vec<Node>,
+    /// Names, and what vanishes.
+    sets: Vec<(String, Vec<NodeId>)>,
+    groups: Vec<VariableGroup>,
+}
+
+/// So many endpoints of each declared set are asked whether they are isolated: what they are, the
+/// others are.
+pub const ASKED: usize = 3;
+
+impl DeclaredSets {
+    /// Those of a checked system.
+    pub fn of(system: &System) -> Self {
+        let of_equations = |(name, set): (&String, &DegenerateSet)| match set {
+            DegenerateSet::Equations(roots) => Some((name.clone(), roots.clone())),
+            DegenerateSet::Nonzero(_) => None,
+        };
+        let mut sets: Vec<_> = system.degenerate.iter().filter_map(of_equations).collect();
+        let all: Vec<NodeId> = sets.iter().flat_map(|(_, roots)| roots.clone()).collect();
+        let (nodes, roots) = extract(&system.expressions, &all);
+        let places = sets.iter_mut().flat_map(|(_, of_set)| of_set);
+        places.zip(roots).for_each(|(old, new)| *old = new);
+        Self {
+            nodes,
+            sets,
+            groups: system.groups.clone(),
         }
     }
-    let parameters: Vec<Value> = parameters
-        .iter()
-        .map(|&p| Bounded::known(field.double(p)))
-        .collect();
-    let Some(results) = evaluate(&field, &system.expressions, roots, &variables, &parameters)
-    else {
-        return false;
-    };
-    results
-        .iter()
-        .all(|(value, error)| error.is_finite() && size(value) <= *error)
+
+    /// The names of the sets, in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.sets.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Which sets an endpoint with these values of the variables lies in.
+    fn holding(
+        &self,
+        parameters: &[Complex64],
+        values: &[Complex64],
+        accuracy: f64,
+        tolerances: &Tolerances,
+    ) -> Vec<bool> {
+        let field = Bounded(ManyBits(128));
+        let variables = field.variables(&self.groups, values, accuracy, tolerances);
+        let parameters = field.parameters(parameters);
+        let mut found: Vec<Option<Value>> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let value = of_node(&field, node, &found, &variables, &parameters);
+            found.push(value);
+        }
+        let zero = |root: &NodeId| found[root.0 as usize].as_ref().is_some_and(vanishes);
+        let sets = self.sets.iter();
+        sets.map(|(_, roots)| roots.iter().all(zero)).collect()
+    }
+
+    /// The singular finite endpoints in each set, by their places among the results; one that lies
+    /// in several counts in the first. `parameters`: those of the system at the endpoints.
+    pub fn members(
+        &self,
+        parameters: &[Complex64],
+        results: &[PathResult],
+        decisions: &[Decision],
+        shape: &PointShape,
+        tolerances: &Tolerances,
+    ) -> Vec<Vec<usize>> {
+        let mut members = vec![Vec::new(); self.sets.len()];
+        if self.sets.is_empty() {
+            return members;
+        }
+        for (place, (result, decision)) in results.iter().zip(decisions).enumerate() {
+            if !matches!(
+                decision.verdict,
+                Verdict::Singular | Verdict::PositiveDimensional
+            ) {
+                continue;
+            }
+            let values = shape.to_variables(result.endpoint.to_double());
+            let holding = self.holding(parameters, &values, result.accuracy, tolerances);
+            if let Some(set) = holding.iter().position(|&inside| inside) {
+                members[set].push(place);
+            }
+        }
+        members
+    }
 }
 
 /// How many of some solutions, given with their errors, lie in each named set.

@@ -9,6 +9,7 @@ use cognate_systems::expression::{Expressions, Function, Node, NodeId};
 use num_complex::Complex64;
 use rug::ops::{NegAssign, Pow};
 use rug::{Complex, Float, Integer};
+use std::collections::HashMap;
 
 /// An arithmetic for expressions. `None` means that a value does not exist in it.
 pub trait Field {
@@ -62,6 +63,41 @@ pub fn evaluate<F: Field>(
         values[id] = Some(value);
     }
     roots.iter().map(|r| values[r.0 as usize].clone()).collect()
+}
+
+/// Some roots with all that they need and no other node, numbered anew; children stand before
+/// parents.
+pub(crate) fn extract(e: &Expressions, roots: &[NodeId]) -> (Vec<Node>, Vec<NodeId>) {
+    let mut needed = vec![false; e.nodes().len()];
+    for root in roots {
+        needed[root.0 as usize] = true;
+    }
+    for id in (0..needed.len()).rev() {
+        if needed[id] {
+            for child in e.children(NodeId(id as u32)) {
+                needed[child.0 as usize] = true;
+            }
+        }
+    }
+    let mut places = HashMap::new();
+    let mut nodes = Vec::new();
+    for id in (0..needed.len()).filter(|&id| needed[id]) {
+        let at = |n: &NodeId| places[n];
+        let node = match e.node(NodeId(id as u32)) {
+            Node::Add(a, b) => Node::Add(at(a), at(b)),
+            Node::Subtract(a, b) => Node::Subtract(at(a), at(b)),
+            Node::Multiply(a, b) => Node::Multiply(at(a), at(b)),
+            Node::Divide(a, b) => Node::Divide(at(a), at(b)),
+            Node::Negate(a) => Node::Negate(at(a)),
+            Node::Power(a, exponent) => Node::Power(at(a), *exponent),
+            Node::Root(a, exponent) => Node::Root(at(a), exponent.clone()),
+            Node::Function(function, a) => Node::Function(*function, at(a)),
+            leaf @ (Node::Constant(_) | Node::Variable(_) | Node::Parameter(_)) => leaf.clone(),
+        };
+        places.insert(NodeId(id as u32), NodeId(nodes.len() as u32));
+        nodes.push(node);
+    }
+    (nodes, roots.iter().map(|root| places[root]).collect())
 }
 
 /// The value of one node, whose children have theirs in `values`.

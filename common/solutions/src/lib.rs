@@ -13,6 +13,7 @@ pub mod certificates;
 pub mod classification;
 pub mod degenerate;
 pub mod field;
+pub mod images;
 pub mod involution;
 pub mod path_crossing;
 pub mod point_shape;

@@ -3,6 +3,7 @@
 //! Endpoints come in homogeneous coordinates, group after group (see
 //! `Coordinates`); this is the one place that knows how to read them.
 
+use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -84,6 +85,30 @@ impl PointShape {
             }
         }
         values
+    }
+
+    /// The coordinates of the point that an exchange of groups makes of a point of this shape.
+    pub fn exchanged(&self, point: &[Complex64], exchange: &Exchange) -> Vec<Complex64> {
+        let mut place = vec![0; self.variables];
+        for span in self.spans() {
+            let first = span.range.start + usize::from(!span.group.homogeneous);
+            for (at, &v) in (first..).zip(&span.group.variables) {
+                place[v] = at;
+            }
+        }
+        let starts: Vec<usize> = self.spans().map(|span| span.range.start).collect();
+        let mut image = point.to_vec();
+        for (k, span) in self.spans().enumerate() {
+            let mut at = span.range.start;
+            if !span.group.homogeneous {
+                image[at] = point[starts[exchange.groups[k]]];
+                at += 1;
+            }
+            for (at, &v) in (at..).zip(&span.group.variables) {
+                image[at] = point[place[exchange.variables[v]]];
+            }
+        }
+        image
     }
 
     /// The other way: coordinates of the point at which the variables have these values.

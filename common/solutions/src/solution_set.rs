@@ -7,7 +7,7 @@ use crate::certificates::CertifiedSystem;
 use crate::classification::{
     Decision, Isolation, Tolerances, Verdict, classify, isolation, solves,
 };
-use crate::degenerate;
+use crate::degenerate::{self, DeclaredSets};
 use crate::involution::Involution;
 use crate::path_crossing::{coincidences, crossings, radius};
 use crate::point_shape::PointShape;
@@ -33,6 +33,8 @@ pub struct History {
     /// True when the start system bounds the solutions, so that every isolated
     /// solution and every positive-dimensional set has a path that ends on it.
     pub complete_start: bool,
+    /// How many of the results are images of others (see `images`).
+    pub images: u64,
 }
 
 /// Why a path counts as failed.
@@ -152,6 +154,7 @@ impl<'a> Draft<'a> {
 
     fn finish(mut self, history: &History) -> SolutionSet {
         self.fail_what_still_crosses();
+        self.settle_declared_sets();
         self.list_failures();
         self.count_paths(history);
         let representatives = self.merge(history);
@@ -173,6 +176,34 @@ impl<'a> Draft<'a> {
         );
         for place in left.iter().flat_map(|members| &members[1..]) {
             self.decisions[*place].verdict = Verdict::Failed;
+        }
+    }
+
+    /// Of the singular endpoints in a declared set a few were asked whether they are isolated; if
+    /// none of them is, the set is there, and so are the others on it.
+    fn settle_declared_sets(&mut self) {
+        let sets = DeclaredSets::of(self.system);
+        let members = sets.members(
+            self.parameters,
+            self.results,
+            &self.decisions,
+            &self.shape,
+            self.tolerances,
+        );
+        for (name, members) in sets.names().zip(members) {
+            let (asked, others): (Vec<usize>, Vec<usize>) = members
+                .iter()
+                .partition(|&&place| self.results[place].local_dimension.is_some());
+            let on_set = |&place: &usize| {
+                isolation(&self.results[place], self.tolerances) == Isolation::PositiveDimensional
+            };
+            if !asked.is_empty() && asked.iter().all(on_set) {
+                for place in others {
+                    self.decisions[place].verdict = Verdict::PositiveDimensional;
+                }
+            }
+            let counts = &mut self.set.paths.degenerate;
+            counts.insert(name.to_string(), members.len() as u64);
         }
     }
 
@@ -220,6 +251,8 @@ impl<'a> Draft<'a> {
                 .iter()
                 .filter(|d| d.by_precision_limit)
                 .count() as u64,
+            degenerate: std::mem::take(&mut self.set.paths.degenerate),
+            images: history.images,
             ..PathCounts::default()
         };
         for result in self.results {
@@ -602,6 +635,7 @@ mod tests {
             crossings_found: 2,
             crossings_resolved: 1,
             complete_start: true,
+            images: 0,
         };
         let set = set_of(&results, &history);
         assert_eq!((set.paths.finite, set.paths.failed), (1, 2));

@@ -36,6 +36,12 @@ pub struct PathCounts {
     pub by_precision: BTreeMap<u32, u64>,
     /// The highest precision of all, in bits.
     pub highest_precision_bits: u32,
+    /// Paths to singular endpoints in each named set that is given by equations.
+    #[serde(default)]
+    pub degenerate: BTreeMap<String, u64>,
+    /// How many of all were not followed: they are images, by a symmetry, of others that were.
+    #[serde(default)]
+    pub images: u64,
 }
 
 impl PathCounts {
@@ -103,7 +109,8 @@ mod tests {
             "{\"total\":128,\"finite\":0,\"singular\":0,\"positive_dimensional\":null,\
              \"excess\":0,\"at_infinity\":0,\"failed\":0,\"retracked\":0,\"crossings_found\":0,\
              \"crossings_resolved\":0,\"decided_by_precision_limit\":0,\
-             \"by_precision\":{\"53\":126,\"106\":2},\"highest_precision_bits\":0}"
+             \"by_precision\":{\"53\":126,\"106\":2},\"highest_precision_bits\":0,\
+             \"degenerate\":{},\"images\":0}"
         );
         let back: PathCounts =
             serde_json::from_str(&serde_json::to_string(&paths).unwrap()).unwrap();

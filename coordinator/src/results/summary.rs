@@ -235,6 +235,8 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             decided_by_precision_limit,
             by_precision,
             highest_precision_bits,
+            degenerate,
+            images,
         } = &set.paths;
         paths.total += total;
         paths.finite += finite;
@@ -251,6 +253,10 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             *paths.by_precision.entry(*bits).or_default() += number;
         }
         paths.highest_precision_bits = paths.highest_precision_bits.max(*highest_precision_bits);
+        for (name, number) in degenerate {
+            *paths.degenerate.entry(name.clone()).or_default() += number;
+        }
+        paths.images += images;
         let SolutionCounts {
             distinct,
             nonsingular,

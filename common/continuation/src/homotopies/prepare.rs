@@ -113,6 +113,22 @@ pub(crate) fn normalize(
     scale(out, equations, &exponents);
 }
 
+/// The same, equations that are exchanged with one scale.
+fn normalize_exchanged(
+    out: &mut Expressions,
+    equations: &mut [NodeId],
+    exchanged: Option<&[usize]>,
+    dimension: usize,
+    parameters: &[Complex64],
+    stream: &mut RandomStream,
+) {
+    let mut exponents = scales(out, equations, dimension, parameters, stream);
+    for (i, &j) in exchanged.unwrap_or(&[]).iter().enumerate() {
+        exponents[j] = exponents[i.min(j)];
+    }
+    scale(out, equations, &exponents);
+}
+
 /// Scales of a system and of the start equations of a homotopy that goes on in other charts, and
 /// is the same there: they are taken in the system's own coordinates.
 fn scales_beside(
@@ -276,9 +292,20 @@ impl Homotopy {
             }),
             _ => None,
         };
+        let exchanged = match start_system {
+            Some(StartSystem::Multihomogeneous(start)) => start.exchanged(),
+            _ => None,
+        };
         match &shared_scales {
             Some([asked, _]) => scale(&mut out, &mut equations, asked),
-            None => normalize(&mut out, &mut equations, dimension, &at_start, &mut probe),
+            None => normalize_exchanged(
+                &mut out,
+                &mut equations,
+                exchanged,
+                dimension,
+                &at_start,
+                &mut probe,
+            ),
         }
 
         let (arc, start, targets) = match kind {
@@ -296,7 +323,14 @@ impl Homotopy {
                 };
                 match &shared_scales {
                     Some([_, start]) => scale(&mut out, &mut starts, start),
-                    None => normalize(&mut out, &mut starts, dimension, &[], &mut probe),
+                    None => normalize_exchanged(
+                        &mut out,
+                        &mut starts,
+                        exchanged,
+                        dimension,
+                        &[],
+                        &mut probe,
+                    ),
                 }
                 let (of_target, of_start) = (out.parameter(0), out.parameter(1));
                 for (equation, start) in equations.iter_mut().zip(starts) {

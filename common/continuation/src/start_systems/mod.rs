@@ -3,6 +3,7 @@
 //! A start system, its points and its homotopy are chosen together, and so they
 //! stand together here. Points are made from their index; nothing is stored.
 
+pub mod exchange;
 pub mod grouping;
 pub mod linear_product;
 pub mod multihomogeneous;

@@ -1,8 +1,10 @@
 //! Multihomogeneous start system: products of random linear forms, one for each degree in each group.
 //!
 //! Counting and unranking go by the same table, so that a start point is made
-//! from its index and never stored (survey, section 6.1).
+//! from its index and never stored (survey, section 6.1). With an exchange of
+//! groups the forms are exchanged too, and of two start points one is counted.
 
+use super::exchange::Exchange;
 use crate::chart::{Chart, exact};
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
@@ -19,14 +21,23 @@ pub struct Multihomogeneous {
     /// `forms[equation][group][factor]`: coefficients of a linear form in the
     /// homogeneous coordinates of the group.
     forms: Vec<Vec<Vec<Vec<Complex64>>>>,
+    /// Where an exchange takes the equations.
+    exchanged: Option<Vec<usize>>,
 }
 
 impl Multihomogeneous {
-    /// Random forms for these degrees; `None` when there are too many choices to count.
-    pub fn new(degrees: &[Vec<u32>], dimensions: &[u32], chart: &Chart, seed: u64) -> Option<Self> {
-        let choices = Choices::new(degrees, dimensions)?;
+    /// Random forms for these degrees; `None` when there are too many choices to count, or the
+    /// exchange gives no half of them.
+    pub fn new(
+        degrees: &[Vec<u32>],
+        dimensions: &[u32],
+        exchange: Option<&Exchange>,
+        chart: &Chart,
+        seed: u64,
+    ) -> Option<Self> {
+        let choices = Choices::of_half(degrees, dimensions, exchange)?;
         let mut number = 0;
-        let forms = degrees
+        let mut forms: Vec<Vec<Vec<Vec<Complex64>>>> = degrees
             .iter()
             .map(|row| {
                 row.iter()
@@ -46,7 +57,24 @@ impl Multihomogeneous {
                     .collect()
             })
             .collect();
-        Some(Self { choices, forms })
+        for (i, k) in (0..forms.len()).flat_map(|i| (0..dimensions.len()).map(move |k| (i, k))) {
+            let Some(e) = exchange else { break };
+            let (j, l) = (e.equations[i], e.groups[k]);
+            if (i, k) < (j, l) {
+                let images = forms[i][k].iter();
+                forms[j][l] = images.map(|form| chart.exchanged(form, k, e)).collect();
+            }
+        }
+        Some(Self {
+            choices,
+            forms,
+            exchanged: exchange.map(|e| e.equations.clone()),
+        })
+    }
+
+    /// Where an exchange takes the equations, if there is one.
+    pub(crate) fn exchanged(&self) -> Option<&[usize]> {
+        self.exchanged.as_deref()
     }
 
     /// The equations over the homogeneous coordinates of all groups.
@@ -167,6 +195,27 @@ impl Choices {
             dimensions: dimensions.to_vec(),
             ways,
         })
+    }
+
+    /// With an exchange, of each two choices that it takes to each other that one where the
+    /// equation that says which takes its factor from the first of two groups; `None` also where no
+    /// equation says so.
+    pub fn of_half(
+        degrees: &[Vec<u32>],
+        dimensions: &[u32],
+        exchange: Option<&Exchange>,
+    ) -> Option<Self> {
+        let Some(exchange) = exchange else {
+            return Self::new(degrees, dimensions);
+        };
+        let row = exchange.halving(degrees)?;
+        let mut half = degrees.to_vec();
+        for (degree, (k, &to)) in half[row].iter_mut().zip(exchange.groups.iter().enumerate()) {
+            if to < k {
+                *degree = 0;
+            }
+        }
+        Self::new(&half, dimensions)
     }
 
     /// Number of choices.

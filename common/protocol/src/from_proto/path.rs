@@ -11,6 +11,7 @@ use cognate_continuation::path_result::{
     AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
 };
 use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
@@ -155,6 +156,7 @@ fn start_points(m: &v1::StartPoints) -> Result<StartPoints, ProtocolError> {
             StartPoints::Multihomogeneous {
                 degrees: p.degrees.iter().map(|row| row.degrees.clone()).collect(),
                 dimensions: p.dimensions.clone(),
+                exchange: p.exchange.as_ref().map(exchange).transpose()?,
             }
         }
         Kind::Stored(p) => StartPoints::Stored {
@@ -205,6 +207,24 @@ fn start_points(m: &v1::StartPoints) -> Result<StartPoints, ProtocolError> {
                 indices: p.indices.clone(),
             }
         }
+    })
+}
+
+/// An exchange of which every index is within its list; whether it fits is seen with the system.
+fn exchange(m: &v1::Exchange) -> Result<Exchange, ProtocolError> {
+    let indices = |name: &str, list: &[u32], most: sizes::Limit| {
+        let field = format!("multihomogeneous.exchange.{name}");
+        within_limit(&field, list.len(), most)?;
+        if let Some(index) = list.iter().find(|&&index| index as usize >= list.len()) {
+            let expected = format!("an index below {}", list.len());
+            return Err(ProtocolError::invalid(field, index, expected));
+        }
+        Ok(list.iter().map(|&index| index as usize).collect())
+    };
+    Ok(Exchange {
+        variables: indices("variables", &m.variables, sizes::VARIABLES)?,
+        equations: indices("equations", &m.equations, sizes::EQUATIONS)?,
+        groups: indices("groups", &m.groups, sizes::VARIABLES)?,
     })
 }
 

@@ -78,6 +78,11 @@ fn homotopy(homotopy: &HomotopyKind) -> v1::Homotopy {
     }
 }
 
+fn indices(of: &[usize]) -> Vec<u32> {
+    let index = |&i| u32::try_from(i).expect("there are fewer variables and equations than 2^32");
+    of.iter().map(index).collect()
+}
+
 fn start_points(points: &StartPoints) -> v1::StartPoints {
     use v1::start_points::Kind;
     v1::StartPoints {
@@ -88,7 +93,13 @@ fn start_points(points: &StartPoints) -> v1::StartPoints {
             StartPoints::Multihomogeneous {
                 degrees,
                 dimensions,
+                exchange,
             } => Kind::Multihomogeneous(v1::Multihomogeneous {
+                exchange: exchange.as_ref().map(|exchange| v1::Exchange {
+                    variables: indices(&exchange.variables),
+                    equations: indices(&exchange.equations),
+                    groups: indices(&exchange.groups),
+                }),
                 degrees: degrees
                     .iter()
                     .map(|row| v1::GroupDegrees {

@@ -7,6 +7,7 @@ use cognate_continuation::path_result::{
     AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
 };
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::{Preset, Settings};
 use cognate_continuation::work::{Stage, StageId, Work};
@@ -299,6 +300,11 @@ impl Draw {
             1 => StartPoints::Multihomogeneous {
                 degrees: vec![vec![1, 0], vec![1, 2], vec![0, 3]],
                 dimensions: vec![2, 1],
+                exchange: Some(Exchange {
+                    variables: vec![1, 0, 2],
+                    equations: vec![0, 2, 1],
+                    groups: vec![1, 0],
+                }),
             },
             _ => StartPoints::Stored {
                 object: self.digest(),

@@ -1,11 +1,10 @@
 //! Action: one generator of a symmetry group, as it moves points.
 
-use crate::field::{Doubles, of_node};
+use crate::field::{Doubles, extract, of_node};
 use cognate_systems::expression::{Node, NodeId};
 use cognate_systems::system::{SymmetryGenerator, System};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 
 /// A generator with all that it needs, apart from the system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,36 +28,16 @@ impl Action {
             SymmetryGenerator::Permutation(p) => return Some(Self::Permutation(p.clone())),
             SymmetryGenerator::Map(roots) => roots,
         };
-        let e = &system.expressions;
-        let mut needed = vec![false; e.nodes().len()];
-        for root in roots {
-            needed[root.0 as usize] = true;
+        let (nodes, roots) = extract(&system.expressions, roots);
+        let refused = |node: &Node| {
+            matches!(
+                node,
+                Node::Parameter(_) | Node::Root(..) | Node::Function(..)
+            )
+        };
+        if nodes.iter().any(refused) {
+            return None;
         }
-        for id in (0..needed.len()).rev() {
-            if needed[id] {
-                for child in e.children(NodeId(id as u32)) {
-                    needed[child.0 as usize] = true;
-                }
-            }
-        }
-        let mut places = HashMap::new();
-        let mut nodes = Vec::new();
-        for id in (0..needed.len()).filter(|&id| needed[id]) {
-            let at = |n: &NodeId| places[n];
-            let node = match e.node(NodeId(id as u32)) {
-                Node::Add(a, b) => Node::Add(at(a), at(b)),
-                Node::Subtract(a, b) => Node::Subtract(at(a), at(b)),
-                Node::Multiply(a, b) => Node::Multiply(at(a), at(b)),
-                Node::Divide(a, b) => Node::Divide(at(a), at(b)),
-                Node::Negate(a) => Node::Negate(at(a)),
-                Node::Power(a, exponent) => Node::Power(at(a), *exponent),
-                leaf @ (Node::Constant(_) | Node::Variable(_)) => leaf.clone(),
-                Node::Parameter(_) | Node::Root(..) | Node::Function(..) => return None,
-            };
-            places.insert(NodeId(id as u32), NodeId(nodes.len() as u32));
-            nodes.push(node);
-        }
-        let roots = roots.iter().map(|root| places[root]).collect();
         Some(Self::Map { nodes, roots })
     }
 

@@ -240,6 +240,13 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
         format!("the classes add up to {}: please report this", count(sum))
     };
     lines.line("total", &count(p.total), &note);
+    if p.images > 0 {
+        let note = "not followed: images of others by the symmetry";
+        lines.line("images", &count(p.images), note);
+    }
+    for (name, &n) in &p.degenerate {
+        lines.line("on a named set", &count(n), name);
+    }
     if p.retracked > 0 || p.crossings_found > 0 {
         let note = match p.crossings_found {
             0 => String::new(),
