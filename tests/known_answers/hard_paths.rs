@@ -34,18 +34,19 @@ fn reimer_4_has_36_solutions() {
     check_named("reimer-4", &reimer(4), 120, 36);
 }
 
-/// With this seed one of the 64 polyhedral paths passes by infinity half-way, where it is as large
-/// as 4e13: on the way there other paths come near, and doubles no longer tell them apart.
+/// With these seeds and any gamma, a coefficient nearly vanished half-way, and one of the 64
+/// polyhedral paths passed by infinity there, as large as 4e13.
 #[test]
-fn eco_8_keeps_the_path_that_passes_by_infinity() {
-    let options = PlanOptions {
-        seed: 1_913_475_225,
-        start: StartChoice::Polyhedral,
-        ..PlanOptions::default()
-    };
-    let (_, sets) = solve(&eco(8).system, &options, &|_| None);
-    let (paths, counts) = (&sets[0].paths, &sets[0].counts);
-    assert_eq!((paths.total, paths.finite, paths.failed), (64, 64, 0));
-    assert_eq!(counts.nonsingular, 64);
-    assert!(paths.highest_precision_bits > 53);
+fn no_path_of_eco_8_passes_by_infinity() {
+    for seed in [55, 1_913_475_225] {
+        let options = PlanOptions {
+            seed,
+            start: StartChoice::Polyhedral,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&eco(8).system, &options, &|_| None);
+        let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+        assert_eq!((paths.total, paths.finite, paths.failed), (64, 64, 0));
+        assert_eq!((paths.retracked, counts.nonsingular), (0, 64));
+    }
 }

@@ -338,7 +338,12 @@ impl Homotopy {
                     let g = out.multiply(of_start, start);
                     *equation = out.add(f, g);
                 }
-                let gamma = generic_unit(seed, Purpose::Gamma);
+                let gamma = match (kind, start_system) {
+                    (HomotopyKind::Generic { parameters }, Some(StartSystem::Generic(generic))) => {
+                        generic.gamma(system, parameters, seed)
+                    }
+                    _ => generic_unit(seed, Purpose::Gamma),
+                };
                 if shared_scales.is_some() {
                     // Both together as this chart would have them.
                     normalize(

@@ -3,6 +3,7 @@
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
 use cognate_numeric::rational::ComplexRational;
+use num_complex::Complex64;
 use std::collections::{BTreeMap, HashMap};
 
 /// Most products of terms that one expansion may take, and most terms that it
@@ -95,6 +96,22 @@ impl Polynomial {
             .collect();
         support.dedup();
         support
+    }
+
+    /// The coefficients of the monomials in the variables, for these values of the parameters.
+    pub fn coefficients_at(&self, parameters: &[Complex64]) -> BTreeMap<Vec<u32>, Complex64> {
+        let mut coefficients: BTreeMap<Vec<u32>, Complex64> = BTreeMap::new();
+        for (exponents, c) in &self.terms {
+            let (of_variables, of_parameters) = exponents.split_at(self.variables);
+            let mut value = Complex64::new(c.re.to_f64(), c.im.to_f64());
+            for (parameter, &exponent) in parameters.iter().zip(of_parameters) {
+                for _ in 0..exponent {
+                    value *= parameter;
+                }
+            }
+            *coefficients.entry(of_variables.to_vec()).or_default() += value;
+        }
+        coefficients
     }
 
     /// What complex conjugation makes of it: conjugate coefficients, and each

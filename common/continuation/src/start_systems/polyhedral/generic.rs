@@ -11,6 +11,7 @@ use crate::chart::exact;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::roots_of_unity::on_the_circle;
 use cognate_systems::expression::{Expressions, NodeId};
+use cognate_systems::polynomial::Polynomial;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use rug::Integer;
@@ -46,6 +47,47 @@ impl GenericSystem {
     /// The coefficients, equation after equation.
     pub fn coefficients(&self) -> impl Iterator<Item = Complex64> {
         self.angles.iter().flatten().copied().map(on_the_circle)
+    }
+
+    /// The gamma with which no coefficient comes near 0 between this system and the one with its
+    /// monomials: of some random units the one that is farthest from turning a coefficient of
+    /// this system into the opposite direction of the other's.
+    ///
+    /// On `(1-t) f + t gamma g` a coefficient whose ends are nearly opposite nearly vanishes on the
+    /// way, and where it belongs to a vertex of the supports solutions pass by infinity or 0 there:
+    /// of 100 seeds of eco-8 two had a path as large as 1e13.
+    pub fn gamma(&self, system: &System, parameters: &[Complex64], seed: u64) -> Complex64 {
+        const DRAWS: usize = 64;
+        let mut avoided = Vec::new();
+        let mut own = self.coefficients();
+        for (support, &equation) in self.supports.iter().zip(&system.equations) {
+            let (n, p) = (system.variable_count(), parameters.len());
+            let other = Polynomial::expand(&system.expressions, equation, n, p);
+            let other = other.map_or_else(Default::default, |f| f.coefficients_at(parameters));
+            for (point, g) in support.iter().zip(own.by_ref()) {
+                let exponents = point.iter().map(|&e| u32::try_from(e).unwrap_or(u32::MAX));
+                let f = other.get(&exponents.collect::<Vec<u32>>());
+                let f = f.copied().unwrap_or_default();
+                let opposite = -f * g.conj();
+                let size = opposite.norm_sqr().sqrt();
+                if size > 0.0 && size.is_finite() {
+                    avoided.push(opposite / size);
+                }
+            }
+        }
+        let mut stream = RandomStream::new(seed, Purpose::Gamma, 0);
+        let distance = |gamma: Complex64| {
+            let distances = avoided.iter().map(|a| (gamma - a).norm_sqr());
+            distances.fold(f64::INFINITY, |least, d| if d < least { d } else { least })
+        };
+        let mut best = stream.unit();
+        for _ in 1..DRAWS {
+            let gamma = stream.unit();
+            if distance(gamma) > distance(best) {
+                best = gamma;
+            }
+        }
+        best
     }
 
     /// The equations with their own coefficients; see [`Self::equations`].
