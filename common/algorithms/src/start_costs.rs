@@ -95,6 +95,10 @@ pub(crate) const HALVED: &str = "one of each two that the exchange of groups tak
 /// Most operations that `cognate info` spends on a mixed volume: a few seconds.
 const COUNTING_OPERATIONS: u64 = 2_000_000_000;
 
+/// Most operations that are spent on showing that no groups are worth a search: a tenth of what
+/// the search may take.
+const LEAST_OPERATIONS: u64 = 10_000_000;
+
 /// The start systems of a system, each with the system as it is tracked by it.
 #[derive(Clone, Debug)]
 pub struct Starts {
@@ -131,7 +135,18 @@ impl Starts {
         let given = |system: &System, degrees: &Degrees| {
             multihomogeneous(system, degrees).map(|(start, count)| (system.clone(), start, count))
         };
-        let (multihomogeneous, found) = match grouped(system) {
+        let total_degree = total_degree(system, &degrees);
+        // No groups have a smaller number than the mixed volume, which often is counted in a
+        // hundredth of the time that the search for them takes (katsura-10).
+        let is_least = total_degree.as_ref().is_ok_and(|&(_, _, number)| {
+            let operations = LEAST_OPERATIONS.min(number.saturating_mul(50_000));
+            system.groups.len() == 1 && mixed_volume(system, operations) == Ok(number)
+        });
+        let better = match is_least {
+            true => None,
+            false => grouped(system),
+        };
+        let (multihomogeneous, found) = match better {
             Some((grouped, exact)) => {
                 let degrees = checked_degrees(&grouped)?;
                 (given(&grouped, &degrees), Some(FoundGroups { exact }))
@@ -139,7 +154,7 @@ impl Starts {
             None => (given(system, &degrees), None),
         };
         Ok(Self {
-            total_degree: total_degree(system, &degrees),
+            total_degree,
             multihomogeneous,
             found,
             mixed_volume: None,
