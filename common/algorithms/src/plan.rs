@@ -622,9 +622,9 @@ mod tests {
             serde_json::to_string(&costs).unwrap(),
             "{\"variables\":2,\"equations\":2,\"degrees\":[2,2],\"total_degree\":4,\
              \"multihomogeneous\":{\"groups\":[[\"x\"],[\"y\"]],\"number\":2},\
-             \"linear_product\":null,\"mixed_volume\":2,\"choice\":\"multihomogeneous\",\
+             \"linear_product\":2,\"mixed_volume\":2,\"choice\":\"multihomogeneous\",\
              \"why\":\"2 paths by the variable groups, 4 by total degree\",\
-             \"notes\":{\"linear_product\":\"not in this version\"}}"
+             \"notes\":{\"linear_product\":\"the sets 2 times {x} {y}\"}}"
         );
         let more = bertini("variable_group x; function f, g; f = x - 1; g = x^2 - 1;");
         let costs = StartCosts::of(&more).unwrap();
