@@ -89,6 +89,9 @@ const MAX_CHOICE_STATES: u64 = 100_000;
 /// Most steps of one count of the choices of a linear-product start: a fraction of a second.
 const CHOICE_STEPS: u64 = 5_000_000;
 
+/// Largest degree for which sets are guessed: the time grows with its cube.
+const MOST_FACTORS: u32 = 100;
+
 /// Why a start by groups has half as many paths as its number.
 pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
 
@@ -433,6 +436,10 @@ fn linear_product(
         return Err("not counted for combinations of equations".into());
     }
     let supports = supports(system).ok_or("multiplying the equations out takes too long")?;
+    let mut monomials = supports.iter().flatten();
+    if monomials.any(|m| m.iter().sum::<u32>() > MOST_FACTORS) {
+        return Err(format!("not tried for degrees above {MOST_FACTORS}"));
+    }
     let groups: Vec<Vec<usize>> = groups.iter().map(|g| g.variables.clone()).collect();
     let variables = system.variables.len();
     let (sets, count) = guess(&supports, variables, &groups, CHOICE_STEPS)
