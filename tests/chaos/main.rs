@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]`
 
+use cognate_tests::arguments::{number, options as arguments};
 use cognate_tests::builders::katsura;
 use cognate_tests::client::{Submission, accepted, has_ended, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
@@ -78,13 +79,10 @@ fn wanted() -> Result<Wanted, String> {
         seed: 1,
         postgres: false,
     };
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let value = words.next().ok_or(format!("{word}: a value is missing"))?;
-        let number = || value.parse().map_err(|e| format!("{word} {value}: {e}"));
+    for (word, value) in arguments()? {
         match word.as_str() {
-            "--seconds" => wanted.seconds = number()?,
-            "--seed" => wanted.seed = number()?,
+            "--seconds" => wanted.seconds = number(&word, &value)?,
+            "--seed" => wanted.seed = number(&word, &value)?,
             "--ledger" if value == "sqlite" => wanted.postgres = false,
             "--ledger" if value == "postgres" => wanted.postgres = true,
             _ => {

@@ -7,6 +7,7 @@ use cognate_protocol::v1::SummaryCounts;
 use cognate_systems::formats::{self, FileSettings, Format};
 use cognate_systems::named::{Named, cyclic, eco, katsura, noon};
 use cognate_systems::system::System;
+use cognate_tests::arguments::{number, options};
 use cognate_tests::client::{Client, Submission};
 use cognate_tests::cluster::Cluster;
 use cognate_tests::systems::shared;
@@ -78,10 +79,8 @@ fn wanted() -> Result<Wanted, String> {
         hard: 2,
         large: 0,
     };
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let value = words.next().ok_or(format!("{word}: a number is missing"))?;
-        let number = value.parse().map_err(|e| format!("{word} {value}: {e}"))?;
+    for (word, value) in options()? {
+        let number = number(&word, &value)?;
         match word.as_str() {
             "--solves" => wanted.solves = number,
             "--hard" => wanted.hard = number,

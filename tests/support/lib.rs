@@ -1,6 +1,7 @@
 //! What the tests share.
 #![forbid(unsafe_code)]
 
+pub mod arguments;
 pub mod builders;
 pub mod client;
 pub mod cluster;

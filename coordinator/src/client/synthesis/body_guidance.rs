@@ -1,16 +1,13 @@
 //! Body guidance: five poses to dyads, by one job of the service.
 
-use super::{How, preset};
-use crate::client::commands::{submit, watch};
-use crate::client::connection::{Connection, Target};
+use super::{How, finished, preset};
+use crate::client::connection::Target;
 use crate::client::error::ClientError;
 use crate::client::output::progress::Progress;
-use crate::client::output::summary;
 use crate::client::problem::Prepared;
 use crate::results::summary::Summary;
 use cognate_kinematics::body_guidance::{Poses, system};
 use cognate_protocol::submission::{Options, SettingsChoice, Source, StartKind, Submission};
-use cognate_protocol::v1;
 use num_complex::Complex64;
 
 /// A real dyad: a pivot, and a joint of the body.
@@ -50,19 +47,7 @@ pub async fn dyads(
         name: how.name.clone(),
         warnings: vec![],
     };
-    let mut connection = Connection::open(target).await?;
-    let request = uuid::Uuid::new_v4().to_string();
-    let (job, warnings) = submit::send(&mut connection, &request, prepared).await?;
-    for warning in &warnings {
-        progress.say(&format!("warning: {warning}"));
-    }
-    let (mut connection, last) = watch::follow(target, &job, progress).await?;
-    match last.state() {
-        v1::JobState::Failed => return Err(ClientError::GaveUp(last.message)),
-        v1::JobState::Cancelled => return Err(ClientError::Cancelled),
-        _ => {}
-    }
-    let summary = summary::read(&connection.summary(&job).await?)?;
+    let (mut connection, job, summary) = finished(target, prepared, progress).await?;
     let mut dyads = vec![];
     connection
         .solutions(&job, |solution| {

@@ -253,12 +253,12 @@ fn submission(
     }
 }
 
-/// Runs a job to its end: its summary, and how each path ended, by its number.
-async fn run(
+/// Runs a job to its end: a connection that is open then, the job's id, its summary.
+async fn finished(
     target: &Target,
     prepared: Prepared,
     progress: &mut Progress,
-) -> Result<(Summary, BTreeMap<usize, Arrival>), ClientError> {
+) -> Result<(Connection, String, Summary), ClientError> {
     let mut connection = Connection::open(target).await?;
     let request = uuid::Uuid::new_v4().to_string();
     let (job, warnings) = submit::send(&mut connection, &request, prepared).await?;
@@ -272,6 +272,16 @@ async fn run(
         _ => {}
     }
     let summary = summary::read(&connection.summary(&job).await?)?;
+    Ok((connection, job, summary))
+}
+
+/// Runs a job to its end: its summary, and how each path ended, by its number.
+async fn run(
+    target: &Target,
+    prepared: Prepared,
+    progress: &mut Progress,
+) -> Result<(Summary, BTreeMap<usize, Arrival>), ClientError> {
+    let (mut connection, job, summary) = finished(target, prepared, progress).await?;
     let ends = ends(&mut connection, &job, &summary).await?;
     Ok((summary, ends))
 }

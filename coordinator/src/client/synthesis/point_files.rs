@@ -13,15 +13,20 @@ type Placed = ([Complex64; 2], String);
 /// Place and turn of a body, and where they stand, in words.
 type Posed = ((Complex64, Complex64), String);
 
-/// Reads nine points; the message names file, line and field.
-pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
+/// The text of a file, without a byte order mark.
+fn decoded<'a>(name: &str, content: &'a [u8]) -> Result<&'a str, String> {
     let text = std::str::from_utf8(content).map_err(|e| {
         format!(
             "{name}: is no text: byte {} is not UTF-8",
             e.valid_up_to() + 1
         )
     })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// Reads nine points; the message names file, line and field.
+pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
+    let text = decoded(name, content)?;
     let placed = if text.trim_start().starts_with(['{', '[']) {
         json(name, text)?
     } else {
@@ -33,13 +38,7 @@ pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
 /// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle],
 /// ...]}`; angles in degrees, counterclockwise, in JSON also as `[cos, sin]`.
 pub fn read_poses(name: &str, content: &[u8]) -> Result<Poses, String> {
-    let text = std::str::from_utf8(content).map_err(|e| {
-        format!(
-            "{name}: is no text: byte {} is not UTF-8",
-            e.valid_up_to() + 1
-        )
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = decoded(name, content)?;
     let poses: Vec<Posed> = if text.trim_start().starts_with(['{', '[']) {
         json_poses(name, text)?
     } else {
@@ -117,13 +116,7 @@ fn nine(name: &str, placed: &[Placed]) -> Result<PathPoints, String> {
 /// CSV with a header `x1,y1,...,x9,y9`, or the same with `name` before it, a row for each set; or
 /// JSON, a line for each: a list of points, or `{"name": ..., "points": [...]}`.
 pub fn read_many(name: &str, content: &[u8]) -> Result<Vec<(String, PathPoints)>, String> {
-    let text = std::str::from_utf8(content).map_err(|e| {
-        format!(
-            "{name}: is no text: byte {} is not UTF-8",
-            e.valid_up_to() + 1
-        )
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = decoded(name, content)?;
     let mut rows = text
         .lines()
         .enumerate()

@@ -1,0 +1,23 @@
+//! Arguments: what stands after the name of a program that tests, as options that each take a value.
+
+/// All of them, as option and value.
+///
+/// # Errors
+/// When an option has no value.
+pub fn options() -> Result<Vec<(String, String)>, String> {
+    let mut words = std::env::args().skip(1);
+    let mut options = Vec::new();
+    while let Some(word) = words.next() {
+        let value = words.next().ok_or(format!("{word}: a value is missing"))?;
+        options.push((word, value));
+    }
+    Ok(options)
+}
+
+/// The value of an option as a number.
+///
+/// # Errors
+/// When it is none.
+pub fn number(option: &str, value: &str) -> Result<u64, String> {
+    value.parse().map_err(|e| format!("{option} {value}: {e}"))
+}
