@@ -11,6 +11,7 @@ mod nine_points;
 mod postgres;
 mod report_repeated;
 mod shared_memory;
+mod sisters;
 mod stranger;
 mod submit_to_result;
 mod tracking_by_hand;

@@ -42,7 +42,7 @@ pub struct Assessment {
     pub one_circuit: bool,
     /// Driven from side A, and from side B.
     pub drives: [Drive; 2],
-    /// The side that serves better.
+    /// The side that serves better, or must.
     pub driver: Side,
     /// How well, driven from there.
     pub grade: Grade,
@@ -85,7 +85,14 @@ impl Assessment {
         }
     }
 
-    /// Driven from the side that serves better.
+    /// The same where the side that drives is not free.
+    pub fn driven_from(mut self, side: Side) -> Self {
+        self.grade = grade(&self.drives[side.index()], self.one_circuit);
+        self.driver = side;
+        self
+    }
+
+    /// Driven from the side that serves better, or must.
     pub fn drive(&self) -> &Drive {
         &self.drives[self.driver.index()]
     }

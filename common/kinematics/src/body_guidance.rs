@@ -6,11 +6,11 @@
 //! |d_j + f_j b - a| = |b - a|, in isotropic coordinates
 //! `d D + d F B + D f b - d A - D a + b A (1 - f) + a B (1 - F) = 0`: bilinear in (a, A), (b, B).
 
-use crate::assessment::Assessment;
-use crate::linkage::Linkage;
+use crate::design::{Design, ranked};
+use crate::four_unknowns::bilinear_system;
+use crate::linkage::{Linkage, Side};
 use crate::plane::{modulus, unit};
-use cognate_systems::expression::{Expressions, NodeId};
-use cognate_systems::system::{System, VariableGroup};
+use cognate_systems::system::System;
 use num_complex::Complex64;
 
 /// Solutions for generic poses; two more paths of the two-homogeneous start end at infinity.
@@ -50,16 +50,16 @@ pub enum PoseFault {
 
 /// The system: unknowns a, A, b, B, parameters d1, D1, f1, F1, ..., d4, D4, f4, F4.
 pub fn system() -> System {
-    let mut e = Expressions::new();
-    let v: Vec<NodeId> = (0..4).map(|k| e.variable(k)).collect();
-    let [a, aa, b, bb] = v[..] else {
-        unreachable!("four variables")
-    };
-    let one = e.integer(1);
-    let (ba, ab) = (e.multiply(b, aa), e.multiply(a, bb));
-    let equations = (0..4)
-        .map(|j| {
-            let [d, dd, f, ff] = [0, 1, 2, 3].map(|k| e.parameter(4 * j + k));
+    let (unknowns, parameters) = (["a", "A", "b", "B"], ["d", "D", "f", "F"]);
+    let groups = [[0, 1], [2, 3]];
+    bilinear_system(
+        unknowns,
+        groups,
+        "pose",
+        parameters,
+        |e, [a, aa, b, bb], [d, dd, f, ff]| {
+            let one = e.integer(1);
+            let (ba, ab) = (e.multiply(b, aa), e.multiply(a, bb));
             let (rest, rest_too) = (e.subtract(one, f), e.subtract(one, ff));
             let (dff, ddf) = (e.multiply(d, ff), e.multiply(dd, f));
             let terms = [
@@ -72,41 +72,8 @@ pub fn system() -> System {
             let less = [e.multiply(d, aa), e.multiply(dd, a)];
             let sum = terms[1..].iter().fold(terms[0], |sum, &t| e.add(sum, t));
             less.iter().fold(sum, |sum, &t| e.subtract(sum, t))
-        })
-        .collect();
-    let group = |variables: [usize; 2]| VariableGroup {
-        variables: variables.to_vec(),
-        homogeneous: false,
-    };
-    let system = System {
-        expressions: e,
-        variables: ["a", "A", "b", "B"].map(str::to_owned).to_vec(),
-        parameters: (1..=4)
-            .flat_map(|j| ["d", "D", "f", "F"].map(|s| format!("{s}{j}")))
-            .collect(),
-        groups: vec![group([0, 1]), group([2, 3])],
-        equations,
-        equation_names: (1..=4).map(|j| format!("pose{}", j + 1)).collect(),
-        conjugates: vec![(0, 1), (2, 3)],
-        ..System::default()
-    };
-    if let Err(error) = system.check() {
-        panic!("the system of a dyad is a system: {error}");
-    }
-    system
-}
-
-/// A linkage of two dyads that guides the body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Guide {
-    /// The dyads that it is made of, by their places in the list.
-    pub dyads: [usize; 2],
-    /// Its positions; the coupler point is the body's origin.
-    pub poses: Vec<Linkage>,
-    /// The largest error of a side's length in any of them, relative to the places' extent.
-    pub error: f64,
-    /// What it is worth.
-    pub assessment: Assessment,
+        },
+    )
 }
 
 impl Poses {
@@ -160,6 +127,11 @@ impl Poses {
         &self.turns
     }
 
+    /// What places are divided by in the system: a power of 2, about their extent.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// The parameters of the system.
     pub fn parameters(&self) -> Vec<Complex64> {
         let back = self.turns[0].conj();
@@ -181,24 +153,22 @@ impl Poses {
     }
 
     /// Every pair of dyads as a linkage, best first.
-    pub fn guides(&self, dyads: &[[Complex64; 2]]) -> Vec<Guide> {
-        let mut guides = Vec::new();
-        for one in 0..dyads.len() {
-            for two in one + 1..dyads.len() {
-                guides.push(self.guide([one, two], [dyads[one], dyads[two]]));
-            }
-        }
-        guides.sort_by(|one, two| {
-            let (one, two) = (&one.assessment, &two.assessment);
-            let grades = one.grade.cmp(&two.grade);
-            grades.then(two.quality().total_cmp(&one.quality()))
-        });
-        guides
+    pub fn linkages(&self, dyads: &[[Complex64; 2]]) -> Vec<Design> {
+        let pairs =
+            (0..dyads.len()).flat_map(|one| (one + 1..dyads.len()).map(move |two| [one, two]));
+        let made = pairs.map(|[one, two]| self.linkage([one, two], [dyads[one], dyads[two]], None));
+        ranked(made.collect())
     }
 
-    fn guide(&self, which: [usize; 2], dyads: [[Complex64; 2]; 2]) -> Guide {
+    /// The linkage of two dyads, which have these places in a list, driven from a side or from the better.
+    pub fn linkage(
+        &self,
+        which: [usize; 2],
+        dyads: [[Complex64; 2]; 2],
+        driver: Option<Side>,
+    ) -> Design {
         let pivots = dyads.map(|[pivot, _]| pivot);
-        let poses: Vec<Linkage> = self
+        let positions: Vec<Linkage> = self
             .places
             .iter()
             .zip(&self.turns)
@@ -211,37 +181,18 @@ impl Poses {
                 }
             })
             .collect();
-        let sides = poses[0].lengths().sides;
-        let off = |pose: &Linkage| {
-            let now = pose.lengths().sides;
-            (now[0] - sides[0]).abs().max((now[1] - sides[1]).abs())
-        };
-        let error = poses.iter().map(off).fold(0.0, f64::max) / self.scale;
-        Guide {
-            dyads: which,
-            error,
-            assessment: Assessment::new(&poses),
-            poses,
-        }
+        Design::new(which, positions, self.scale, driver)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_linkages::{at_points, random_linkage};
-    use cognate_numeric::scalar::Complex;
-    use cognate_systems::evaluation::{Evaluate, Interpreter};
+    use crate::test_linkages::{at_points, random_linkage, residual};
 
     #[test]
     fn the_dyads_of_a_linkage_solve_its_poses() {
         let system = system();
-        let program = Interpreter::compile(&system.expressions, &system.equations, 4, 16);
-        let mut scratch = Evaluate::<f64>::scratch(&program, ());
-        let native = |values: &[Complex64]| -> Vec<Complex<f64>> {
-            let values = values.iter();
-            values.map(|z| Complex { re: z.re, im: z.im }).collect()
-        };
         for seed in 0..50 {
             let linkage = random_linkage(seed);
             let at = at_points(&linkage, seed, 5);
@@ -257,27 +208,15 @@ mod tests {
                 let z = |w: Complex64| (w - linkage.point) / poses.scale;
                 let (a, b) = (z(linkage.pivots[k]), z(linkage.joints[k]));
                 let solution = [a, a.conj(), b, b.conj()];
-                let mut out = vec![Complex { re: 0.0, im: 0.0 }; 4];
-                program.value(
-                    &native(&solution),
-                    &native(&poses.parameters()),
-                    &mut out,
-                    &mut scratch,
-                );
-                for value in out {
-                    assert!(value.norm_sqr() < 1e-20, "seed {seed}: {value:?}");
-                }
+                let left = residual(&system, &solution, &poses.parameters());
+                assert!(left < 1e-10, "seed {seed}: {left:e}");
                 poses.dyad(&solution)
             });
-            let guides = poses.guides(&dyads);
-            assert_eq!(guides.len(), 1);
-            assert!(
-                guides[0].error < 1e-10,
-                "seed {seed}: {:e}",
-                guides[0].error
-            );
-            for (made, pose) in guides[0].poses.iter().zip(&at) {
-                assert!((0..2).all(|k| modulus(made.joints[k] - pose.joints[k]) < 1e-9));
+            let made = poses.linkages(&dyads);
+            assert_eq!(made.len(), 1);
+            assert!(made[0].error < 1e-10, "seed {seed}: {:e}", made[0].error);
+            for (found, pose) in made[0].positions.iter().zip(&at) {
+                assert!((0..2).all(|k| modulus(found.joints[k] - pose.joints[k]) < 1e-9));
             }
         }
     }

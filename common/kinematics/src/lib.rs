@@ -2,7 +2,8 @@
 //! that can be built. Knows no service: equations and numbers only.
 //!
 //! In reading order: points and angles of the plane; a linkage and its type; what driving it does;
-//! what it is worth; the nine-point problem, from points to classes of linkages; five poses of a body.
+//! what it is worth; the nine-point problem, from points to classes of linkages; its sisters: five poses
+//! of a body, five points with the angles of the crank, five pairs of angles.
 //!
 //! ```
 //! use cognate_kinematics::linkage::{Linkage, Mobility, Side};
@@ -23,9 +24,13 @@
 pub mod assessment;
 pub mod body_guidance;
 pub mod coupler_curve;
+pub mod design;
 pub mod drive;
+mod four_unknowns;
+pub mod function_generation;
 pub mod linkage;
 pub mod nine_point;
+pub mod path_timing;
 pub mod plane;
 #[cfg(test)]
 mod simulation;

@@ -3,6 +3,9 @@
 use crate::linkage::Linkage;
 use crate::plane::modulus;
 use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::scalar::Complex;
+use cognate_systems::evaluation::{Evaluate, Interpreter};
+use cognate_systems::system::System;
 use num_complex::Complex64;
 
 /// A linkage somewhere in the plane; every type comes up.
@@ -74,4 +77,24 @@ pub fn at_points(linkage: &Linkage, seed: u64, count: usize) -> Vec<Linkage> {
         poses.extend(position(linkage, direction, left));
     }
     poses
+}
+
+/// The largest value of a system's equations there.
+pub fn residual(system: &System, solution: &[Complex64], parameters: &[Complex64]) -> f64 {
+    let native = |values: &[Complex64]| -> Vec<Complex<f64>> {
+        let values = values.iter();
+        values.map(|z| Complex { re: z.re, im: z.im }).collect()
+    };
+    let sizes = (solution.len(), parameters.len());
+    let program = Interpreter::compile(&system.expressions, &system.equations, sizes.0, sizes.1);
+    let mut scratch = Evaluate::<f64>::scratch(&program, ());
+    let mut out = vec![Complex { re: 0.0, im: 0.0 }; system.equations.len()];
+    program.value(
+        &native(solution),
+        &native(parameters),
+        &mut out,
+        &mut scratch,
+    );
+    let sizes = out.iter().map(|z| modulus(Complex64::new(z.re, z.im)));
+    sizes.fold(0.0, f64::max)
 }

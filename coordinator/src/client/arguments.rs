@@ -271,6 +271,22 @@ pub enum Synthesize {
     NinePoint(NinePoint),
     /// Every four-bar linkage that takes a body through five given poses
     BodyGuidance(BodyGuidance),
+    /// Every four-bar linkage whose coupler point passes five given points at given angles of its crank
+    PathTiming(PathTiming),
+    /// Every four-bar linkage whose two sides turn together through five given pairs of angles
+    FunctionGeneration(FunctionGeneration),
+}
+
+impl Synthesize {
+    /// The options that all have.
+    pub fn common(&self) -> &SynthesisArguments {
+        match self {
+            Self::NinePoint(a) => &a.common,
+            Self::BodyGuidance(a) => &a.common,
+            Self::PathTiming(a) => &a.common,
+            Self::FunctionGeneration(a) => &a.common,
+        }
+    }
 }
 
 /// How linkages are shown.
@@ -318,6 +334,40 @@ Examples:
 poses.csv has a header x,y,angle and five rows, angles in degrees. JSON: {\"poses\": [[x, y, angle], ...]}.")]
 pub struct BodyGuidance {
     /// Five poses: CSV with a header x,y,angle (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize path-timing`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize path-timing points.csv
+  cognate synthesize path-timing points.csv --output linkages
+
+points.csv has a header x,y,angle and five rows: the point, and the crank's angle in degrees there, of which
+only the differences matter. JSON: {\"points\": [[x, y, angle], ...]}.")]
+pub struct PathTiming {
+    /// Five points with angles: CSV with a header x,y,angle (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize function-generation`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize function-generation angles.csv
+  cognate synthesize function-generation angles.csv --output linkages
+
+angles.csv has a header input,output and five rows, angles in degrees, of which only the differences matter.
+JSON: {\"angles\": [[input, output], ...]}. Lengths are in units of the ground link.")]
+pub struct FunctionGeneration {
+    /// Five pairs of angles: CSV with a header input,output (degrees) or JSON; - is standard input
     pub file: PathBuf,
     /// How, where, and what is shown.
     #[command(flatten)]

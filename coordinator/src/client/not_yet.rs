@@ -1,6 +1,6 @@
 //! What belongs to the command line but not to this version: refused with its name, before anything starts.
 
-use super::arguments::{Command, Coordinator, ProblemArguments, Synthesize};
+use super::arguments::{Command, Coordinator, ProblemArguments};
 use super::error::ClientError;
 use crate::intake::MOST_BITS;
 use cognate_protocol::submission::PrecisionChoice;
@@ -20,8 +20,7 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         | Command::Workers(_)
         | Command::Worker(_)
         | Command::Info(_) => None,
-        Command::Synthesize(Synthesize::NinePoint(c)) => precision(c.common.precision),
-        Command::Synthesize(Synthesize::BodyGuidance(c)) => precision(c.common.precision),
+        Command::Synthesize(c) => precision(c.common().precision),
         Command::Fleet(_) => Some("fleet (workers kept in Slurm)".into()),
     };
     match missing {

@@ -1,36 +1,38 @@
-//! `cognate synthesize`: from points or poses to linkages, on a coordinator of its own or on a running one.
+//! `cognate synthesize`: from points, poses or angles to linkages, on a coordinator of its own or on a running one.
 
-use crate::client::arguments::{
-    BodyGuidance, NinePoint, SynthesisArguments, SynthesisFormat, Synthesize,
-};
+use crate::client::arguments::{NinePoint, SynthesisArguments, SynthesisFormat, Synthesize};
 use crate::client::connection::Target;
 use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output;
-use crate::client::output::linkages::guides::{self, Guides};
+use crate::client::output::linkages::designs::{self, Designs};
 use crate::client::output::linkages::{self, Sheet};
 use crate::client::output::progress::Progress;
 use crate::client::output::text::{self, Look, counted};
 use crate::client::problem;
-use crate::client::synthesis::{How, body_guidance, nine_points, point_files, sweep};
-use cognate_kinematics::body_guidance::Poses;
+use crate::client::synthesis::designs::{Sister, designs};
+use crate::client::synthesis::{How, nine_points, point_files, position_files, sweep};
 use cognate_kinematics::nine_point::family::CLASSES;
 use cognate_kinematics::nine_point::{ClassEnd, PathPoints};
+use std::path::Path;
 use std::time::Instant;
 
 /// What is asked for, read and checked.
 enum Task {
     One(String, Box<PathPoints>),
     Many(String, Vec<(String, PathPoints)>),
-    Guidance(String, Poses),
+    Sister(String, Sister),
 }
 
 /// Finds all linkages, prints them, stops everything that it started.
 pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
-    let (task, a) = match a {
-        Synthesize::NinePoint(a) => (read(a)?, &a.common),
-        Synthesize::BodyGuidance(a) => (read_poses(a)?, &a.common),
+    let task = match a {
+        Synthesize::NinePoint(a) => read(a)?,
+        Synthesize::BodyGuidance(a) => sister(&a.file, position_files::read_poses)?,
+        Synthesize::PathTiming(a) => sister(&a.file, position_files::read_timed_points)?,
+        Synthesize::FunctionGeneration(a) => sister(&a.file, position_files::read_angles)?,
     };
+    let a = a.common();
     if let Some(coordinator) = &a.coordinator {
         let target = Target::read(coordinator, &a.credentials)?;
         return tokio::select! {
@@ -64,11 +66,14 @@ fn read(a: &NinePoint) -> Result<Task, ClientError> {
     Ok(Task::One(short(path), Box::new(points)))
 }
 
-fn read_poses(a: &BodyGuidance) -> Result<Task, ClientError> {
-    let (name, content) = problem::read_file(&a.file)?;
-    let poses = point_files::read_poses(&name, &content).map_err(ClientError::Format)?;
-    let short = problem::short_name(&a.file).chars().take(60).collect();
-    Ok(Task::Guidance(short, poses))
+fn sister(
+    path: &Path,
+    read: impl Fn(&str, &[u8]) -> Result<Sister, String>,
+) -> Result<Task, ClientError> {
+    let (name, content) = problem::read_file(path)?;
+    let sister = read(&name, &content).map_err(ClientError::Format)?;
+    let short = problem::short_name(path).chars().take(60).collect();
+    Ok(Task::Sister(short, sister))
 }
 
 async fn perform(
@@ -86,7 +91,7 @@ async fn perform(
     match task {
         Task::One(name, points) => find(a, points, &how(name), target).await,
         Task::Many(name, sets) => find_many(a, sets, &how(name), target).await,
-        Task::Guidance(name, poses) => guide(a, poses, &how(name), target).await,
+        Task::Sister(name, sister) => find_designs(a, sister, &how(name), target).await,
     }
 }
 
@@ -162,34 +167,30 @@ async fn find(
     })
 }
 
-/// Five poses: dyads, and every pair of them.
-async fn guide(
+/// A sister of the nine-point problem: a few paths, a few linkages.
+async fn find_designs(
     a: &SynthesisArguments,
-    poses: &Poses,
+    sister: &Sister,
     how: &How,
     target: &Target,
 ) -> Result<Exit, ClientError> {
     let began = Instant::now();
     let mut progress = Progress::new(a.format != SynthesisFormat::Table, began);
-    let found = body_guidance::dyads(target, poses, how, &mut progress).await;
+    let found = designs(target, sister, how, &mut progress).await;
     progress.finish();
-    let (dyads, summary) = found?;
-    let ends: Vec<_> = dyads.iter().map(|dyad| dyad.ends).collect();
-    let found = Guides {
+    let found = Designs {
         name: how.name.clone(),
-        poses: poses.clone(),
-        guides: poses.guides(&ends),
-        dyads,
+        sister: sister.clone(),
+        found: found?,
         elapsed: began.elapsed(),
-        summary,
     };
     if let Some(folder) = &a.output {
-        guides::write(folder, &found)?;
+        designs::write(folder, &found)?;
     }
     output::print(&match a.format {
-        SynthesisFormat::Table => guides::table(&found, Look::of_standard_output()),
-        SynthesisFormat::Json => guides::json(&found),
-        SynthesisFormat::Csv => guides::csv(&found),
+        SynthesisFormat::Table => designs::table(&found, Look::of_standard_output()),
+        SynthesisFormat::Json => designs::json(&found),
+        SynthesisFormat::Csv => designs::csv(&found),
     })?;
-    Ok(output::summary::exit(&found.summary))
+    Ok(found.exit())
 }

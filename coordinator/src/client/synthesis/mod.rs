@@ -4,8 +4,9 @@
 //! followed there from the generic member that is carried in this program; what is open then is
 //! followed by other cognates, more carefully, and along other parameters.
 
-pub mod body_guidance;
+pub mod designs;
 pub mod point_files;
+pub mod position_files;
 pub mod sweep;
 
 use super::arguments::PresetName;

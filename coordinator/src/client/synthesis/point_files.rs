@@ -1,20 +1,15 @@
-//! Point files: nine points, many sets of them, or five poses, as CSV or as JSON, checked line by line.
+//! Point files: nine points, or many sets of them, as CSV or as JSON, checked line by line.
 
 use crate::client::output::text::cut;
-use cognate_kinematics::body_guidance::{PoseFault, Poses};
 use cognate_kinematics::nine_point::{PathPoints, PointFault};
-use cognate_kinematics::plane::direction;
 use num_complex::Complex64;
 use serde_json::Value;
 
 /// x and y of a point, and where it stands, in words.
 type Placed = ([Complex64; 2], String);
 
-/// Place and turn of a body, and where they stand, in words.
-type Posed = ((Complex64, Complex64), String);
-
 /// The text of a file, without a byte order mark.
-fn decoded<'a>(name: &str, content: &'a [u8]) -> Result<&'a str, String> {
+pub(super) fn decoded<'a>(name: &str, content: &'a [u8]) -> Result<&'a str, String> {
     let text = std::str::from_utf8(content).map_err(|e| {
         format!(
             "{name}: is no text: byte {} is not UTF-8",
@@ -22,6 +17,12 @@ fn decoded<'a>(name: &str, content: &'a [u8]) -> Result<&'a str, String> {
         )
     })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// The JSON value that a text holds.
+pub(super) fn parsed(name: &str, text: &str) -> Result<Value, String> {
+    serde_json::from_str(text)
+        .map_err(|e| format!("{name}:{}:{}: is no JSON: {e}", e.line(), e.column()))
 }
 
 /// Reads nine points; the message names file, line and field.
@@ -33,59 +34,6 @@ pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
         csv(name, text)?
     };
     nine(name, &placed)
-}
-
-/// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle],
-/// ...]}`; angles in degrees, counterclockwise, in JSON also as `[cos, sin]`.
-pub fn read_poses(name: &str, content: &[u8]) -> Result<Poses, String> {
-    let text = decoded(name, content)?;
-    let poses: Vec<Posed> = if text.trim_start().starts_with(['{', '[']) {
-        json_poses(name, text)?
-    } else {
-        let rows = rows(name, text, ["x", "y", "angle"])?.into_iter();
-        let posed = |[x, y, angle]: [f64; 3]| (Complex64::new(x, y), direction(angle));
-        rows.map(|(row, at)| (posed(row), at)).collect()
-    };
-    let found = poses.len();
-    if found != 5 {
-        return Err(format!("{name}: expected five poses, found {found}"));
-    }
-    let places = std::array::from_fn(|k| poses[k].0.0);
-    let turns = std::array::from_fn(|k| poses[k].0.1);
-    Poses::new(places, turns).map_err(|fault| match fault {
-        PoseFault::NotFinite(k) => format!("{name}: {}: {fault}", poses[k].1),
-        PoseFault::Same(j, k) => format!("{name}: {} and {}: {fault}", poses[j].1, poses[k].1),
-        PoseFault::Trivial(_) | PoseFault::Extent(_) => format!("{name}: {fault}"),
-    })
-}
-
-/// `[x, y, angle]`, or `[x, y, [cos, sin]]` for a turn that is known exactly.
-fn json_poses(name: &str, text: &str) -> Result<Vec<Posed>, String> {
-    let value: Value = serde_json::from_str(text)
-        .map_err(|e| format!("{name}:{}:{}: is no JSON: {e}", e.line(), e.column()))?;
-    let list = value.get("poses").unwrap_or(&value);
-    let list = list
-        .as_array()
-        .ok_or_else(|| format!("{name}: expected the field \"poses\", a list of [x, y, angle]"))?;
-    let poses = list.iter().enumerate().map(|(k, pose)| {
-        let at = format!("poses[{k}]");
-        let posed = || {
-            let [x, y, turn] = pose.as_array()?.as_slice() else {
-                return None;
-            };
-            let turn = match turn {
-                Value::Array(_) => complex(turn)?,
-                angle => direction(angle.as_f64()?),
-            };
-            Some((Complex64::new(x.as_f64()?, y.as_f64()?), turn))
-        };
-        let wrong = || {
-            let found = kind(pose);
-            format!("{name}: {at}: expected [x, y, angle] or [x, y, [cos, sin]], found {found}")
-        };
-        Ok((posed().ok_or_else(wrong)?, at.clone()))
-    });
-    poses.collect()
 }
 
 /// Checks that there are nine, and that they are different.
@@ -194,7 +142,7 @@ fn csv(name: &str, text: &str) -> Result<Vec<Placed>, String> {
 
 /// Rows of numbers below a header of these names; commas, semicolons or tabs between. Empty lines
 /// and lines that begin with # are comments.
-fn rows<const N: usize>(
+pub(super) fn rows<const N: usize>(
     name: &str,
     text: &str,
     fields: [&str; N],
@@ -248,8 +196,7 @@ fn finite(text: &str) -> Option<f64> {
 
 /// `{"points": [[x, y], ...]}`, or the list alone; a complex coordinate is `[re, im]`.
 fn json(name: &str, text: &str) -> Result<Vec<Placed>, String> {
-    let value: Value = serde_json::from_str(text)
-        .map_err(|e| format!("{name}:{}:{}: is no JSON: {e}", e.line(), e.column()))?;
+    let value = parsed(name, text)?;
     let list = match &value {
         Value::Object(fields) => fields
             .get("points")
@@ -279,7 +226,7 @@ fn json(name: &str, text: &str) -> Result<Vec<Placed>, String> {
     points.collect()
 }
 
-fn complex(value: &Value) -> Option<Complex64> {
+pub(super) fn complex(value: &Value) -> Option<Complex64> {
     let number = |value: &Value| value.as_f64().filter(|x| x.is_finite());
     match value {
         Value::Array(parts) => match &parts[..] {
@@ -290,7 +237,7 @@ fn complex(value: &Value) -> Option<Complex64> {
     }
 }
 
-fn kind(value: &Value) -> String {
+pub(super) fn kind(value: &Value) -> String {
     match value {
         Value::Null => "null".into(),
         Value::Bool(b) => b.to_string(),
@@ -336,47 +283,6 @@ mod tests {
                 .expect("points")
                 .is_real()
         );
-    }
-
-    #[test]
-    fn poses_are_read_and_their_mistakes_named() {
-        let rows = ["0,0,0", "1,0,90", "2,1,45", "3,1,30", "4,0,-60"];
-        let file = |rows: &[&str]| format!("x,y,angle\n{}\n", rows.join("\n"));
-        let poses = read_poses("p.csv", file(&rows).as_bytes()).expect("poses");
-        assert_eq!(poses.turns()[1], Complex64::new(0.0, 1.0));
-        let list = rows.map(|row| format!("[{row}]")).join(", ");
-        let json = format!("{{\"poses\": [{list}]}}");
-        assert_eq!(read_poses("p.json", json.as_bytes()), Ok(poses.clone()));
-        let exact = json.replace("[1,0,90]", "[1, 0, [0, 2]]");
-        assert_eq!(read_poses("p.json", exact.as_bytes()), Ok(poses));
-        let fault = |text: String| read_poses("p.csv", text.as_bytes()).expect_err("not right");
-        let cases = [
-            (file(&rows[..4]), "expected five poses, found 4"),
-            (
-                file(&["0,0,0", "1,0,x"]),
-                "p.csv:3: angle: expected a finite number, found `x`",
-            ),
-            (
-                file(&["0,0,0", "1,0"]),
-                "p.csv:3: expected 3 numbers, x,y,angle, found 2 fields",
-            ),
-            (
-                file(&[rows[0], rows[1], rows[2], rows[3], "1,0,450"]),
-                "line 3 and line 6: poses 2 and 5",
-            ),
-            (
-                file(&rows).replace("x,y,angle", "x,y"),
-                "expected the header x,y,angle",
-            ),
-            (
-                "{\"poses\": [[1, 2]]}".into(),
-                "poses[0]: expected [x, y, angle]",
-            ),
-        ];
-        for (text, expected) in cases {
-            let found = fault(text);
-            assert!(found.contains(expected), "{found}\nexpected {expected}");
-        }
     }
 
     #[test]

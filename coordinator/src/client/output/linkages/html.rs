@@ -13,11 +13,11 @@ const PAGE: &str = include_str!("page.html");
 pub struct Content<'a> {
     /// Its title.
     pub title: &'a str,
-    /// `[[x, y], ...]`.
+    /// `[[x, y], ...]`, where all curves have them in common.
     pub points: Value,
     /// Directions of a body at the points, as unit vectors; null where there is none.
     pub turns: Value,
-    /// `[{linkages: [...]}, ...]`, as in the summary.
+    /// `[{linkages: [...]}, ...]`, as in the summary; `points` in one are its own.
     pub curves: Value,
     /// Before, in and after the answer.
     pub answer: [String; 3],

@@ -1,6 +1,7 @@
 //! The sheet as one JSON object: the summary of the first job, with classes and linkages.
 
 use super::{Sheet, word};
+use crate::client::synthesis::Round;
 use cognate_kinematics::assessment::Assessment;
 use cognate_kinematics::drive::Drive;
 use cognate_kinematics::linkage::Linkage;
@@ -21,7 +22,7 @@ pub fn value(sheet: &Sheet) -> Value {
     answer["problem"]["name"] = json!(sheet.name);
     answer["points"] = points(sheet);
     answer["classes"] = classes(sheet);
-    answer["rounds"] = rounds(sheet);
+    answer["rounds"] = rounds(&sheet.rounds);
     let tracking = sheet.tracking_seconds();
     answer["time"]["wall_seconds"] = json!(sheet.elapsed.as_secs_f64());
     answer["time"]["cpu_seconds"] = json!(tracking);
@@ -86,8 +87,9 @@ fn classes(sheet: &Sheet) -> Value {
     classes.into()
 }
 
-fn rounds(sheet: &Sheet) -> Value {
-    let rounds = sheet.rounds.iter().map(|round| {
+/// The jobs, each with its paths.
+pub(super) fn rounds(rounds: &[Round]) -> Value {
+    let rounds = rounds.iter().map(|round| {
         json!({"purpose": round.purpose, "job": round.summary.job, "paths": round.summary.paths})
     });
     rounds.collect()

@@ -1,8 +1,8 @@
 //! Linkages that were found, for people and for programs: one sheet, in several notations.
 
 pub mod csv;
+pub mod designs;
 pub mod dxf;
-pub mod guides;
 pub mod html;
 pub mod json;
 pub mod table;

@@ -1,0 +1,253 @@
+//! Five positions: poses of a body, points with angles of a crank, pairs of angles; as CSV or as
+//! JSON, checked line by line.
+
+use super::designs::Sister;
+use super::point_files::{complex, decoded, kind, parsed, rows};
+use cognate_kinematics::body_guidance::{PoseFault, Poses};
+use cognate_kinematics::function_generation::{AngleFault, AnglePairs};
+use cognate_kinematics::path_timing::TimedPoints;
+use cognate_kinematics::plane::direction;
+use num_complex::Complex64;
+use serde_json::Value;
+
+/// A position, and where it stands, in words.
+type Placed<T> = (T, String);
+
+/// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle],
+/// ...]}`; angles in degrees, counterclockwise, in JSON also as `[cos, sin]`.
+pub fn read_poses(name: &str, content: &[u8]) -> Result<Sister, String> {
+    let (at, places, turns) = directed(name, content, "poses")?;
+    let poses = Poses::new(places, turns).map_err(|fault| match fault {
+        PoseFault::NotFinite(k) => format!("{name}: {}: {fault}", at[k]),
+        PoseFault::Same(j, k) => format!("{name}: {} and {}: {fault}", at[j], at[k]),
+        PoseFault::Trivial(_) | PoseFault::Extent(_) => format!("{name}: {fault}"),
+    })?;
+    Ok(Sister::Poses(poses))
+}
+
+/// Reads five points of a path with the crank's angles: CSV with a header `x,y,angle`, or JSON
+/// `{"points": [[x, y, angle], ...]}`, angles as in poses.
+pub fn read_timed_points(name: &str, content: &[u8]) -> Result<Sister, String> {
+    let (at, places, turns) = directed(name, content, "points")?;
+    let points = TimedPoints::new(places, turns).map_err(|fault| match fault {
+        PoseFault::NotFinite(k) => format!("{name}: {}: expected finite numbers", at[k]),
+        PoseFault::Same(j, k) => format!(
+            "{name}: {} and {}: the same point at the same angle; expected five different ones",
+            at[j], at[k]
+        ),
+        PoseFault::Trivial("turn") => format!("{name}: the crank does not turn"),
+        PoseFault::Trivial(_) => format!("{name}: the points are one"),
+        PoseFault::Extent(_) => format!("{name}: {fault}"),
+    })?;
+    Ok(Sister::TimedPoints(points))
+}
+
+/// Reads five pairs of angles: CSV with a header `input,output`, or JSON `{"angles": [[input,
+/// output], ...]}`, angles as in poses.
+pub fn read_angles(name: &str, content: &[u8]) -> Result<Sister, String> {
+    let text = decoded(name, content)?;
+    let pairs: Vec<Placed<[Complex64; 2]>> = if is_json(text) {
+        listed(name, text, "angles", "[input, output]", |pair| {
+            let [input, output] = pair.as_array()?.as_slice() else {
+                return None;
+            };
+            Some([angle(input)?, angle(output)?])
+        })?
+    } else {
+        let rows = rows(name, text, ["input", "output"])?.into_iter();
+        rows.map(|(row, at)| (row.map(direction), at)).collect()
+    };
+    let pairs = five(name, pairs, "pairs of angles")?;
+    let at = |k: usize| &pairs[k].1;
+    let found =
+        AnglePairs::new(std::array::from_fn(|k| pairs[k].0)).map_err(|fault| match fault {
+            AngleFault::NotFinite(k) => format!("{name}: {}: {fault}", at(k)),
+            AngleFault::Same(j, k) => format!("{name}: {} and {}: {fault}", at(j), at(k)),
+            AngleFault::Trivial(_) => format!("{name}: {fault}"),
+        })?;
+    Ok(Sister::AnglePairs(found))
+}
+
+/// Where they stand, places and directions.
+type Directed = ([String; 5], [Complex64; 5], [Complex64; 5]);
+
+/// Five rows of `x,y,angle`, or a list of that name.
+fn directed(name: &str, content: &[u8], field: &str) -> Result<Directed, String> {
+    let text = decoded(name, content)?;
+    let found: Vec<Placed<[Complex64; 2]>> = if is_json(text) {
+        listed(
+            name,
+            text,
+            field,
+            "[x, y, angle] or [x, y, [cos, sin]]",
+            |item| {
+                let [x, y, turn] = item.as_array()?.as_slice() else {
+                    return None;
+                };
+                Some([Complex64::new(x.as_f64()?, y.as_f64()?), angle(turn)?])
+            },
+        )?
+    } else {
+        let rows = rows(name, text, ["x", "y", "angle"])?.into_iter();
+        let directed = |[x, y, angle]: [f64; 3]| [Complex64::new(x, y), direction(angle)];
+        rows.map(|(row, at)| (directed(row), at)).collect()
+    };
+    let found = five(name, found, field)?;
+    let part = |k: usize| found.each_ref().map(|(item, _)| item[k]);
+    Ok((found.each_ref().map(|(_, at)| at.clone()), part(0), part(1)))
+}
+
+fn is_json(text: &str) -> bool {
+    text.trim_start().starts_with(['{', '['])
+}
+
+/// Degrees, or `[cos, sin]` for an angle that is known exactly.
+fn angle(value: &Value) -> Option<Complex64> {
+    match value {
+        Value::Array(_) => complex(value),
+        degrees => Some(direction(degrees.as_f64()?)),
+    }
+}
+
+/// The items of a JSON list: the value itself, or a field of it.
+fn listed<T>(
+    name: &str,
+    text: &str,
+    field: &str,
+    expected: &str,
+    read: impl Fn(&Value) -> Option<T>,
+) -> Result<Vec<Placed<T>>, String> {
+    let value = parsed(name, text)?;
+    let list = value.get(field).unwrap_or(&value);
+    let list = list
+        .as_array()
+        .ok_or_else(|| format!("{name}: expected the field \"{field}\", a list of {expected}"))?;
+    let items = list.iter().enumerate().map(|(k, item)| {
+        let at = format!("{field}[{k}]");
+        let wrong = || {
+            let found = kind(item);
+            format!("{name}: {at}: expected {expected}, found {found}")
+        };
+        Ok((read(item).ok_or_else(wrong)?, at))
+    });
+    items.collect()
+}
+
+fn five<T>(name: &str, found: Vec<Placed<T>>, what: &str) -> Result<[Placed<T>; 5], String> {
+    let count = found.len();
+    let five = found.try_into();
+    five.map_err(|_| format!("{name}: expected five {what}, found {count}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_are_read_and_their_mistakes_named() {
+        let rows = ["0,0,0", "1,0,90", "2,1,45", "3,1,30", "4,0,-60"];
+        let file = |rows: &[&str]| format!("x,y,angle\n{}\n", rows.join("\n"));
+        let poses = read_poses("p.csv", file(&rows).as_bytes()).expect("poses");
+        let Sister::Poses(read) = &poses else {
+            panic!("{poses:?}")
+        };
+        assert_eq!(read.turns()[1], Complex64::new(0.0, 1.0));
+        let list = rows.map(|row| format!("[{row}]")).join(", ");
+        let json = format!("{{\"poses\": [{list}]}}");
+        assert_eq!(read_poses("p.json", json.as_bytes()), Ok(poses.clone()));
+        let exact = json.replace("[1,0,90]", "[1, 0, [0, 2]]");
+        assert_eq!(read_poses("p.json", exact.as_bytes()), Ok(poses));
+        let fault = |text: String| read_poses("p.csv", text.as_bytes()).expect_err("not right");
+        let cases = [
+            (file(&rows[..4]), "expected five poses, found 4"),
+            (
+                file(&["0,0,0", "1,0,x"]),
+                "p.csv:3: angle: expected a finite number, found `x`",
+            ),
+            (
+                file(&["0,0,0", "1,0"]),
+                "p.csv:3: expected 3 numbers, x,y,angle, found 2 fields",
+            ),
+            (
+                file(&[rows[0], rows[1], rows[2], rows[3], "1,0,450"]),
+                "line 3 and line 6: poses 2 and 5",
+            ),
+            (
+                file(&rows).replace("x,y,angle", "x,y"),
+                "expected the header x,y,angle",
+            ),
+            (
+                "{\"poses\": [[1, 2]]}".into(),
+                "poses[0]: expected [x, y, angle]",
+            ),
+        ];
+        for (text, expected) in cases {
+            let found = fault(text);
+            assert!(found.contains(expected), "{found}\nexpected {expected}");
+        }
+    }
+
+    #[test]
+    fn timed_points_are_read_and_their_mistakes_named() {
+        let text = "x,y,angle\n0,0,0\n1,0,30\n2,1,60\n3,1,90\n4,0,120\n";
+        let csv = read_timed_points("p.csv", text.as_bytes()).expect("points");
+        let json = "{\"points\": [[0,0,0], [1,0,30], [2,1,60], [3,1,[0,1]], [4,0,120]]}";
+        assert_eq!(read_timed_points("p.json", json.as_bytes()), Ok(csv));
+        let cases = [
+            (
+                text.replace("4,0,120", "1,0,30"),
+                "line 3 and line 6: the same point",
+            ),
+            (
+                text.replace("4,0,120\n", ""),
+                "expected five points, found 4",
+            ),
+            (
+                "x,y,angle\n0,0,7\n1,0,7\n2,1,7\n3,1,7\n4,0,7\n".into(),
+                "the crank does not turn",
+            ),
+        ];
+        for (text, expected) in cases {
+            let fault = read_timed_points("p.csv", text.as_bytes()).expect_err("not right");
+            assert!(fault.contains(expected), "{fault}\nexpected {expected}");
+        }
+    }
+
+    #[test]
+    fn angles_are_read_and_their_mistakes_named() {
+        let text = "input,output\n0,0\n30,10\n60,25\n90,45\n120,70\n";
+        let csv = read_angles("p.csv", text.as_bytes()).expect("angles");
+        let json = "[[0,0], [30,10], [60,25], [[0,1],45], [120,70]]";
+        assert_eq!(read_angles("p.json", json.as_bytes()), Ok(csv));
+        let cases = [
+            (
+                text.replace("120,70", "390,370"),
+                "line 3 and line 6: pairs 2 and 5",
+            ),
+            (
+                text.replace("70", "x"),
+                "p.csv:6: output: expected a finite number, found `x`",
+            ),
+            (
+                text.replace("120,70\n", ""),
+                "expected five pairs of angles, found 4",
+            ),
+            (
+                text.replace("input,output", "x,y"),
+                "expected the header input,output",
+            ),
+            (
+                "input,output\n0,0\n3,3\n6,6\n9,9\n12,12\n".into(),
+                "input and output turn alike",
+            ),
+            (
+                "{\"angles\": [[1]]}".into(),
+                "angles[0]: expected [input, output]",
+            ),
+        ];
+        for (text, expected) in cases {
+            let fault = read_angles("p.csv", text.as_bytes()).expect_err("not right");
+            assert!(fault.contains(expected), "{fault}\nexpected {expected}");
+        }
+    }
+}
