@@ -7,6 +7,7 @@ mod check;
 mod classical_systems;
 mod every_start;
 mod hard_paths;
+mod ill_conditioned;
 mod isolated_or_not;
 mod mechanisms;
 mod nine_point;

@@ -22,6 +22,9 @@ const SHRINKAGE: f64 = 0.125;
 /// Turns after which a path that has not closed is taken further in, twice as many each time: more
 /// often branch points lie inside the radius than the winding number is so large.
 const FIRST_TURNS: u32 = 4;
+/// After so many radii at which the path did not close the ratio of successive ones is squared, then
+/// cubed, and so on: branch points that lie so near to 0 may lie at any order of magnitude.
+const UNHURRIED: u32 = 2;
 /// A power sum counts as 0 below this part of the largest it could be: sheets that end closer
 /// together than about 1e-6 are told apart by a smaller radius only.
 const COALESCED: f64 = 1e-12;
@@ -221,7 +224,7 @@ impl Cauchy {
                 if self.diverges() {
                     return Next::Diverging;
                 }
-                return self.inward(SHRINKAGE, settings);
+                return self.further_inward(settings);
             }
             self.add(point);
             return Next::Vertex {
@@ -333,6 +336,18 @@ impl Cauchy {
             if even {
                 self.even_sum[k] += z;
             }
+        }
+    }
+
+    /// Where the path does not close: the smallest radius is not left out.
+    fn further_inward(&self, settings: &Settings) -> Next {
+        let mut ratio = SHRINKAGE;
+        for _ in 0..self.unclosed.saturating_sub(1) / UNHURRIED {
+            ratio *= SHRINKAGE;
+        }
+        match self.inward(SHRINKAGE, settings) {
+            Next::Inward(_) => Next::Inward((self.radius * ratio).max(settings.endgame_min_radius)),
+            next => next,
         }
     }
 

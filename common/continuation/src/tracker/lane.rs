@@ -69,6 +69,8 @@ pub(crate) struct Lane {
     pub last_rejected: f64,
     /// Where the turns around 0 began in this room: t and the point.
     pub first_turn: Option<(f64, Vec<Digits>)>,
+    /// The same of the last turns whose first point stood firmly.
+    pub last_turn: Option<(f64, Vec<Digits>)>,
     pub cauchy: Cauchy,
 }
 
@@ -88,7 +90,7 @@ impl Lane {
         self.highest_bits = self.highest_bits.max(bits);
         (self.steps_here, self.starved) = (0, 0);
         self.last_rejected = f64::INFINITY;
-        self.first_turn = None;
+        (self.first_turn, self.last_turn) = (None, None);
     }
 
     /// Whether the difficult place that sent the path up lies behind it: each time it was sent

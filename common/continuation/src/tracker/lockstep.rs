@@ -52,6 +52,9 @@ const PASSED: f64 = 1e-3;
 const FAR: f64 = 1e4;
 /// With such a condition number a path may go down a rung.
 const TAME: f64 = 1e10;
+/// The first point of turns is where they may begin again on another rung if its last Newton
+/// correction is below this.
+const FIRM: f64 = 1e-10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
 /// next rung.
 const STARVED: u32 = 2;
@@ -534,8 +537,11 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 let next = if phase == Phase::Settling {
                     self.batch.drop_anchor(lane);
                     let path = &mut self.lanes[lane];
-                    path.first_turn
-                        .get_or_insert_with(|| (t.re, self.batch.digits(lane)));
+                    let begin = (t.re, self.batch.digits(lane));
+                    if step.correction <= FIRM {
+                        path.last_turn = Some(begin.clone());
+                    }
+                    path.first_turn.get_or_insert(begin);
                     path.cauchy
                         .begin(t.re, &self.point, step.correction, &homogenizing)
                 } else {
@@ -700,8 +706,15 @@ impl<'a, R: Real> Lockstep<'a, R> {
         } else {
             return self.fail_and_refill(lane, t, why);
         };
-        // The turns around 0 are made again from the beginning, which lies on the real axis.
-        match self.lanes[lane].first_turn.take() {
+        // The turns around 0 are made again from their beginning, which lies on the real axis: where
+        // steps became too short, those at this radius; else all, at radii where there is less noise.
+        let path = &mut self.lanes[lane];
+        let (first, last) = (path.first_turn.take(), path.last_turn.take());
+        let begin = match (door, why) {
+            (Door::Up, Failure::StepTooSmall) => last.or(first),
+            _ => first,
+        };
+        match begin {
             Some((radius, point)) => {
                 self.depart(lane, Complex64::new(radius, 0.0), point, door);
             }

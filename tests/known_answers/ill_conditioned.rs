@@ -1,0 +1,91 @@
+//! Systems with exact answers whose solutions are hard to tell: far away, or sensitive to every digit.
+
+use crate::check::{Answer, SEEDS, check, solve};
+use cognate_algorithms::PlanOptions;
+use cognate_tests::systems::written;
+use std::fmt::Write as _;
+
+/// Chandrasekhar's H-equation, n = 6, c = 0.51234 (More 1990; Gonzalez-Vega 1996): one of its 32
+/// solutions is 1.19e4 away from 0, and solvers that take size for infinity lose it.
+#[test]
+fn chandra_6_has_32_solutions_one_of_them_far_away() {
+    let n = 6;
+    let names: Vec<String> = (1..=n).map(|i| format!("H{i}")).collect();
+    let functions: Vec<String> = (1..=n).map(|i| format!("f{i}")).collect();
+    let mut text = format!(
+        "variable_group {}; function {};",
+        names.join(", "),
+        functions.join(", ")
+    );
+    for i in 1..=n {
+        let _ = write!(text, " f{i} = {}*H{i} - 0.51234*H{i}*(1", 2 * n);
+        for j in 1..n {
+            let _ = write!(text, " + {i}/{}*H{j}", i + j);
+        }
+        let _ = write!(text, ") - {};", 2 * n);
+    }
+    let system = written(&text);
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+        assert_eq!(
+            (counts.nonsingular, counts.singular, paths.failed),
+            (32, 0, 0),
+            "seed {seed}: {paths:?}"
+        );
+        let largest = |values: &[num_complex::Complex64]| {
+            values
+                .iter()
+                .map(|z| z.norm_sqr().sqrt())
+                .fold(0.0, f64::max)
+        };
+        let sizes = sets[0].solutions.iter().map(|solution| {
+            let values: Vec<_> = solution.variables.0.iter().map(|(_, z)| *z).collect();
+            largest(&values)
+        });
+        let far = sizes.fold(0.0, f64::max);
+        assert!((1.18e4..1.20e4).contains(&far), "seed {seed}: {far:e}");
+    }
+}
+
+/// (x-1)(x-2)...(x-12), multiplied out (Wilkinson 1959): a change of a coefficient by 2^-53 of itself
+/// moves a root by more than 1e-9.
+#[test]
+fn wilkinson_12_has_its_roots() {
+    let mut coefficients: Vec<i64> = vec![1];
+    for root in 1..=12 {
+        let mut next = vec![0; coefficients.len() + 1];
+        for (k, c) in coefficients.iter().enumerate() {
+            next[k + 1] += c;
+            next[k] -= c * root;
+        }
+        coefficients = next;
+    }
+    let terms = coefficients.iter().enumerate();
+    let terms: Vec<String> = terms.map(|(k, c)| format!("({c})*x^{k}")).collect();
+    let system = written(&format!(
+        "variable_group x; function f; f = {};",
+        terms.join(" + ")
+    ));
+    let answer = Answer {
+        paths: 12,
+        nonsingular: 12,
+        real: Some(Some(12)),
+        ..Answer::default()
+    };
+    check("Wilkinson-12", &system, &PlanOptions::default(), answer);
+    let (_, sets) = solve(&system, &PlanOptions::default(), &|_| None);
+    let mut roots: Vec<f64> = sets[0]
+        .solutions
+        .iter()
+        .map(|s| s.variables.0[0].1.re)
+        .collect();
+    roots.sort_by(f64::total_cmp);
+    for (root, expected) in roots.iter().zip(1..=12) {
+        assert!((root - f64::from(expected)).abs() < 1e-4, "{roots:?}");
+    }
+}
