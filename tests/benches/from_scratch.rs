@@ -1,9 +1,9 @@
 //! A random sample of the paths of a start system: their ends, their rungs, their time.
 //!
-//! `cargo bench -p cognate-tests --bench from_scratch -- FILE PARAMETERS|- [COUNT|all] [SEED] [BITS] [SOLUTIONS]`,
-//! in tests/. CPU seconds of one thread; BITS is the highest precision that paths may use. With
-//! `all` the whole solve, on two threads; its solutions go to the file SOLUTIONS. What it gave:
-//! `from_scratch.md`.
+//! `cargo bench -p cognate-tests --bench from_scratch -- FILE PARAMETERS|- [COUNT|@LIST|all] [SEED] [BITS] [SOLUTIONS]`,
+//! in tests/. LIST is a file of path indices. CPU seconds of one thread; BITS is the highest precision that paths may use. With
+//! `all` the whole solve, on two threads, each path tracked again at most RETRIES times (a variable of
+//! the environment); its solutions go to the file SOLUTIONS. What it gave: `from_scratch.md`.
 
 use cognate_algorithms::plan::StartChoice;
 use cognate_algorithms::run_locally::drive;
@@ -40,7 +40,12 @@ fn main() -> Result<(), Failure> {
     let values = arguments.get(1).map_or("-", |s| s);
     let number = |k: usize, default: u64| arguments.get(k).map_or(Ok(default), |s| s.parse());
     let all = arguments.get(2).is_some_and(|count| count == "all");
-    let count = if all { 0 } else { number(2, 500)? };
+    let listed = arguments.get(2).and_then(|count| count.strip_prefix('@'));
+    let count = if all || listed.is_some() {
+        0
+    } else {
+        number(2, 500)?
+    };
     let (seed, bits) = (number(3, 1)?, number(4, 1024)?);
     let system = cognate_systems::formats::read(file, &std::fs::read(file)?)?.system;
     let mut options = PlanOptions {
@@ -53,6 +58,9 @@ fn main() -> Result<(), Failure> {
         options.target_parameters = read_parameters(values, &content, &system.parameters)?;
     }
     options.settings.max_precision_bits = bits as u32;
+    if let Ok(n) = std::env::var("RETRIES") {
+        options.max_retries = n.parse()?;
+    }
     let mut planned = plan(&system, &options)?;
     if all {
         return whole(&mut planned, arguments.get(5));
@@ -64,6 +72,11 @@ fn main() -> Result<(), Failure> {
     let total = planned.paths;
     let mut stream = RandomStream::new(seed, Purpose::Test, 0);
     let mut indices = BTreeSet::new();
+    if let Some(list) = listed {
+        for index in std::fs::read_to_string(list)?.split_whitespace() {
+            indices.insert(index.parse()?);
+        }
+    }
     while (indices.len() as u64) < count.min(total) {
         indices.insert(stream.below(total));
     }

@@ -1,5 +1,5 @@
-//! From five points with the crank's angles, and from five pairs of angles, to every four-bar
-//! linkage, as a person types it.
+//! From five points with the crank's angles, from five pairs of angles, and from poses and points mixed,
+//! to every four-bar linkage, as a person types it.
 
 use cognate_tests::builders::example;
 use cognate_tests::cluster::Cluster;
@@ -24,6 +24,71 @@ fn number(value: &Value) -> f64 {
 
 /// The lengths of the example's linkage: ground, crank, coupler, rocker.
 const MADE_OF: [f64; 4] = [4.0, 1.5, 4.0, 3.0];
+
+/// The linkage that drew the example, whichever side is named first.
+fn drawn_by(linkages: &[Value]) -> &Value {
+    let made = linkages.iter().find(|linkage| {
+        let lengths = &linkage["lengths"];
+        let mut sides = [0, 1].map(|side| number(&lengths["sides"][side]));
+        sides.sort_by(f64::total_cmp);
+        let all = [
+            number(&lengths["ground"]),
+            sides[0],
+            number(&lengths["coupler"]),
+            sides[1],
+        ];
+        let pairs = all.iter().zip(MADE_OF);
+        pairs
+            .into_iter()
+            .all(|(found, length)| (found - length).abs() < 1e-7)
+    });
+    made.unwrap_or_else(|| panic!("it is not among {linkages:#?}"))
+}
+
+#[test]
+fn the_linkage_that_drew_poses_and_points_is_among_the_answers() {
+    let cluster = Cluster::with_workers(2);
+    let file = "three_poses_four_points.csv";
+    let more = ["--certify", "--output", "kept"];
+    let found = synthesize(&cluster, "poses-and-points", file, &more);
+    // 402 solutions for generic ones (Brake, Hauenstein, Murray, Myszka, Wampler 2016): 201 linkages,
+    // each with its dyads in either order.
+    let paths = &found["paths"];
+    assert_eq!(
+        (&paths["total"], &paths["failed"]),
+        (&1536.into(), &0.into()),
+        "{paths:#}"
+    );
+    assert_eq!(
+        found["solutions"]["nonsingular"], 402,
+        "{:#}",
+        found["solutions"]
+    );
+    let linkages = found["linkages"].as_array().expect("a list");
+    let real = number(&found["solutions"]["real"]);
+    assert_eq!(
+        2.0 * linkages.len() as f64,
+        real,
+        "each real pair is one linkage"
+    );
+    for linkage in linkages {
+        assert!(number(&linkage["error"]) < 1e-6, "{linkage:#}");
+    }
+    let made = drawn_by(linkages);
+    assert_eq!(made["grade"], "in-order", "{made:#}");
+    assert!(cluster.folder().join("kept/linkages.html").is_file());
+    // Too few points for so many poses: refused with the numbers that there may be.
+    let whole = example(file);
+    let short: Vec<&str> = whole.lines().take(6).collect();
+    std::fs::write(cluster.folder().join("short.csv"), short.join("\n")).unwrap();
+    let output = cluster.command(&["synthesize", "poses-and-points", "short.csv"]);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{errors}");
+    assert!(
+        errors.contains("expected 2, 3 or 4 poses with 6, 4 or 2 points"),
+        "{errors}"
+    );
+}
 
 #[test]
 fn the_linkage_that_drew_five_timed_points_is_among_the_answers() {
@@ -55,20 +120,7 @@ fn the_linkage_that_drew_five_timed_points_is_among_the_answers() {
         assert!(number(&linkage["error"]) < 1e-8, "{linkage:#}");
         assert_eq!(linkage["driver"], 0, "the crank drives");
     }
-    let made = linkages.iter().find(|linkage| {
-        let lengths = &linkage["lengths"];
-        let [a, b] = [0, 1].map(|side| number(&lengths["sides"][side]));
-        let all = [
-            number(&lengths["ground"]),
-            a,
-            number(&lengths["coupler"]),
-            b,
-        ];
-        all.iter()
-            .zip(MADE_OF)
-            .all(|(found, length)| (found - length).abs() < 1e-8)
-    });
-    let made = made.unwrap_or_else(|| panic!("it is not among {linkages:#?}"));
+    let made = drawn_by(linkages);
     assert_eq!(
         (&made["grade"], &made["type"]),
         (&"in-order".into(), &"crank-rocker".into())

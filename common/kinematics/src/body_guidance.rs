@@ -10,6 +10,7 @@ use crate::design::{Design, ranked};
 use crate::four_unknowns::bilinear_system;
 use crate::linkage::{Linkage, Side};
 use crate::plane::{modulus, unit};
+use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -48,32 +49,33 @@ pub enum PoseFault {
     Extent(f64),
 }
 
+/// The equation of one pose: of a dyad with pivot a and joint b, for the place d and the turn f.
+fn equation(
+    e: &mut Expressions,
+    [a, aa, b, bb]: [NodeId; 4],
+    [d, dd, f, ff]: [NodeId; 4],
+) -> NodeId {
+    let one = e.integer(1);
+    let (ba, ab) = (e.multiply(b, aa), e.multiply(a, bb));
+    let (rest, rest_too) = (e.subtract(one, f), e.subtract(one, ff));
+    let (dff, ddf) = (e.multiply(d, ff), e.multiply(dd, f));
+    let terms = [
+        e.multiply(d, dd),
+        e.multiply(dff, bb),
+        e.multiply(ddf, b),
+        e.multiply(ba, rest),
+        e.multiply(ab, rest_too),
+    ];
+    let less = [e.multiply(d, aa), e.multiply(dd, a)];
+    let sum = terms[1..].iter().fold(terms[0], |sum, &t| e.add(sum, t));
+    less.iter().fold(sum, |sum, &t| e.subtract(sum, t))
+}
+
 /// The system: unknowns a, A, b, B, parameters d1, D1, f1, F1, ..., d4, D4, f4, F4.
 pub fn system() -> System {
     let (unknowns, parameters) = (["a", "A", "b", "B"], ["d", "D", "f", "F"]);
     let groups = [[0, 1], [2, 3]];
-    bilinear_system(
-        unknowns,
-        groups,
-        "pose",
-        parameters,
-        |e, [a, aa, b, bb], [d, dd, f, ff]| {
-            let one = e.integer(1);
-            let (ba, ab) = (e.multiply(b, aa), e.multiply(a, bb));
-            let (rest, rest_too) = (e.subtract(one, f), e.subtract(one, ff));
-            let (dff, ddf) = (e.multiply(d, ff), e.multiply(dd, f));
-            let terms = [
-                e.multiply(d, dd),
-                e.multiply(dff, bb),
-                e.multiply(ddf, b),
-                e.multiply(ba, rest),
-                e.multiply(ab, rest_too),
-            ];
-            let less = [e.multiply(d, aa), e.multiply(dd, a)];
-            let sum = terms[1..].iter().fold(terms[0], |sum, &t| e.add(sum, t));
-            less.iter().fold(sum, |sum, &t| e.subtract(sum, t))
-        },
-    )
+    bilinear_system(unknowns, groups, "pose", parameters, equation)
 }
 
 impl Poses {

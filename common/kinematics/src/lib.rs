@@ -3,7 +3,7 @@
 //!
 //! In reading order: points and angles of the plane; a linkage and its type; what driving it does;
 //! what it is worth; the nine-point problem, from points to classes of linkages; its sisters: five poses
-//! of a body, five points with the angles of the crank, five pairs of angles.
+//! of a body, five points with the angles of the crank, five pairs of angles, and mixtures of poses and points.
 //!
 //! ```
 //! use cognate_kinematics::linkage::{Linkage, Mobility, Side};
@@ -32,6 +32,7 @@ pub mod linkage;
 pub mod nine_point;
 pub mod path_timing;
 pub mod plane;
+pub mod poses_and_points;
 #[cfg(test)]
 mod simulation;
 #[cfg(test)]

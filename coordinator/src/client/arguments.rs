@@ -275,6 +275,9 @@ pub enum Synthesize {
     PathTiming(PathTiming),
     /// Every four-bar linkage whose two sides turn together through five given pairs of angles
     FunctionGeneration(FunctionGeneration),
+    /// Every four-bar linkage that takes a body through 2, 3 or 4 poses, and a point of it through 6, 4 or
+    /// 2 places
+    PosesAndPoints(PosesAndPoints),
 }
 
 impl Synthesize {
@@ -285,6 +288,7 @@ impl Synthesize {
             Self::BodyGuidance(a) => &a.common,
             Self::PathTiming(a) => &a.common,
             Self::FunctionGeneration(a) => &a.common,
+            Self::PosesAndPoints(a) => &a.common,
         }
     }
 }
@@ -368,6 +372,23 @@ angles.csv has a header input,output and five rows, angles in degrees, of which 
 JSON: {\"angles\": [[input, output], ...]}. Lengths are in units of the ground link.")]
 pub struct FunctionGeneration {
     /// Five pairs of angles: CSV with a header input,output (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize poses-and-points`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize poses-and-points positions.csv
+  cognate synthesize poses-and-points positions.csv --output linkages
+
+positions.csv has a header x,y,angle; the angle, in degrees, is left empty where the body's turn is free.
+4 poses with 2 points, 3 with 4, or 2 with 6, in any order. JSON: {\"positions\": [[x, y, angle], [x, y], ...]}.")]
+pub struct PosesAndPoints {
+    /// Poses and points: CSV with a header x,y,angle (degrees, empty at points) or JSON; - is standard input
     pub file: PathBuf,
     /// How, where, and what is shown.
     #[command(flatten)]

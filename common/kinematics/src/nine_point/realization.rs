@@ -96,7 +96,7 @@ fn misfit(pose: &Linkage, sides: [f64; 2]) -> f64 {
 /// arm, q the pivot: 2 Re(conj(p - q) v t) = r^2 - |v|^2 - |p - q|^2. Two such equations have one
 /// solution where their determinant is not 0; else one of the two that the first equation
 /// has together with |t| = 1.
-fn rotation(first: &Linkage, point: Complex64) -> Complex64 {
+pub(crate) fn rotation(first: &Linkage, point: Complex64) -> Complex64 {
     let equations = [0, 1].map(|k| {
         let arm = first.joints[k] - first.point;
         let radius = first.joints[k] - first.pivots[k];

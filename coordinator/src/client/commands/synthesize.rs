@@ -31,6 +31,7 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
         Synthesize::BodyGuidance(a) => sister(&a.file, position_files::read_poses)?,
         Synthesize::PathTiming(a) => sister(&a.file, position_files::read_timed_points)?,
         Synthesize::FunctionGeneration(a) => sister(&a.file, position_files::read_angles)?,
+        Synthesize::PosesAndPoints(a) => sister(&a.file, position_files::read_poses_and_points)?,
     };
     let a = a.common();
     if let Some(coordinator) = &a.coordinator {

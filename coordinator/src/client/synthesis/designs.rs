@@ -1,5 +1,5 @@
-//! The sisters of the nine-point problem, of a few paths each: five poses of a body, five points with
-//! the crank's angles, five pairs of angles; to designs, by jobs of the service.
+//! The sisters of the nine-point problem: five poses of a body, five points with the crank's angles,
+//! five pairs of angles, poses and points mixed; to designs, by jobs of the service.
 
 use super::{How, Round, finished, preset};
 use crate::client::connection::Target;
@@ -11,6 +11,7 @@ use cognate_kinematics::design::{Design, ranked};
 use cognate_kinematics::function_generation::{self, AnglePairs};
 use cognate_kinematics::linkage::Side;
 use cognate_kinematics::path_timing::{self, TimedPoints};
+use cognate_kinematics::poses_and_points::{PosesAndPoints, one_of_each_pair};
 use cognate_protocol::submission::{Options, SettingsChoice, Source, StartKind, Submission};
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -24,6 +25,8 @@ pub enum Sister {
     TimedPoints(TimedPoints),
     /// Two sides at five pairs of angles.
     AnglePairs(AnglePairs),
+    /// A body in some poses, and a point of it at some places.
+    PosesAndPoints(PosesAndPoints),
 }
 
 /// A real dyad: a pivot, and a joint of the body.
@@ -38,7 +41,8 @@ pub struct Dyad {
 /// What was found.
 #[derive(Clone, Debug, Default)]
 pub struct Found {
-    /// The real dyads; of timed points the drivers, then the partners of each. None of angles.
+    /// The real dyads; of timed points the drivers, then the partners of each. None of angles and of
+    /// mixtures.
     pub dyads: Vec<Dyad>,
     /// Linkages, best first.
     pub designs: Vec<Design>,
@@ -65,14 +69,15 @@ pub async fn designs(
         Sister::Poses(poses) => search.guides(poses).await?,
         Sister::TimedPoints(points) => search.timed(points).await?,
         Sister::AnglePairs(pairs) => search.functions(pairs).await?,
+        Sister::PosesAndPoints(given) => search.mixed(given).await?,
     };
     found.rounds = search.rounds;
     Ok(found)
 }
 
-/// A real solution of four unknowns.
-struct Root {
-    values: [Complex64; 4],
+/// A real solution.
+struct Root<const N: usize> {
+    values: [Complex64; N],
     certified: bool,
 }
 
@@ -157,6 +162,23 @@ impl Search<'_> {
         })
     }
 
+    async fn mixed(&mut self, given: &PosesAndPoints) -> Result<Found, ClientError> {
+        let system = given.mixture().system();
+        let certify = self.how.certify;
+        let roots = self
+            .roots("linkages", system, given.parameters(), certify)
+            .await?;
+        let solutions: Vec<_> = roots.iter().map(|root| root.values).collect();
+        let linkages = one_of_each_pair(&solutions);
+        let designs = linkages
+            .iter()
+            .filter_map(|solution| given.linkage(solution));
+        Ok(Found {
+            designs: ranked(designs.collect()),
+            ..Found::default()
+        })
+    }
+
     async fn dyads(
         &mut self,
         purpose: &'static str,
@@ -165,7 +187,7 @@ impl Search<'_> {
     ) -> Result<Vec<Dyad>, ClientError> {
         let (system, parameters) = (body_guidance::system(), poses.parameters());
         let roots = self.roots(purpose, system, parameters, certify).await?;
-        let dyad = |root: Root| Dyad {
+        let dyad = |root: Root<4>| Dyad {
             ends: poses.dyad(&root.values),
             certified: root.certified,
         };
@@ -173,13 +195,13 @@ impl Search<'_> {
     }
 
     /// One job: the real solutions.
-    async fn roots(
+    async fn roots<const N: usize>(
         &mut self,
         purpose: &'static str,
         system: System,
         parameters: Vec<Complex64>,
         certify: bool,
-    ) -> Result<Vec<Root>, ClientError> {
+    ) -> Result<Vec<Root<N>>, ClientError> {
         let how = self.how;
         let options = Options {
             start: StartKind::Multihomogeneous,

@@ -5,8 +5,11 @@ use cognate_kinematics::nine_point::{PathPoints, PointFault};
 use num_complex::Complex64;
 use serde_json::Value;
 
-/// x and y of a point, and where it stands, in words.
-type Placed = ([Complex64; 2], String);
+/// Something, and where it stands, in words.
+pub(super) type Placed<T> = (T, String);
+
+/// x and y of a point.
+type PlacedPoint = Placed<[Complex64; 2]>;
 
 /// The text of a file, without a byte order mark.
 pub(super) fn decoded<'a>(name: &str, content: &'a [u8]) -> Result<&'a str, String> {
@@ -37,7 +40,7 @@ pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
 }
 
 /// Checks that there are nine, and that they are different.
-fn nine(name: &str, placed: &[Placed]) -> Result<PathPoints, String> {
+fn nine(name: &str, placed: &[PlacedPoint]) -> Result<PathPoints, String> {
     if placed.len() != 9 {
         let found = placed.len();
         let last = placed
@@ -120,7 +123,7 @@ pub fn read_many(name: &str, content: &[u8]) -> Result<Vec<(String, PathPoints)>
                     })
                 })
                 .collect::<Result<_, _>>()?;
-            let placed: Vec<Placed> = numbers
+            let placed: Vec<PlacedPoint> = numbers
                 .chunks_exact(2)
                 .enumerate()
                 .map(|(k, point)| ([point[0], point[1]], format!("x{0},y{0}", k + 1)))
@@ -134,7 +137,7 @@ pub fn read_many(name: &str, content: &[u8]) -> Result<Vec<(String, PathPoints)>
     }
 }
 
-fn csv(name: &str, text: &str) -> Result<Vec<Placed>, String> {
+fn csv(name: &str, text: &str) -> Result<Vec<PlacedPoint>, String> {
     let rows = rows(name, text, ["x", "y"])?.into_iter();
     let point = |[x, y]: [f64; 2]| [x, y].map(|c| Complex64::new(c, 0.0));
     Ok(rows.map(|(row, at)| (point(row), at)).collect())
@@ -146,7 +149,19 @@ pub(super) fn rows<const N: usize>(
     name: &str,
     text: &str,
     fields: [&str; N],
-) -> Result<Vec<([f64; N], String)>, String> {
+) -> Result<Vec<Placed<[f64; N]>>, String> {
+    let rows = rows_with_blanks(name, text, fields, &[])?.into_iter();
+    let whole = |row: [Option<f64>; N]| row.map(|cell| cell.expect("no field may be blank"));
+    Ok(rows.map(|(row, at)| (whole(row), at)).collect())
+}
+
+/// The same where some fields may be left blank.
+pub(super) fn rows_with_blanks<const N: usize>(
+    name: &str,
+    text: &str,
+    fields: [&str; N],
+    blank: &[&str],
+) -> Result<Vec<Placed<[Option<f64>; N]>>, String> {
     let mut rows = text
         .lines()
         .enumerate()
@@ -178,12 +193,15 @@ pub(super) fn rows<const N: usize>(
                 cells.len()
             ));
         }
-        let mut numbers = [0.0; N];
+        let mut numbers = [None; N];
         for ((number, cell), field) in numbers.iter_mut().zip(cells).zip(fields) {
-            *number = finite(cell).ok_or_else(|| {
+            *number = finite(cell);
+            if number.is_none() && !(cell.is_empty() && blank.contains(&field)) {
                 let cell = cut(cell, 40);
-                format!("{name}:{line}: {field}: expected a finite number, found `{cell}`")
-            })?;
+                return Err(format!(
+                    "{name}:{line}: {field}: expected a finite number, found `{cell}`"
+                ));
+            }
         }
         found.push((numbers, format!("line {line}")));
     }
@@ -195,7 +213,7 @@ fn finite(text: &str) -> Option<f64> {
 }
 
 /// `{"points": [[x, y], ...]}`, or the list alone; a complex coordinate is `[re, im]`.
-fn json(name: &str, text: &str) -> Result<Vec<Placed>, String> {
+fn json(name: &str, text: &str) -> Result<Vec<PlacedPoint>, String> {
     let value = parsed(name, text)?;
     let list = match &value {
         Value::Object(fields) => fields

@@ -1,17 +1,15 @@
-//! Five positions: poses of a body, points with angles of a crank, pairs of angles; as CSV or as
-//! JSON, checked line by line.
+//! Positions: poses of a body, points with angles of a crank, pairs of angles, poses and points mixed;
+//! as CSV or as JSON, checked line by line.
 
 use super::designs::Sister;
-use super::point_files::{complex, decoded, kind, parsed, rows};
+use super::point_files::{Placed, complex, decoded, kind, parsed, rows, rows_with_blanks};
 use cognate_kinematics::body_guidance::{PoseFault, Poses};
 use cognate_kinematics::function_generation::{AngleFault, AnglePairs};
 use cognate_kinematics::path_timing::TimedPoints;
 use cognate_kinematics::plane::direction;
+use cognate_kinematics::poses_and_points::{MixtureFault, PosesAndPoints};
 use num_complex::Complex64;
 use serde_json::Value;
-
-/// A position, and where it stands, in words.
-type Placed<T> = (T, String);
 
 /// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle],
 /// ...]}`; angles in degrees, counterclockwise, in JSON also as `[cos, sin]`.
@@ -66,6 +64,38 @@ pub fn read_angles(name: &str, content: &[u8]) -> Result<Sister, String> {
             AngleFault::Trivial(_) => format!("{name}: {fault}"),
         })?;
     Ok(Sister::AnglePairs(found))
+}
+
+/// Reads poses and points mixed: CSV with a header `x,y,angle`, the angle left empty at points, or JSON
+/// `{"positions": [[x, y, angle], [x, y], ...]}`, angles as in poses.
+pub fn read_poses_and_points(name: &str, content: &[u8]) -> Result<Sister, String> {
+    let text = decoded(name, content)?;
+    let found: Vec<Placed<(Complex64, Option<Complex64>)>> = if is_json(text) {
+        let expected = "[x, y] or [x, y, angle] or [x, y, [cos, sin]]";
+        listed(name, text, "positions", expected, |item| {
+            let (x, y, turn) = match item.as_array()?.as_slice() {
+                [x, y] => (x, y, None),
+                [x, y, turn] => (x, y, Some(angle(turn)?)),
+                _ => return None,
+            };
+            Some((Complex64::new(x.as_f64()?, y.as_f64()?), turn))
+        })?
+    } else {
+        let rows = rows_with_blanks(name, text, ["x", "y", "angle"], &["angle"])?.into_iter();
+        let read = |[x, y, angle]: [Option<f64>; 3]| {
+            let place = Complex64::new(x.unwrap_or(f64::NAN), y.unwrap_or(f64::NAN));
+            (place, angle.map(direction))
+        };
+        rows.map(|(row, at)| (read(row), at)).collect()
+    };
+    let at = |k: usize| &found[k].1;
+    let positions: Vec<_> = found.iter().map(|(position, _)| *position).collect();
+    let given = PosesAndPoints::new(&positions).map_err(|fault| match fault {
+        MixtureFault::NotFinite(k) => format!("{name}: {}: {fault}", at(k)),
+        MixtureFault::Same(j, k) => format!("{name}: {} and {}: {fault}", at(j), at(k)),
+        MixtureFault::Count { .. } | MixtureFault::Extent(_) => format!("{name}: {fault}"),
+    })?;
+    Ok(Sister::PosesAndPoints(given))
 }
 
 /// Where they stand, places and directions.
@@ -247,6 +277,44 @@ mod tests {
         ];
         for (text, expected) in cases {
             let fault = read_angles("p.csv", text.as_bytes()).expect_err("not right");
+            assert!(fault.contains(expected), "{fault}\nexpected {expected}");
+        }
+    }
+
+    #[test]
+    fn poses_and_points_are_read_and_their_mistakes_named() {
+        let text = "x,y,angle\n0,0,0\n1,0,\n2,1,60\n3,1,90\n4,0,\n5,1,7\n";
+        let csv = read_poses_and_points("p.csv", text.as_bytes()).expect("a mixture");
+        let Sister::PosesAndPoints(given) = &csv else {
+            panic!("{csv:?}")
+        };
+        assert_eq!((given.mixture().poses(), given.mixture().points()), (4, 2));
+        let json = "{\"positions\": [[0,0,0], [1,0], [2,1,60], [3,1,[0,1]], [4,0], [5,1,7]]}";
+        assert_eq!(read_poses_and_points("p.json", json.as_bytes()), Ok(csv));
+        let cases = [
+            (
+                text.replace("4,0,", "1,0,"),
+                "line 3 and line 6: positions 2 and 5",
+            ),
+            (
+                text.replace("5,1,7", "5,1,"),
+                "with 6, 4 or 2 points, found 3 and 3",
+            ),
+            (
+                text.replace("4,0,\n", "4,,\n"),
+                "p.csv:6: y: expected a finite number, found ``",
+            ),
+            (
+                text.replace("60", "x"),
+                "p.csv:4: angle: expected a finite number, found `x`",
+            ),
+            (
+                "[[1]]".into(),
+                "positions[0]: expected [x, y] or [x, y, angle]",
+            ),
+        ];
+        for (text, expected) in cases {
+            let fault = read_poses_and_points("p.csv", text.as_bytes()).expect_err("not right");
             assert!(fault.contains(expected), "{fault}\nexpected {expected}");
         }
     }

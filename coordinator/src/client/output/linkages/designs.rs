@@ -5,7 +5,7 @@ use super::json::mechanism_value;
 use super::{dxf, table};
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::summary;
-use crate::client::output::text::{Columns, Look, counted, real, seconds};
+use crate::client::output::text::{Columns, Look, count, counted, real, seconds};
 use crate::client::synthesis::designs::{Found, Sister};
 use cognate_kinematics::design::Design;
 use num_complex::Complex64;
@@ -34,28 +34,36 @@ struct Words {
     /// After the count of linkages.
     given: &'static str,
     /// How many there can be, and who says so.
-    most: &'static str,
+    most: String,
     /// What the first position is called.
     first: &'static str,
 }
 
 impl Designs {
     fn words(&self) -> Words {
-        match self.sister {
+        match &self.sister {
             Sister::Poses(_) => Words {
                 given: "through the five poses",
-                most: "at most 4 dyads (Burmester)",
+                most: "at most 4 dyads (Burmester)".into(),
                 first: "pose 1",
             },
             Sister::TimedPoints(_) => Words {
                 given: "through the five points at the crank's angles",
-                most: "at most 4 drivers with 3 partners each",
+                most: "at most 4 drivers with 3 partners each".into(),
                 first: "position 1",
             },
             Sister::AnglePairs(_) => Words {
                 given: "for the five pairs of angles",
-                most: "at most 3 linkages; the root 0 is none",
+                most: "at most 3 linkages; the root 0 is none".into(),
                 first: "position 1",
+            },
+            Sister::PosesAndPoints(given) => Words {
+                given: "through the poses and points",
+                most: format!(
+                    "at most {} linkages, each of two paths (Brake and others 2016)",
+                    count(given.mixture().linkages())
+                ),
+                first: "the first pose",
             },
         }
     }
@@ -66,6 +74,7 @@ impl Designs {
             Sister::Poses(poses) => poses.places(),
             Sister::TimedPoints(points) => points.points(),
             Sister::AnglePairs(_) => &[],
+            Sister::PosesAndPoints(given) => given.places(),
         }
     }
 
@@ -125,6 +134,11 @@ fn value(designs: &Designs) -> Value {
         Sister::AnglePairs(pairs) => {
             let pair = |[input, output]: &[Complex64; 2]| json!({"input": at(*input), "output": at(*output)});
             answer["angles"] = pairs.pairs().iter().map(pair).collect();
+        }
+        Sister::PosesAndPoints(given) => {
+            let both = given.places().iter().zip(given.turns());
+            let position = |(place, turn): (&Complex64, &Option<Complex64>)| json!({"place": at(*place), "turn": turn.map(at)});
+            answer["positions"] = both.map(position).collect();
         }
     }
     let dyads = found.dyads.iter().map(|dyad| {
@@ -288,18 +302,19 @@ fn page(designs: &Designs) -> String {
     let (found, words) = (&designs.found, designs.words());
     let turns = match &designs.sister {
         Sister::Poses(poses) => poses.turns().iter().map(|z| at(*z)).collect(),
+        Sister::PosesAndPoints(given) => given.turns().iter().map(|turn| turn.map(at)).collect(),
         Sister::TimedPoints(_) | Sister::AnglePairs(_) => Value::Null,
     };
     let own_points = |design: &Design| -> Value {
         match designs.sister {
             Sister::AnglePairs(_) => design.positions.iter().map(|p| at(p.point)).collect(),
-            Sister::Poses(_) | Sister::TimedPoints(_) => Value::Null,
+            Sister::Poses(_) | Sister::TimedPoints(_) | Sister::PosesAndPoints(_) => Value::Null,
         }
     };
     let all = value(designs);
     let linkages = all["linkages"].as_array().into_iter().flatten();
     let lost = designs.sum(|summary| summary.paths.failed);
-    let count = |n: u64| usize::try_from(n).ok();
+    let number = |n: u64| usize::try_from(n).ok();
     filled(Content {
         title: &designs.name,
         points: designs.places().iter().map(|z| at(*z)).collect(),
@@ -322,10 +337,13 @@ fn page(designs: &Designs) -> String {
             counted(designs.sum(|summary| summary.paths.total), "path"),
         ),
         counts: vec![
-            ("finite", count(designs.sum(|summary| summary.paths.finite))),
+            (
+                "finite",
+                number(designs.sum(|summary| summary.paths.finite)),
+            ),
             (
                 "at infinity",
-                count(designs.sum(|summary| summary.paths.at_infinity)),
+                number(designs.sum(|summary| summary.paths.at_infinity)),
             ),
             ("linkages", Some(found.designs.len())),
         ],

@@ -1,0 +1,137 @@
+//! Endpoints by the million: which of them are one point, and where paths have crossed.
+//!
+//! `cargo bench -p cognate-tests --bench endpoints -- [COUNT...]`; without counts 10^4, 10^5 and 10^6.
+//! Endpoints are made up, with three coordinates; of each ten one is another's, moved by less than its
+//! error, and all of these must be found, and no others. What it gave: `endpoints.md`.
+
+use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::{Decision, Tolerances, classify};
+use cognate_solutions::path_crossing::crossings;
+use cognate_solutions::point_shape::PointShape;
+use cognate_solutions::unique_points::{Neighbourhood, clusters};
+use cognate_systems::named::katsura;
+use num_complex::Complex64;
+use std::time::Instant;
+
+type Failure = Box<dyn std::error::Error>;
+
+/// Coordinates of an endpoint, the homogenising one among them.
+const COORDINATES: usize = 4;
+/// One in so many is at the point of the one before.
+const TWICE: usize = 10;
+/// Beyond this, whole results do not fit beside one another: only their points are compared.
+const WHOLE_RESULTS: usize = 1_000_000;
+
+/// Peak memory of this process, in MiB.
+fn peak() -> Result<u64, Failure> {
+    let status = std::fs::read_to_string("/proc/self/status")?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes: u64 = line
+        .ok_or("no VmHWM")?
+        .trim()
+        .trim_end_matches(" kB")
+        .parse()?;
+    Ok(kilobytes / 1024)
+}
+
+fn endpoints(count: usize) -> Vec<Complex64> {
+    let mut random = RandomStream::new(count as u64, Purpose::Test, 0);
+    let mut flat: Vec<Complex64> = Vec::with_capacity(count * COORDINATES);
+    for k in 0..count {
+        for c in 0..COORDINATES {
+            let fresh = random.disc();
+            let near = |k: usize| flat[(k - 1) * COORDINATES + c] * (1.0 + fresh * 1e-15);
+            let coordinate = if k % TWICE == TWICE - 1 {
+                near(k)
+            } else {
+                fresh
+            };
+            flat.push(coordinate);
+        }
+    }
+    flat
+}
+
+fn result(path: usize, point: &[Complex64]) -> PathResult {
+    PathResult {
+        origin: PathIndex(path as u64),
+        attempt: 0,
+        outcome: PathOutcome::Regular,
+        endpoint: Coordinates::Double(point.to_vec()),
+        t: Complex64::default(),
+        residual: 1e-16,
+        condition: 10.0,
+        accuracy: 1e-15,
+        winding_number: None,
+        infinity_turns: Vec::new(),
+        precision_bits: 53,
+        counts: Counts::default(),
+        asked: None,
+        certification: None,
+        local_dimension: None,
+    }
+}
+
+fn main() -> Result<(), Failure> {
+    let words = std::env::args().skip(1).filter(|a| a != "--bench");
+    let counts: Vec<usize> = words.map(|word| word.parse()).collect::<Result<_, _>>()?;
+    let counts = match counts.is_empty() {
+        true => vec![10_000, 100_000, 1_000_000],
+        false => counts,
+    };
+    // Three variables in one group, as katsura-2 has them.
+    let shape = PointShape::of(&katsura(2).system);
+    assert_eq!(shape.coordinates(), COORDINATES);
+    println!(
+        "{:>10} {:>10} {:>9} {:>16} {:>9} {:>11} {:>9}",
+        "endpoints", "points", "s", "ns/(n log2 n)", "crossings", "s", "peak MiB"
+    );
+    for count in counts {
+        let flat = endpoints(count);
+        let points: Vec<Neighbourhood<'_>> = flat
+            .chunks_exact(COORDINATES)
+            .map(|point| Neighbourhood {
+                point,
+                radius: 1e-14,
+            })
+            .collect();
+        let expected = count / TWICE;
+        let began = Instant::now();
+        let found = clusters(&points, &shape, 1);
+        let seconds = began.elapsed().as_secs_f64();
+        if found.len() != count - expected {
+            return Err(format!("{} points, not {}", found.len(), count - expected).into());
+        }
+        let distinct = found.len();
+        drop((found, points));
+        let mut crossed = ("-".to_owned(), "-".to_owned());
+        if count <= WHOLE_RESULTS {
+            let tolerances = Tolerances::default();
+            let results: Vec<PathResult> = flat
+                .chunks_exact(COORDINATES)
+                .enumerate()
+                .map(|(k, point)| result(k, point))
+                .collect();
+            let decide = |result| classify(result, &shape, &tolerances);
+            let decisions: Vec<Decision> = results.iter().map(decide).collect();
+            let began = Instant::now();
+            let found = crossings(&results, &decisions, &shape, &tolerances, 1);
+            let seconds = began.elapsed().as_secs_f64();
+            if found.len() != expected || found.iter().any(|pair| pair.len() != 2) {
+                return Err(format!("{} crossings, not {expected}", found.len()).into());
+            }
+            crossed = (found.len().to_string(), format!("{seconds:.3}"));
+        }
+        let n = count as f64;
+        let per = seconds * 1e9 / (n * f64::from(count.ilog2()));
+        println!(
+            "{count:>10} {distinct:>10} {seconds:>9.3} {per:>16.1} {:>9} {:>11} {:>9}",
+            crossed.0,
+            crossed.1,
+            peak()?
+        );
+    }
+    Ok(())
+}
