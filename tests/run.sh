@@ -102,6 +102,9 @@ step "chaos: half a minute of random kills on either ledger"
 target/release/chaos --seconds 15 --seed 1
 target/release/chaos --seconds 15 --seed 2 --ledger postgres
 
+step "load: 60 small jobs by 6 clients beside one of 4096 paths"
+target/release/load
+
 step "many solves: 20 seeds each on one warm coordinator"
 target/release/many_solves
 printf '\nall tests passed\n'

@@ -1,21 +1,26 @@
 //! Chaos: jobs on real processes while workers, coordinators and the database are killed or stand
 //! still at random. Every answer must be the undisturbed one, bit for bit; a report says what it cost.
 //!
-//! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]`
+//! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]
+//! [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000]`: jobs in turn for so long, the
+//! last to its end.
 
+use cognate_protocol::v1::Precision;
+use cognate_protocol::v1::precision::Kind;
 use cognate_tests::arguments::{number, options as arguments};
 use cognate_tests::builders::katsura;
-use cognate_tests::client::{Submission, accepted, has_ended, total};
+use cognate_tests::client::{Answer, Submission, accepted, has_ended, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::database::Database;
 use std::fmt;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// How long a lease lasts here.
-const LEASE: Duration = Duration::from_secs(2);
-/// Work must go on so soon after a fault: a lease, and three seconds.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// Work must go on so long after a fault and the length of a lease: three seconds are promised, and
+/// two more are left to a machine with other work.
+const GOES_ON: Duration = Duration::from_secs(5);
+/// No job takes longer.
+const LONGEST: Duration = Duration::from_secs(4 * 3600);
 /// Paths of a chunk.
 const CHUNK: u64 = 32;
 /// Workers that are kept alive.
@@ -71,6 +76,14 @@ struct Wanted {
     seconds: u64,
     seed: u64,
     postgres: bool,
+    /// Which of Katsura's systems: 2^n paths.
+    katsura: usize,
+    /// Precision of the tracking; None: as much as each path needs.
+    bits: Option<u32>,
+    /// Least and greatest pause between two faults, in milliseconds.
+    pause_ms: (u64, u64),
+    /// How long a lease lasts.
+    lease: Duration,
 }
 
 fn wanted() -> Result<Wanted, String> {
@@ -78,6 +91,10 @@ fn wanted() -> Result<Wanted, String> {
         seconds: 30,
         seed: 1,
         postgres: false,
+        katsura: 11,
+        bits: None,
+        pause_ms: (500, 2000),
+        lease: Duration::from_secs(2),
     };
     for (word, value) in arguments()? {
         match word.as_str() {
@@ -85,9 +102,14 @@ fn wanted() -> Result<Wanted, String> {
             "--seed" => wanted.seed = number(&word, &value)?,
             "--ledger" if value == "sqlite" => wanted.postgres = false,
             "--ledger" if value == "postgres" => wanted.postgres = true,
+            "--katsura" => wanted.katsura = number(&word, &value)?,
+            "--bits" => wanted.bits = Some(number(&word, &value)?),
+            "--lease-ms" => wanted.lease = Duration::from_millis(number(&word, &value)?),
+            "--pause-ms" => wanted.pause_ms = range(&value)?,
             _ => {
                 return Err(format!(
-                    "{word} {value}: expected --seconds N, --seed N or --ledger sqlite|postgres"
+                    "{word} {value}: expected --seconds N, --seed N, --ledger sqlite|postgres, \
+                     --katsura N, --bits N, --pause-ms LEAST-GREATEST or --lease-ms N"
                 ));
             }
         }
@@ -95,8 +117,34 @@ fn wanted() -> Result<Wanted, String> {
     Ok(wanted)
 }
 
-fn problem() -> Submission {
-    Submission::of(katsura(11))
+/// `LEAST-GREATEST`.
+fn range(text: &str) -> Result<(u64, u64), String> {
+    let parsed = text.split_once('-').and_then(|(least, greatest)| {
+        let range = (least.parse().ok()?, greatest.parse().ok()?);
+        (range.0 < range.1).then_some(range)
+    });
+    parsed.ok_or_else(|| format!("--pause-ms {text}: expected two numbers, for instance 500-2000"))
+}
+
+fn problem(wanted: &Wanted) -> Submission {
+    let mut problem = Submission::of(katsura(wanted.katsura));
+    if let Some(bits) = wanted.bits {
+        problem.options.precision = Some(Precision {
+            kind: Some(Kind::Bits(bits)),
+        });
+    }
+    problem
+}
+
+/// The answer where nothing happens.
+fn quiet_answer(problem: &Submission) -> Answer {
+    let cluster = Cluster::with_workers(2);
+    let client = cluster.client();
+    let job = client.submit(problem);
+    client.wait_until_solved_for(&job, LONGEST);
+    let answer = client.answer(&job);
+    cluster.stop();
+    answer
 }
 
 fn worker() -> WorkerOptions {
@@ -106,9 +154,9 @@ fn worker() -> WorkerOptions {
     }
 }
 
-fn options(ledger: Option<String>) -> CoordinatorOptions {
+fn options(wanted: &Wanted, ledger: Option<String>) -> CoordinatorOptions {
     CoordinatorOptions {
-        lease: Some(LEASE),
+        lease: Some(wanted.lease),
         chunk_paths: Some(CHUNK),
         ledger,
         ..CoordinatorOptions::default()
@@ -128,13 +176,15 @@ fn main() -> ExitCode {
         Some(Some(database)) => Some(database),
         None => None,
     };
-    let quiet = {
-        let cluster = Cluster::with_workers(1);
-        let answer = cluster.client().solve(&problem());
-        cluster.stop();
-        answer
-    };
-    let mut cluster = Cluster::start(options(database.as_ref().map(Database::url)));
+    let problem = problem(&wanted);
+    let began = Instant::now();
+    let quiet = quiet_answer(&problem);
+    println!(
+        "without faults: {} paths, {:.0} s",
+        quiet.counts.paths_total,
+        began.elapsed().as_secs_f64()
+    );
+    let mut cluster = Cluster::start(options(&wanted, database.as_ref().map(Database::url)));
     let mut logs = Vec::new();
     for _ in 0..WORKERS {
         cluster.add_worker(&worker());
@@ -143,10 +193,11 @@ fn main() -> ExitCode {
     let (mut jobs, mut paths) = (0, 0);
     let mut faults: Vec<(Fault, Duration)> = Vec::new();
     let begin = Instant::now();
+    let (least, greatest) = wanted.pause_ms;
     while begin.elapsed() < Duration::from_secs(wanted.seconds) {
-        let job = cluster.client().submit(&problem());
+        let job = cluster.client().submit(&problem);
         loop {
-            let pause = Duration::from_millis(500 + dice.below(1500));
+            let pause = Duration::from_millis(least + dice.below(greatest - least));
             let next = Instant::now() + pause;
             let mut ended = false;
             while Instant::now() < next && !ended {
@@ -175,7 +226,7 @@ fn main() -> ExitCode {
                 }
                 Fault::FreezeWorker => {
                     cluster.workers[victim].freeze();
-                    std::thread::sleep(LEASE + Duration::from_millis(500));
+                    std::thread::sleep(wanted.lease + Duration::from_millis(500));
                     cluster.workers[victim].thaw();
                 }
                 Fault::KillCoordinator => {
@@ -271,15 +322,10 @@ fn report(
         "  {again} paths tracked again, {:.1} a fault; at most {bound} expected",
         again as f64 / faults.len().max(1) as f64
     );
-    let late = faults
-        .iter()
-        .filter(|(_, time)| *time > LEASE + PATIENCE)
-        .count();
+    let limit = wanted.lease + GOES_ON;
+    let late = faults.iter().filter(|(_, time)| *time > limit).count();
     if again > bound || late > 0 || begun < paths {
-        println!(
-            "  NOT AS PROMISED: {late} faults took longer than {:?}",
-            LEASE + PATIENCE
-        );
+        println!("  NOT AS PROMISED: {late} faults took longer than {limit:?}");
         return ExitCode::FAILURE;
     }
     ExitCode::SUCCESS

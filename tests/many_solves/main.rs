@@ -4,38 +4,14 @@
 //! `cargo run --release -p cognate-tests --bin many_solves -- [--solves 1000] [--hard 100] [--large 3]`
 
 use cognate_protocol::v1::SummaryCounts;
-use cognate_systems::formats::{self, FileSettings, Format};
-use cognate_systems::named::{Named, cyclic, eco, katsura, noon};
-use cognate_systems::system::System;
+use cognate_systems::named::{cyclic, eco, katsura, noon};
 use cognate_tests::arguments::{number, options};
-use cognate_tests::client::{Client, Submission};
+use cognate_tests::client::Client;
 use cognate_tests::cluster::Cluster;
+use cognate_tests::subjects::Subject;
 use cognate_tests::systems::shared;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-
-/// A system and how many solutions it has.
-struct Subject {
-    name: &'static str,
-    text: String,
-    solutions: u64,
-}
-
-impl Subject {
-    fn new(name: &'static str, system: &System, solutions: u64) -> Self {
-        let text = formats::write(Format::Bertini, system, &FileSettings::default());
-        Self {
-            name,
-            text: text.expect("systems of our own can be written"),
-            solutions,
-        }
-    }
-
-    fn named(name: &'static str, named: &Named) -> Self {
-        let solutions = named.finite_solutions.expect("its count is published");
-        Self::new(name, &named.system, solutions)
-    }
-}
 
 /// What is solved how often.
 fn groups(wanted: &Wanted) -> [(u64, Vec<Subject>); 3] {
@@ -108,18 +84,12 @@ struct Tally {
 }
 
 impl Tally {
-    fn take(&mut self, seed: u64, wanted: u64, counts: &SummaryCounts) {
-        let classes = counts.paths_finite
-            + counts.paths_singular
-            + counts.paths_positive_dimensional.unwrap_or(0)
-            + counts.paths_excess.unwrap_or(0)
-            + counts.paths_at_infinity
-            + counts.paths_failed;
+    fn take(&mut self, seed: u64, subject: &Subject, counts: &SummaryCounts) {
         self.solves += 1;
         self.paths += counts.paths_total;
         self.retracked += counts.paths_retracked;
         self.failed += counts.paths_failed;
-        if counts.solutions_nonsingular != wanted || classes != counts.paths_total {
+        if !subject.is_right(counts) {
             self.wrong.push(seed);
         }
     }
@@ -129,11 +99,9 @@ fn solve(client: &Client, subject: &Subject, times: u64) -> Tally {
     let mut tally = Tally::default();
     let begin = Instant::now();
     for seed in 1..=times {
-        let mut submission = Submission::of(subject.text.clone());
-        submission.options.seed = Some(seed);
-        let job = client.submit(&submission);
+        let job = client.submit(&subject.submission(seed));
         client.wait_until_solved(&job);
-        tally.take(seed, subject.solutions, &client.counts(&job));
+        tally.take(seed, subject, &client.counts(&job));
     }
     tally.took = begin.elapsed();
     tally

@@ -1,5 +1,8 @@
 //! Arguments: what stands after the name of a program that tests, as options that each take a value.
 
+use std::fmt::Display;
+use std::str::FromStr;
+
 /// All of them, as option and value.
 ///
 /// # Errors
@@ -18,6 +21,6 @@ pub fn options() -> Result<Vec<(String, String)>, String> {
 ///
 /// # Errors
 /// When it is none.
-pub fn number(option: &str, value: &str) -> Result<u64, String> {
+pub fn number<T: FromStr<Err: Display>>(option: &str, value: &str) -> Result<T, String> {
     value.parse().map_err(|e| format!("{option} {value}: {e}"))
 }

@@ -161,6 +161,22 @@ impl Client {
         self.call(call)
     }
 
+    /// Watches a job until it ends; how it ended.
+    pub fn end(&self, job: &str) -> Result<v1::JobProgress, Status> {
+        let request = v1::WatchRequest {
+            job: job.to_owned(),
+        };
+        let call = |mut client: ClientApiClient<Channel>| async move {
+            let mut stream = client.watch(request).await?.into_inner();
+            let mut last = None;
+            while let Some(progress) = stream.message().await? {
+                last = Some(progress);
+            }
+            last.ok_or_else(|| Status::internal("a watch without progress"))
+        };
+        self.call(call)
+    }
+
     /// How far a job is once this holds.
     ///
     /// # Panics
@@ -171,9 +187,19 @@ impl Client {
         what: &str,
         holds: impl Fn(&v1::JobProgress) -> bool,
     ) -> v1::JobProgress {
+        self.progress_within(job, what, JOB_PATIENCE, holds)
+    }
+
+    fn progress_within(
+        &self,
+        job: &str,
+        what: &str,
+        patience: Duration,
+        holds: impl Fn(&v1::JobProgress) -> bool,
+    ) -> v1::JobProgress {
         let begin = Instant::now();
         let mut last = None;
-        while begin.elapsed() < JOB_PATIENCE {
+        while begin.elapsed() < patience {
             match self.progress(job) {
                 Ok(progress) if holds(&progress) => return progress,
                 Ok(progress) => last = Some(Ok(progress)),
@@ -181,7 +207,7 @@ impl Client {
             }
             std::thread::sleep(Duration::from_millis(5));
         }
-        panic!("{what}: not within {JOB_PATIENCE:?}; last heard: {last:?}");
+        panic!("{what}: not within {patience:?}; last heard: {last:?}");
     }
 
     /// Waits until a job is solved.
@@ -189,7 +215,15 @@ impl Client {
     /// # Panics
     /// When it ends otherwise, or does not end.
     pub fn wait_until_solved(&self, job: &str) {
-        let ended = self.progress_once(job, "the job ends", has_ended);
+        self.wait_until_solved_for(job, JOB_PATIENCE);
+    }
+
+    /// Waits for so long until a job is solved.
+    ///
+    /// # Panics
+    /// When it ends otherwise, or does not end in this time.
+    pub fn wait_until_solved_for(&self, job: &str, patience: Duration) {
+        let ended = self.progress_within(job, "the job ends", patience, has_ended);
         assert_eq!(ended.state(), v1::JobState::Solved, "{ended:?}");
     }
 

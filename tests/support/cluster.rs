@@ -34,7 +34,7 @@ impl CoordinatorOptions {
         if let Some(paths) = self.chunk_paths {
             // As much work as nobody has, but no more paths than these.
             text += &format!("[chunks]\nfirst_items = {paths}\nmost_items = {paths}\n");
-            text += "shortest_ms = 1000000\nlongest_ms = 1000000\n";
+            text += "shortest_ms = 1000000\nshared_ms = 1000000\nlongest_ms = 1000000\n";
         }
         text
     }

@@ -7,4 +7,5 @@ pub mod client;
 pub mod cluster;
 pub mod database;
 pub mod processes;
+pub mod subjects;
 pub mod systems;

@@ -93,6 +93,27 @@ impl Process {
         String::from_utf8_lossy(&bytes).into_owned()
     }
 
+    /// Memory that it holds now, in bytes; 0 where the system does not say (Linux does).
+    pub fn memory_bytes(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id()));
+        let status = status.unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        let kib = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
+        1024 * kib.unwrap_or(0)
+    }
+
+    /// CPU time that it has used, in seconds; 0 where the system does not say.
+    pub fn cpu_seconds(&self) -> f64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id()));
+        // Fields 14 and 15, in hundredths of a second; the name in field 2 may hold spaces.
+        let stat = stat.unwrap_or_default();
+        let fields = stat.rsplit(')').next().unwrap_or_default();
+        let mut ticks = fields.split_whitespace().skip(11).map(str::parse::<f64>);
+        let (user, system) = (ticks.next(), ticks.next());
+        let seconds = |ticks: Option<Result<f64, _>>| ticks.and_then(Result::ok).unwrap_or(0.0);
+        (seconds(user) + seconds(system)) / 100.0
+    }
+
     fn signal(&mut self, signal: &str) {
         assert!(self.is_alive(), "{} has ended already", self.name);
         // The shell's own `kill`: a program of that name is not on every machine.

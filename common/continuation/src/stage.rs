@@ -19,6 +19,7 @@ use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, d
 use cognate_systems::system::{System, SystemError};
 use cognate_systems::transform::randomize;
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -97,12 +98,24 @@ pub struct PreparedStage {
     items: u64,
 }
 
-impl PreparedStage {
-    /// Checks that stage and system fit, and compiles.
-    ///
-    /// `objects` finds stored start points by their digest.
-    pub fn new(
-        system: &System,
+/// A stage that fits its system; nothing is compiled yet.
+struct Checked<'a> {
+    /// What is tracked: the system, or combinations of its equations.
+    system: Cow<'a, System>,
+    degrees: Degrees,
+    asked: Option<AskedSystem>,
+    chart: Chart,
+    /// Whether paths begin in the system's own coordinates.
+    affine: bool,
+    points: Points,
+    start_system: Option<StartSystem>,
+    starts: u64,
+    items: u64,
+}
+
+impl<'a> Checked<'a> {
+    fn new(
+        system: &'a System,
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
@@ -181,20 +194,21 @@ impl PreparedStage {
         check_homogeneous(system, &of_asked).map_err(wrong)?;
         // What is tracked: where there are more equations than unknowns, combinations of them.
         let overdetermined = system.equation_count() > dimension;
-        let (asked, combined, of_system);
-        let system = if overdetermined {
+        let (asked, of_system);
+        let tracked = if overdetermined {
             let (kind, chart) = (&stage.homotopy, Chart::new(system, stage.seed));
             // On the way to the system its points are no solutions of it yet.
             asked = kind
                 .ends_at_the_system()
                 .then(|| AskedSystem::new(system, &of_asked, kind, chart, stage.seed));
-            combined = randomize(system, &of_asked, stage.seed);
+            let combined = randomize(system, &of_asked, stage.seed);
             of_system = degrees(&combined).map_err(wrong)?;
-            &combined
+            Cow::Owned(combined)
         } else {
             (asked, of_system) = (None, of_asked);
-            system
+            Cow::Borrowed(system)
         };
+        let system: &System = &tracked;
         // Between two generic members of a family almost all paths stay near: they are tracked in
         // the system's own coordinates, and go on in projective patches where they run far out.
         let affine = matches!(
@@ -338,30 +352,63 @@ impl PreparedStage {
             Points::Made(made) => Some(made.clone()),
             Points::Stored(_) => generic.map(StartSystem::Generic),
         };
+        Ok(Self {
+            system: tracked,
+            degrees: of_system,
+            asked,
+            chart,
+            affine,
+            points,
+            start_system,
+            starts,
+            items,
+        })
+    }
+}
+
+impl PreparedStage {
+    /// Checks that stage and system fit, and compiles.
+    ///
+    /// `objects` finds stored start points by their digest.
+    pub fn new(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<Self, PrepareError> {
+        let checked = Checked::new(system, stage, objects)?;
         let homotopy = Homotopy::new(
-            system,
-            &of_system,
+            &checked.system,
+            &checked.degrees,
             &stage.homotopy,
-            start_system.as_ref(),
-            chart.clone(),
-            &sample(&points, &chart),
+            checked.start_system.as_ref(),
+            checked.chart.clone(),
+            &sample(&checked.points, &checked.chart),
             stage.seed,
         );
-        let beyond = affine.then(|| Beyond {
-            system: system.clone(),
-            degrees: of_system,
-            start_system,
+        let beyond = checked.affine.then(|| Beyond {
+            system: checked.system.into_owned(),
+            degrees: checked.degrees,
+            start_system: checked.start_system,
             homotopy: OnceLock::new(),
         });
         Ok(Self {
             homotopy,
             beyond,
-            asked,
-            points,
+            asked: checked.asked,
+            points: checked.points,
             stage: stage.clone(),
-            starts,
-            items,
+            starts: checked.starts,
+            items: checked.items,
         })
+    }
+
+    /// Whether [`Self::new`] would succeed, without what takes long: nothing is compiled.
+    pub fn check(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<(), PrepareError> {
+        Checked::new(system, stage, objects).map(|_| ())
     }
 
     /// Number of items.

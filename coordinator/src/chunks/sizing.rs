@@ -12,6 +12,9 @@ pub struct Sizing {
     /// Most work in a chunk, in milliseconds of all of the worker's threads. Default 3000:
     /// little is lost with a worker, and the ledger sees few chunks.
     pub longest_ms: u64,
+    /// Most work in a chunk while other jobs are running, in milliseconds. Default 250: a small job
+    /// waits for the two chunks that a worker holds of a large one.
+    pub shared_ms: u64,
     /// Least work in a chunk while more is left, in milliseconds. Default 10: a lease and its
     /// report cost about 2 ms over gRPC.
     pub shortest_ms: u64,
@@ -27,6 +30,7 @@ impl Default for Sizing {
     fn default() -> Self {
         Self {
             longest_ms: 3000,
+            shared_ms: 250,
             shortest_ms: 10,
             first_items: 16,
             tail: 2,
@@ -51,6 +55,8 @@ pub struct Situation {
     pub threads: u64,
     /// Threads of all workers that are here, this one included.
     pub all_threads: u64,
+    /// Jobs that are running, this one included.
+    pub jobs: u64,
 }
 
 impl Sizing {
@@ -70,7 +76,11 @@ impl Sizing {
                     micros * u128::from(now.done_items) / u128::from(now.done_micros.max(1));
                 u64::try_from(items).unwrap_or(u64::MAX)
             };
-            (within(self.shortest_ms), within(self.longest_ms))
+            let longest = match now.jobs {
+                0 | 1 => self.longest_ms,
+                _ => self.longest_ms.min(self.shared_ms),
+            };
+            (within(self.shortest_ms), within(longest))
         };
         share
             .max(shortest)
@@ -90,6 +100,7 @@ mod tests {
             done_micros,
             threads: 1,
             all_threads: 2,
+            jobs: 1,
         }
     }
 
@@ -117,6 +128,15 @@ mod tests {
         );
         // Hardly measured is not measured.
         assert_eq!(sizing.items(&situation(1_000_000_000, 6, 0)), 16);
+    }
+
+    #[test]
+    fn chunks_are_short_beside_other_jobs() {
+        let beside = Situation {
+            jobs: 2,
+            ..situation(1_000_000, 100, 100_000)
+        };
+        assert_eq!(Sizing::default().items(&beside), 250);
     }
 
     #[test]

@@ -71,6 +71,7 @@ tables! {
     /// The fields of `Sizing`.
     ChunksTable {
         longest_ms: u64,
+        shared_ms: u64,
         shortest_ms: u64,
         first_items: u64,
         tail: u64,
@@ -139,6 +140,7 @@ impl ConfigFile {
                 )?,
                 sizing: Sizing {
                     longest_ms: number("longest_ms", c.longest_ms, sizing.longest_ms)?,
+                    shared_ms: number("shared_ms", c.shared_ms, sizing.shared_ms)?,
                     shortest_ms: number("shortest_ms", c.shortest_ms, sizing.shortest_ms)?,
                     first_items: number("first_items", c.first_items, sizing.first_items)?,
                     tail: number("tail", c.tail, sizing.tail)?,

@@ -7,7 +7,7 @@ mod answers;
 mod error;
 mod run;
 #[cfg(test)]
-mod simulation;
+pub(crate) mod simulation;
 #[cfg(test)]
 mod tests;
 mod work;

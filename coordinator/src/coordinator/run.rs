@@ -11,7 +11,7 @@ use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::Notify;
-use tokio::time::{Instant, MissedTickBehavior, interval, sleep, timeout};
+use tokio::time::{Instant, sleep, timeout};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
@@ -45,23 +45,32 @@ impl Coordinator {
     /// Takes back expired leases.
     ///
     /// Not before one lease has passed: while no coordinator was there, no worker could renew,
-    /// and silence was nobody's fault.
+    /// and silence was nobody's fault. The same where this one, or its ledger, stood still.
     async fn run_expiry(self: Arc<Self>, stop: CancellationToken) {
         let grace = Duration::from_millis(self.policy.lease_ms);
         let every = Duration::from_millis(self.policy.expiry_ms.max(1));
-        tokio::select! {
-            () = stop.cancelled() => return,
-            () = sleep(grace) => {}
-        }
-        let mut ticks = interval(every);
-        ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        // So much longer than it should be between two looks, and workers may have waited, too.
+        let held_up = every + grace / 4;
+        let mut pause = grace;
         loop {
+            let begin = Instant::now();
             tokio::select! {
                 () = stop.cancelled() => return,
-                _ = ticks.tick() => {}
+                () = sleep(pause) => {}
             }
+            if begin.elapsed() > pause + held_up {
+                tracing::warn!("this coordinator stood still: nobody's silence counts for a lease");
+                pause = grace;
+                continue;
+            }
+            let begin = Instant::now();
             if let Err(error) = self.expire().await {
                 tracing::warn!(%error, "expired leases could not be taken back");
+            }
+            pause = every;
+            if begin.elapsed() > held_up {
+                tracing::warn!("the ledger is slow: nobody's silence counts for a lease");
+                pause = grace;
             }
         }
     }

@@ -1,5 +1,6 @@
 //! A cluster in one process under a seed: coordinators that are killed, workers that die, fall
-//! silent and report twice, on one ledger and one store. Real paths, a clock set by hand.
+//! silent, cannot be heard and report twice, on one ledger that fails and one store. Real paths, a
+//! clock set by hand.
 
 use super::{Coordinator, NewProblem, Pull, Report};
 use crate::chunks::leasing::Policy;
@@ -13,7 +14,7 @@ use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_protocol::submission::{Options, SettingsChoice};
 use cognate_systems::system::System;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -85,8 +86,14 @@ pub struct Cluster {
     pub deadly: Option<u64>,
     /// How often items were tracked.
     pub tracked: u64,
+    /// Replies that were lost and heard the second time.
+    pub heard_again: u64,
+    /// Items whose results were accepted, by stage.
+    accepted: BTreeSet<(u32, u64)>,
     processes: Vec<Process>,
     workers: Vec<Worker>,
+    /// A worker that no coordinator hears.
+    silent: Option<usize>,
     born: u64,
     prepared: Mutex<HashMap<Digest, Arc<PreparedWork>>>,
 }
@@ -109,8 +116,11 @@ impl Cluster {
             job: JobId(0),
             deadly: None,
             tracked: 0,
+            heard_again: 0,
+            accepted: BTreeSet::new(),
             processes: Vec::new(),
             workers: Vec::new(),
+            silent: None,
             born: 0,
             prepared: Mutex::default(),
         }
@@ -133,10 +143,10 @@ impl Cluster {
         });
     }
 
-    /// Kills all coordinators and starts one.
-    pub fn restart(&mut self) {
-        self.processes.clear();
+    /// Kills a coordinator and starts another in its place.
+    fn crash(&mut self, process: usize) {
         self.start_coordinator();
+        self.processes.swap_remove(process);
     }
 
     /// Starts a worker.
@@ -152,9 +162,14 @@ impl Cluster {
         });
     }
 
+    fn kill_worker(&mut self, worker: usize) {
+        self.workers.remove(worker);
+        self.silent = None;
+    }
+
     /// Submits the problem until it is accepted.
     pub async fn submit(&mut self, problem: &NewProblem) {
-        for _ in 0..3 {
+        for _ in 0..9 {
             let request = RequestId::new("request").expect("a good name");
             let tenant = Tenant::new("tenant").expect("a good name");
             let submitted = self.processes[0]
@@ -165,7 +180,7 @@ impl Cluster {
                 self.job = accepted.job;
                 return;
             }
-            self.restart();
+            self.crash(0);
         }
         panic!("a submission is accepted in the end");
     }
@@ -197,21 +212,22 @@ impl Cluster {
     async fn act(&mut self) {
         let process = self.dice.roll(self.processes.len() as u64) as usize;
         let worker = self.dice.roll(self.workers.len() as u64) as usize;
+        let cut_off = self.silent.is_some_and(|silent| silent == worker);
         match self.dice.roll(100) {
+            30..90 if cut_off => {}
             0..30 => self.drive(process).await,
             30..50 => self.pull(process, worker).await,
             50..85 => self.report(process, worker).await,
             85..88 => self.report_again(process, worker).await,
             88..90 => self.give_back(process, worker).await,
-            90..93 => {
+            90..92 => {
                 // Killed: what it had is known to nobody.
-                self.workers.remove(worker);
+                self.kill_worker(worker);
                 self.start_worker();
             }
-            93..95 => {
-                self.processes.remove(process);
-                self.start_coordinator();
-            }
+            // Cut off: the others go on, and it comes back with what it had.
+            92..93 => self.silent = self.silent.is_none().then_some(worker),
+            93..95 => self.crash(process),
             _ => {
                 self.clock.advance_ms(self.dice.roll(4000));
                 self.expire(process).await;
@@ -241,10 +257,7 @@ impl Cluster {
             Ok(Driven::Ended) => *drive = None,
             Ok(_) => {}
             Err(error) if error.is_fenced() => *drive = None,
-            Err(_) => {
-                self.processes.remove(process);
-                self.start_coordinator();
-            }
+            Err(_) => self.crash(process),
         }
     }
 
@@ -265,14 +278,14 @@ impl Cluster {
         };
         let pull = Pull {
             worker: says,
-            request: RequestId::new(format!("{}-{}", asking.name, asking.pulls))
+            request: RequestId::new(format!("{}.{}", asking.name, asking.pulls))
                 .expect("a good name"),
             slots: 2,
             wait: Duration::ZERO,
         };
         match self.processes[process].coordinator.pull(pull).await {
             Ok(leases) => asking.leases.extend(leases),
-            Err(_) => self.restart(),
+            Err(_) => self.crash(process),
         }
     }
 
@@ -328,7 +341,7 @@ impl Cluster {
             .clone()
             .any(|item| self.deadly == Some(stage.origin(item)))
         {
-            self.workers.remove(worker);
+            self.kill_worker(worker);
             self.start_worker();
             return;
         }
@@ -347,21 +360,39 @@ impl Cluster {
         let Some(report) = self.workers[worker].said.clone() else {
             return;
         };
-        let mut process = process;
-        for _ in 0..3 {
+        for _ in 0..9 {
             let sent = self.processes[process].coordinator.complete(report.clone());
             match sent.await {
-                Ok(completion) => {
-                    assert_ne!(completion, Completion::HashDiffers, "paths are pure");
-                    return;
+                Ok(Completion::HashDiffers) => panic!("paths are pure"),
+                Ok(Completion::Accepted) => self.count(&report),
+                // The row was written, and the reply was lost.
+                Ok(Completion::AlreadyAccepted) if !self.is_counted(&report) => {
+                    self.heard_again += 1;
+                    self.count(&report);
                 }
+                Ok(_) => {}
                 Err(_) => {
-                    self.restart();
-                    process = 0;
+                    self.crash(process);
+                    continue;
                 }
             }
+            return;
         }
         panic!("a report is answered in the end");
+    }
+
+    fn is_counted(&self, report: &Report) -> bool {
+        let ChunkId { stage, first, .. } = report.lease.chunk;
+        self.accepted.contains(&(stage.0, first))
+    }
+
+    /// No item is accepted twice.
+    fn count(&mut self, report: &Report) {
+        let ChunkId { stage, first, .. } = report.lease.chunk;
+        for item in first..first + report.results.len() as u64 {
+            let new = self.accepted.insert((stage.0, item));
+            assert!(new, "item {item} of stage {stage:?} was accepted twice");
+        }
     }
 
     async fn give_back(&mut self, process: usize, worker: usize) {
@@ -376,14 +407,14 @@ impl Cluster {
             .await
             .is_err()
         {
-            self.restart();
+            self.crash(process);
         }
     }
 
     /// A coordinator takes back what has expired.
     pub async fn expire(&mut self, process: usize) {
         if self.processes[process].coordinator.expire().await.is_err() {
-            self.restart();
+            self.crash(process);
         }
     }
 

@@ -79,6 +79,45 @@ async fn any_cluster_finds_the_same() {
     }
 }
 
+/// Two coordinators, three workers; every fault that the simulation has, and a ledger that fails at
+/// one write in thirty. `COGNATE_SIMULATION_SEEDS=1000` runs so many instead of a few.
+#[tokio::test]
+async fn whatever_fails_the_same_is_found() {
+    let seeds = std::env::var("COGNATE_SIMULATION_SEEDS");
+    let number = |n: String| n.parse().expect("COGNATE_SIMULATION_SEEDS is a number");
+    let seeds: u64 = seeds.map_or(24, number);
+    let (reference, _) = quiet(&problem()).await;
+    let (mut tracked, mut heard_again) = (0, 0);
+    for seed in 0..seeds {
+        let clock = Arc::new(ManualClock::default());
+        let memory = Arc::new(MemoryLedger::new(clock.clone()));
+        let ledger = Arc::new(FaultyLedger::often(memory, seed, 30));
+        let policy = Policy {
+            // Here workers die by chance, and no path is at fault.
+            suspicion_limit: 1000,
+            ..policy([1, 3, 5, 16][seed as usize % 4])
+        };
+        let mut cluster = Cluster::new(ledger, Store::in_memory(), clock, policy, seed);
+        for _ in 0..2 {
+            cluster.start_coordinator();
+        }
+        for _ in 0..3 {
+            cluster.start_worker();
+        }
+        cluster.submit(&problem()).await;
+        let row = cluster.run().await;
+        assert_eq!(row.state, JobState::Solved, "{seed}: {:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+        tracked += cluster.tracked;
+        heard_again += cluster.heard_again;
+    }
+    println!("{seeds} seeds: {tracked} paths tracked, {heard_again} lost replies heard again");
+    assert!(
+        heard_again > 0,
+        "some replies are lost, and answered when asked again"
+    );
+}
+
 #[tokio::test]
 async fn a_coordinator_killed_at_any_write_loses_nothing() {
     survives_a_kill_at_any_write(&problem()).await;

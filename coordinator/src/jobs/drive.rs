@@ -8,6 +8,7 @@ use super::planning::{Planned, STATE, first_chunks};
 use super::steward::{Steward, Wanted, next_to_absorb};
 use crate::chunks::expiry::{Sentence, killed_its_worker, sentence};
 use crate::chunks::leasing::Policy;
+use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{CoordinatorId, Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
@@ -334,7 +335,21 @@ impl Drive {
             policy,
             ..
         } = tools;
-        let suspects = ledger.suspects(self.job, policy.suspicion_limit).await?;
+        let mut suspects = Vec::new();
+        let limit = policy.suspicion_limit;
+        // Two questions, so that the clock is asked only where there is a suspect.
+        let any = LedgerTime(i64::MAX);
+        if !ledger.suspects(self.job, limit, any).await?.is_empty() {
+            // A worker that could not be heard, but lives, has a lease's time to ask for work again.
+            let until = LedgerTime(
+                ledger
+                    .now()
+                    .await?
+                    .0
+                    .saturating_sub_unsigned(policy.lease_ms),
+            );
+            suspects = ledger.suspects(self.job, limit, until).await?;
+        }
         for suspect in &suspects {
             let (chunk, items) = (suspect.chunk, suspect.items);
             match sentence(suspect, policy) {

@@ -150,7 +150,7 @@ pub fn plan_job(
     };
     if let Next::Open(opening) = plan.algorithm.clone().next() {
         let find = |wanted: Digest| opening.object(wanted).or_else(|| find(wanted));
-        PreparedStage::new(&plan.system, &opening.stage, &find)?;
+        PreparedStage::check(&plan.system, &opening.stage, &find)?;
     }
     Ok(plan)
 }

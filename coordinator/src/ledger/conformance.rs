@@ -3,8 +3,9 @@
 //! `ledger_conformance!(name, open)` runs all of it, where `open` makes an empty
 //! ledger on a given clock, together with whatever must live as long.
 
-use super::clock::{Clock, ManualClock};
+use super::clock::{Clock, LedgerTime, ManualClock};
 use super::identity::*;
+use super::memory::NEW_JOB_MICROS;
 use super::rows::*;
 use super::{Ledger, LedgerError};
 use crate::chunks::sizing::Sizing;
@@ -42,6 +43,7 @@ macro_rules! ledger_conformance {
             case!(a_request_sent_twice_is_one_job);
             case!(a_chunk_is_accepted_once);
             case!(silence_is_a_suspicion_and_a_drain_is_none);
+            case!(who_speaks_again_is_not_dead);
             case!(suspects_are_split_and_condemned);
             case!(an_old_steward_changes_nothing);
             case!(a_cancelled_job_gives_nothing_out);
@@ -66,6 +68,9 @@ macro_rules! ledger_conformance {
     };
 }
 pub(crate) use ledger_conformance;
+
+/// No suspicion is later.
+const EVER: LedgerTime = LedgerTime(i64::MAX);
 
 /// A job of these properties.
 pub fn new_job(tenant: &str, content: u8) -> NewJob {
@@ -238,14 +243,17 @@ pub async fn silence_is_a_suspicion_and_a_drain_is_none(ledger: &dyn Ledger, clo
         .await
         .unwrap();
     assert_eq!(counts(ledger, job).await, (5, 0, 0, 0));
-    assert!(ledger.suspects(job, 1).await.unwrap().is_empty());
+    assert!(ledger.suspects(job, 1, EVER).await.unwrap().is_empty());
     let lease = ledger.lease(wants("w", "2", 1)).await.unwrap()[0].clone();
     let reason = "it crashed".to_owned();
     let failed = GiveBack::Failed { reason };
     ledger.give_back(lease.lease, failed.clone()).await.unwrap();
     // Said twice it counts once.
     ledger.give_back(lease.lease, failed).await.unwrap();
-    assert_eq!(ledger.suspects(job, 1).await.unwrap()[0].suspicions, 1);
+    assert_eq!(
+        ledger.suspects(job, 1, EVER).await.unwrap()[0].suspicions,
+        1
+    );
     let lease = ledger.lease(wants("w", "3", 1)).await.unwrap()[0].clone();
     clock.advance_ms(999);
     assert!(ledger.expire().await.unwrap().is_empty());
@@ -260,6 +268,31 @@ pub async fn silence_is_a_suspicion_and_a_drain_is_none(ledger: &dyn Ledger, clo
     assert_eq!(counts(ledger, job).await, (5, 0, 0, 0));
 }
 
+pub async fn who_speaks_again_is_not_dead(ledger: &dyn Ledger, clock: &ManualClock) {
+    let (job, _) = running(ledger, "r", "t", 5, 5).await;
+    for round in 0..5 {
+        // Every renewal comes too late, and the worker asks again.
+        let wanted = wants("w", &format!("session.{round}"), 1);
+        assert_eq!(
+            ledger.lease(wanted).await.unwrap().len(),
+            1,
+            "round {round}"
+        );
+        clock.advance_ms(1000);
+        assert_eq!(ledger.expire().await.unwrap()[0].suspicions, 1);
+    }
+    let ended = clock.now();
+    let before = LedgerTime(ended.0 - 1);
+    assert!(ledger.suspects(job, 1, before).await.unwrap().is_empty());
+    assert_eq!(ledger.suspects(job, 1, ended).await.unwrap().len(), 1);
+    // The process is another, though it has the same name: the first one is dead.
+    let other = ledger.lease(wants("w", "other.0", 1)).await.unwrap();
+    assert_eq!(other.len(), 1);
+    clock.advance_ms(1000);
+    assert_eq!(ledger.expire().await.unwrap()[0].suspicions, 2);
+    assert!(!ledger.suspects(job, 2, EVER).await.unwrap().is_empty());
+}
+
 pub async fn suspects_are_split_and_condemned(ledger: &dyn Ledger, clock: &ManualClock) {
     let (job, epoch) = running(ledger, "r", "t", 5, 5).await;
     for round in 0..3 {
@@ -269,7 +302,7 @@ pub async fn suspects_are_split_and_condemned(ledger: &dyn Ledger, clock: &Manua
         ledger.expire().await.unwrap();
     }
     assert!(ledger.lease(wants("w", "n", 1)).await.unwrap().is_empty());
-    let suspect = ledger.suspects(job, 3).await.unwrap()[0].clone();
+    let suspect = ledger.suspects(job, 3, EVER).await.unwrap()[0].clone();
     let piece = |first, last| Piece {
         items: ItemRange { first, last },
         suspicions: if first == 2 { 3 } else { 0 },
@@ -284,7 +317,7 @@ pub async fn suspects_are_split_and_condemned(ledger: &dyn Ledger, clock: &Manua
     assert_eq!(leases.len(), 1, "a chunk that is alone stays alone");
     assert_eq!(leases[0].items, piece(0, 2).items);
     assert!(ledger.lease(wants("w", "o", 5)).await.unwrap().is_empty());
-    let suspect = ledger.suspects(job, 3).await.unwrap()[0].clone();
+    let suspect = ledger.suspects(job, 3, EVER).await.unwrap()[0].clone();
     let verdict = result(suspect.items, 0, 0);
     ledger
         .condemn(suspect.chunk, epoch, verdict.clone())
@@ -369,7 +402,12 @@ pub async fn tenants_and_jobs_take_turns(ledger: &dyn Ledger, _: &ManualClock) {
             .unwrap();
     }
     let (a, b, c) = (got[&a], got[&b], got[&c]);
-    assert!(a.abs_diff(b) <= 3000, "jobs of a tenant share: {a} {b}");
+    // The second began behind the first.
+    let b_and_behind = b + NEW_JOB_MICROS.unsigned_abs();
+    assert!(
+        a.abs_diff(b_and_behind) <= 3000,
+        "jobs of a tenant share: {a} {b}"
+    );
     assert!((a + b).abs_diff(c) <= 3000, "tenants share: {a} {b} {c}");
 }
 

@@ -1,14 +1,15 @@
-//! A ledger that fails at one chosen write: before it is done, or after it, so that the answer is
-//! lost. What a coordinator that is killed there leaves behind.
+//! A ledger that fails at one chosen write, or at writes by chance: before it is done, or after it,
+//! so that the answer is lost. What a coordinator that is killed there leaves behind.
 
 use super::clock::LedgerTime;
 use super::identity::*;
 use super::rows::*;
 use super::{Ledger, LedgerError};
+use crate::coordinator::simulation::Dice;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// On which side of the write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,12 +20,16 @@ pub enum Side {
     After,
 }
 
-/// Fails at the write of this number, and once only.
+/// Fails at the write of one number, and once only, or at some writes of many.
 pub struct FaultyLedger {
     inner: Arc<dyn Ledger>,
     writes: AtomicU64,
-    fail_at: u64,
-    side: Side,
+    when: When,
+}
+
+enum When {
+    Once { fail_at: u64, side: Side },
+    Often { dice: Mutex<Dice>, one_in: u64 },
 }
 
 impl FaultyLedger {
@@ -33,14 +38,41 @@ impl FaultyLedger {
         Self {
             inner,
             writes: AtomicU64::new(0),
-            fail_at,
-            side,
+            when: When::Once { fail_at, side },
         }
     }
 
-    /// True once it has failed.
+    /// Fails at one write of so many, on either side, by this seed.
+    pub fn often(inner: Arc<dyn Ledger>, seed: u64, one_in: u64) -> Self {
+        let dice = Mutex::new(Dice(seed));
+        Self {
+            inner,
+            writes: AtomicU64::new(0),
+            when: When::Often { dice, one_in },
+        }
+    }
+
+    /// True once the one write was asked for that fails.
     pub fn has_failed(&self) -> bool {
-        self.writes.load(Ordering::Relaxed) > self.fail_at
+        match self.when {
+            When::Once { fail_at, .. } => self.writes.load(Ordering::Relaxed) > fail_at,
+            When::Often { .. } => true,
+        }
+    }
+
+    /// On which side the write of this number fails, if it does.
+    fn fails(&self, number: u64) -> Option<Side> {
+        match &self.when {
+            When::Once { fail_at, side } => (number == *fail_at).then_some(*side),
+            When::Often { dice, one_in } => {
+                let mut dice = dice.lock().expect("no roll panics");
+                match dice.roll(2 * one_in) {
+                    0 => Some(Side::Before),
+                    1 => Some(Side::After),
+                    _ => None,
+                }
+            }
+        }
     }
 
     async fn write<T>(
@@ -48,15 +80,15 @@ impl FaultyLedger {
         operation: impl Future<Output = Result<T, LedgerError>> + Send,
     ) -> Result<T, LedgerError> {
         let killed = || Err(LedgerError::Storage("killed here".into()));
-        let now = self.writes.fetch_add(1, Ordering::Relaxed);
-        if now == self.fail_at && self.side == Side::Before {
+        let fails = self.fails(self.writes.fetch_add(1, Ordering::Relaxed));
+        if fails == Some(Side::Before) {
             return killed();
         }
         let done = operation.await;
-        if now == self.fail_at {
-            return killed();
+        match fails {
+            Some(_) => killed(),
+            None => done,
         }
-        done
     }
 }
 
@@ -122,8 +154,13 @@ impl Ledger for FaultyLedger {
     ) -> Result<Vec<ChunkRow>, LedgerError> {
         self.inner.finished_chunks(job, stage, from, limit).await
     }
-    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
-        self.inner.suspects(job, suspicions).await
+    async fn suspects(
+        &self,
+        job: JobId,
+        suspicions: u32,
+        until: LedgerTime,
+    ) -> Result<Vec<ChunkRow>, LedgerError> {
+        self.inner.suspects(job, suspicions, until).await
     }
     async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError> {
         self.inner.contributions(job).await

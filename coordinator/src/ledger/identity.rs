@@ -75,6 +75,14 @@ name!(
     "a tenant's name"
 );
 
+impl RequestId {
+    /// Of a worker's question `SESSION.NUMBER` the session, with its dot: one life of the process.
+    pub fn session(&self) -> &str {
+        let text = self.as_str();
+        text.rfind('.').map_or(text, |dot| &text[..=dot])
+    }
+}
+
 /// A job, named after the request that made it: 16 hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct JobId(pub u64);
@@ -191,6 +199,8 @@ mod tests {
         assert!(RequestId::new("a b").is_err());
         assert!(RequestId::new("x".repeat(129)).is_err());
         assert_eq!(RequestId::new("x-1").unwrap().as_str(), "x-1");
+        assert_eq!(RequestId::new("s.x.12").unwrap().session(), "s.x.");
+        assert_eq!(RequestId::new("12").unwrap().session(), "12");
     }
 
     #[test]

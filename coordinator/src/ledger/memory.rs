@@ -18,6 +18,10 @@ pub const PRESENT_MS: u64 = 60_000;
 pub const MOST_MICROS: u64 = 8_640_000_000_000;
 /// What an item is taken to cost, in microseconds of CPU, while nothing is measured.
 pub const UNMEASURED_MICROS: u64 = 1000;
+/// So far behind its tenant's least served job a new one begins, in microseconds of CPU. Without
+/// it a job whose first chunk is done would wait for as long as new jobs arrive (Linux's scheduler
+/// puts a new task a slice behind for the same reason). About what a small job takes.
+pub const NEW_JOB_MICROS: i64 = 10_000;
 
 /// A ledger that lives as long as its process.
 pub struct MemoryLedger {
@@ -51,7 +55,10 @@ struct Stage {
 
 struct Chunk {
     row: ChunkRow,
+    /// Whose question it was leased for; of a chunk that is ready, who fell silent with it.
     request: Option<RequestId>,
+    /// When the lease ended that was not renewed.
+    silent_since: Option<LedgerTime>,
     charged: i64,
 }
 
@@ -113,6 +120,7 @@ impl Stage {
         let chunk = Chunk {
             row,
             request: None,
+            silent_since: None,
             charged: 0,
         };
         self.chunks.insert(first, chunk);
@@ -186,6 +194,7 @@ impl Books {
         };
         let chunk = self.chunk(id)?;
         chunk.request = None;
+        chunk.silent_since = None;
         let charged = std::mem::take(&mut chunk.charged);
         self.charge(id.job, -charged);
         if let Some(held) = self.leases.get_mut(&worker) {
@@ -242,6 +251,8 @@ impl Books {
     fn lease_one(&mut self, now: LedgerTime, request: &LeaseRequest) -> Option<Lease> {
         let id = self.choose(request)?;
         let all_threads = self.present_threads(now, request);
+        let running = |job: &&Job| job.row.state == JobState::Running;
+        let jobs = self.jobs.values().filter(running).count() as u64;
         let job = self.jobs.get_mut(&id.job)?;
         let stage = job.stages.get_mut(&id.stage)?;
         let counts = stage.row.clone();
@@ -251,6 +262,7 @@ impl Books {
             done_micros: counts.cpu_micros,
             threads: u64::from(request.threads),
             all_threads,
+            jobs,
         });
         stage.discount(id.first);
         let chunk = stage.chunks.get_mut(&id.first)?;
@@ -275,6 +287,7 @@ impl Books {
             until,
         };
         chunk.request = Some(request.request.clone());
+        chunk.silent_since = None;
         chunk.charged = charged;
         let chunk = chunk.row.clone();
         stage.count(id.first);
@@ -299,6 +312,23 @@ impl Books {
             .or_default()
             .insert(id);
         Some(lease)
+    }
+
+    /// Takes the suspicions back that rest on the silence of a session that speaks.
+    fn acquit(&mut self, session: &str) {
+        for stage in self.jobs.values_mut().flat_map(|j| j.stages.values_mut()) {
+            for first in &stage.ready {
+                let Some(chunk) = stage.chunks.get_mut(first) else {
+                    continue;
+                };
+                let same = |lost: &RequestId| lost.as_str().starts_with(session);
+                if chunk.request.as_ref().is_some_and(same) {
+                    chunk.request = None;
+                    chunk.silent_since = None;
+                    chunk.row.suspicions = chunk.row.suspicions.saturating_sub(1);
+                }
+            }
+        }
     }
 
     fn held(&self, worker: &WorkerId) -> Vec<ChunkId> {
@@ -368,7 +398,8 @@ impl Ledger for MemoryLedger {
         let tenant_time = floor.map_or(own, |&floor| own.max(floor));
         books.tenants.insert(asked.tenant.clone(), tenant_time);
         let same_tenant = active.iter().filter(|(t, _)| *t == asked.tenant);
-        let virtual_time = same_tenant.map(|&(_, v)| v).min().unwrap_or(0);
+        let least = same_tenant.map(|&(_, v)| v).min();
+        let virtual_time = least.map_or(0, |least| least + NEW_JOB_MICROS);
         let number = books.jobs.len() as u64 + 1;
         let row = JobRow {
             job,
@@ -617,11 +648,17 @@ impl Ledger for MemoryLedger {
             .collect())
     }
 
-    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
+    async fn suspects(
+        &self,
+        job: JobId,
+        suspicions: u32,
+        until: LedgerTime,
+    ) -> Result<Vec<ChunkRow>, LedgerError> {
         let mut books = self.books();
         let stages = books.job(job)?.stages.values();
         let ready = stages.flat_map(|s| s.ready.iter().filter_map(|first| s.chunks.get(first)));
         Ok(ready
+            .filter(|chunk| chunk.silent_since.is_none_or(|since| since <= until))
             .map(|chunk| &chunk.row)
             .filter(|row| row.suspicions >= suspicions)
             .cloned()
@@ -659,6 +696,7 @@ impl Ledger for MemoryLedger {
         let now = self.clock.now();
         let until = now.after_ms(request.duration_ms);
         let mut books = self.books();
+        books.acquit(request.request.session());
         let mut again = Vec::new();
         let mut holds_alone = false;
         for id in books.held(&request.worker) {
@@ -797,12 +835,17 @@ impl Ledger for MemoryLedger {
             let Some(chunk) = books.chunk(id) else {
                 continue;
             };
-            if !matches!(chunk.row.state, ChunkState::Leased { until, .. } if until <= now) {
-                continue;
-            }
+            let ended = match chunk.row.state {
+                ChunkState::Leased { until, .. } if until <= now => until,
+                _ => continue,
+            };
             chunk.row.suspicions += 1;
             let (epoch, suspicions) = (chunk.row.epoch, chunk.row.suspicions);
+            let request = chunk.request.clone();
             if let Some(worker) = books.unlease(id, ChunkState::Ready) {
+                if let Some(chunk) = books.chunk(id) {
+                    (chunk.request, chunk.silent_since) = (request, Some(ended));
+                }
                 expired.push(Expired {
                     lease: LeaseId { chunk: id, epoch },
                     worker,

@@ -123,14 +123,21 @@ pub trait Ledger: Send + Sync {
         from: u64,
         limit: u32,
     ) -> Result<Vec<ChunkRow>, LedgerError>;
-    /// Ready chunks that have at least `suspicions` suspicions against them.
-    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError>;
+    /// Ready chunks that have at least `suspicions` suspicions against them, the last of which is
+    /// not later than `until`: whoever lost it had the time since then to speak again.
+    async fn suspects(
+        &self,
+        job: JobId,
+        suspicions: u32,
+        until: LedgerTime,
+    ) -> Result<Vec<ChunkRow>, LedgerError>;
     /// Who finished how many items of a job, by worker.
     async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError>;
 
     // Workers.
 
     /// Leases up to `slots` chunks. The same request of the same worker gets the same leases.
+    /// Whoever asks lives: the silences of the same session are no suspicions any more.
     async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError>;
     /// Prolongs leases by `duration_ms` from now.
     async fn renew(
@@ -146,7 +153,8 @@ pub trait Ledger: Send + Sync {
     ) -> Result<Completion, LedgerError>;
     /// Returns a leased chunk to ready. A lease that has ended is left alone.
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError>;
-    /// Returns chunks whose lease has ended to ready, each with one more suspicion.
+    /// Returns chunks whose lease has ended when this is called to ready, each with one more
+    /// suspicion. What was renewed before is not among them, however long the writing takes.
     async fn expire(&self) -> Result<Vec<Expired>, LedgerError>;
     /// Remembers that a worker was here.
     async fn seen(&self, worker: WorkerSeen) -> Result<(), LedgerError>;

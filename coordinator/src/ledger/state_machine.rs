@@ -1,7 +1,7 @@
 //! Any sequence of calls: a ledger and the oracle give the same answers and hold the same rows,
 //! and after every call the counts add up and no chunk was accepted twice.
 
-use super::clock::{Clock, ManualClock};
+use super::clock::{Clock, LedgerTime, ManualClock};
 use super::conformance::*;
 use super::identity::*;
 use super::memory::MemoryLedger;
@@ -14,6 +14,9 @@ use std::collections::BTreeSet;
 use std::fmt::Debug;
 use std::sync::Arc;
 use tokio::runtime::Runtime;
+
+/// No suspicion is later.
+const EVER: LedgerTime = LedgerTime(i64::MAX);
 
 #[derive(Clone, Debug)]
 enum Call {
@@ -318,7 +321,7 @@ impl Pair<'_> {
                 let Some(row) = self.job(job).await else {
                     return;
                 };
-                let ready = both!(self, suspects(row.job, 0)).unwrap_or_default();
+                let ready = both!(self, suspects(row.job, 0, EVER)).unwrap_or_default();
                 let Some(chunk) = ready.get(chunk) else {
                     return;
                 };
@@ -335,7 +338,7 @@ impl Pair<'_> {
                 let Some(row) = self.job(job).await else {
                     return;
                 };
-                let ready = both!(self, suspects(row.job, 0)).unwrap_or_default();
+                let ready = both!(self, suspects(row.job, 0, EVER)).unwrap_or_default();
                 if let Some(chunk) = ready.get(chunk) {
                     let verdict = result(chunk.items, 9, 0);
                     let epoch = row.steward_epoch;
@@ -369,8 +372,10 @@ impl Pair<'_> {
         for row in both!(self, jobs(10)).unwrap_or_default() {
             both!(self, job(row.job));
             both!(self, contributions(row.job));
-            let ready = both!(self, suspects(row.job, 0)).unwrap_or_default();
-            both!(self, suspects(row.job, 2));
+            let ready = both!(self, suspects(row.job, 0, EVER)).unwrap_or_default();
+            both!(self, suspects(row.job, 2, self.clock.now()));
+            let before = LedgerTime(self.clock.now().0 - 500);
+            both!(self, suspects(row.job, 1, before));
             for stage in both!(self, stages(row.job)).unwrap_or_default() {
                 assert_eq!(stage.accounted(), stage.items, "{stage:?}");
                 let finished =

@@ -49,6 +49,7 @@ pub async fn lease(
     request: LeaseRequest,
 ) -> Result<Vec<Lease>, LedgerError> {
     let until = now.after_ms(request.duration_ms);
+    acquit(c, request.request.session()).await?;
     let held = query(
         "SELECT c.job, c.stage, c.first, c.last, c.epoch, c.alone, c.request, j.problem,
                 s.definition
@@ -95,13 +96,29 @@ pub async fn lease(
     Ok(leases)
 }
 
-/// Whose turn it is: the tenant's, then the job's least virtual time, then the first chunk; and
-/// how many threads all other workers have.
+/// Takes the suspicions back that rest on the silence of a session that speaks.
+async fn acquit(c: &mut Connection, session: &str) -> Result<(), LedgerError> {
+    query(
+        "UPDATE chunks SET suspicions = suspicions - 1, request = NULL, lease_until = NULL
+         WHERE state = 'ready' AND suspicions > 0
+           AND substr(request, 1, CAST(? AS INTEGER)) = ?",
+    )
+    .bind(i64::try_from(session.len()).unwrap_or(i64::MAX))
+    .bind(session)
+    .execute(c)
+    .await?;
+    Ok(())
+}
+
+/// Whose turn it is: the tenant's, then the job's least virtual time, then the first chunk; how
+/// many threads all other workers have; how many jobs are running.
 const CHOOSE: &str = "
     SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
            c.epoch AS chunk_epoch, c.alone AS chunk_alone,
            (SELECT CAST(COALESCE(SUM(threads), 0) AS BIGINT) FROM workers
-            WHERE last_seen > ? AND draining = 0 AND worker <> ?) AS other_threads
+            WHERE last_seen > ? AND draining = 0 AND worker <> ?) AS other_threads,
+           (SELECT COUNT(*) FROM jobs r
+            WHERE r.ended IS NULL AND r.state = 'running') AS running_jobs
     FROM jobs j
     JOIN tenants t ON t.tenant = j.tenant
     JOIN stages s ON s.job = j.job
@@ -166,6 +183,7 @@ async fn lease_one(
         done_micros: stage.cpu_micros,
         threads: u64::from(request.threads),
         all_threads: number(&row, "other_threads")? + u64::from(request.threads),
+        jobs: number(&row, "running_jobs")?,
     });
     let items = ItemRange {
         first: chunk.first,
@@ -358,17 +376,21 @@ pub async fn complete(
     }
 }
 
-/// Takes a leased chunk from its worker, with so many new suspicions.
+/// Takes a leased chunk from its worker, with so many new suspicions. Where it fell silent the row
+/// keeps whose question it was and when the lease ended.
 async fn release(
     c: &mut Connection,
     chunk: ChunkId,
     found: &Found,
     suspicions: u32,
+    silent: bool,
 ) -> Result<(), LedgerError> {
     let job = chunk.job.to_string();
     let items = signed(found.items.len());
     query(
-        "UPDATE chunks SET state = 'ready', worker = NULL, lease_until = NULL, request = NULL,
+        "UPDATE chunks SET state = 'ready', worker = NULL,
+                lease_until = CASE WHEN ? = 1 THEN lease_until END,
+                request = CASE WHEN ? = 1 THEN request END,
                 charged = 0, suspicions = suspicions + ?
          WHERE job = ? AND stage = ? AND first = ?;
          UPDATE stages SET leased_items = leased_items - ?, leased_chunks = leased_chunks - 1,
@@ -379,6 +401,8 @@ async fn release(
          UPDATE tenants SET virtual_time = virtual_time - ?
          WHERE tenant = (SELECT tenant FROM jobs WHERE job = ?)",
     )
+    .bind(i64::from(silent))
+    .bind(i64::from(silent))
     .bind(suspicions)
     .bind(&job)
     .bind(chunk.stage.0)
@@ -405,7 +429,7 @@ pub async fn give_back(
     match find(c, lease.chunk).await? {
         Some(found) if found.state == "leased" && found.epoch == lease.epoch => {
             let suspicions = u32::from(matches!(why, GiveBack::Failed { .. }));
-            release(c, lease.chunk, &found, suspicions).await
+            release(c, lease.chunk, &found, suspicions, false).await
         }
         _ => Ok(()),
     }
@@ -432,7 +456,7 @@ pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>,
             suspicions: small(&row, "suspicions")? + 1,
         });
         if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, 1).await?;
+            release(c, chunk, &found, 1, true).await?;
         }
     }
     Ok(expired)
@@ -447,7 +471,7 @@ pub async fn release_all(c: &mut Connection, job: JobId) -> Result<(), LedgerErr
     for row in rows {
         let chunk = chunk_id(&row)?;
         if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, 0).await?;
+            release(c, chunk, &found, 0, false).await?;
         }
     }
     Ok(())

@@ -12,7 +12,7 @@ mod stewardship;
 mod writer;
 
 use self::decode::*;
-use self::engine::{Engine, Readers, query};
+use self::engine::{Engine, Query, Readers, Row, query};
 use self::writer::Writer;
 use super::clock::{Clock, LedgerTime};
 use super::identity::*;
@@ -74,12 +74,22 @@ impl SqlLedger {
         self.readers.close().await;
     }
 
-    async fn known(&self, job: JobId) -> Result<(), LedgerError> {
-        let found = query("SELECT 1 AS one FROM jobs WHERE job = ?")
-            .bind(job.to_string())
-            .read_optional(&self.readers)
-            .await?;
-        found.map(|_| ()).ok_or(LedgerError::UnknownJob(job))
+    /// The rows that belong to a job; where there are none, the job must be known.
+    async fn rows_of<T>(
+        &self,
+        job: JobId,
+        rows: Query,
+        decode: impl Fn(&Row) -> Result<T, LedgerError>,
+    ) -> Result<Vec<T>, LedgerError> {
+        let rows = rows.read_all(&self.readers).await?;
+        if rows.is_empty() {
+            let found = query("SELECT 1 AS one FROM jobs WHERE job = ?")
+                .bind(job.to_string())
+                .read_optional(&self.readers)
+                .await?;
+            found.ok_or(LedgerError::UnknownJob(job))?;
+        }
+        rows.iter().map(decode).collect()
     }
 }
 
@@ -119,12 +129,8 @@ impl Ledger for SqlLedger {
     }
 
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
-        self.known(job).await?;
-        let rows = query("SELECT * FROM stages WHERE job = ? ORDER BY stage")
-            .bind(job.to_string())
-            .read_all(&self.readers)
-            .await?;
-        rows.iter().map(stage_row).collect()
+        let rows = query("SELECT * FROM stages WHERE job = ? ORDER BY stage").bind(job.to_string());
+        self.rows_of(job, rows, stage_row).await
     }
 
     async fn steward(
@@ -188,7 +194,6 @@ impl Ledger for SqlLedger {
         from: u64,
         limit: u32,
     ) -> Result<Vec<ChunkRow>, LedgerError> {
-        self.known(job).await?;
         let rows = query(
             "SELECT * FROM chunks WHERE job = ? AND stage = ? AND first >= ?
              AND state IN ('accepted', 'failed') ORDER BY first LIMIT ?",
@@ -196,27 +201,27 @@ impl Ledger for SqlLedger {
         .bind(job.to_string())
         .bind(stage.0)
         .bind(i64::try_from(from).unwrap_or(i64::MAX))
-        .bind(limit)
-        .read_all(&self.readers)
-        .await?;
-        rows.iter().map(chunk_row).collect()
+        .bind(limit);
+        self.rows_of(job, rows, chunk_row).await
     }
 
-    async fn suspects(&self, job: JobId, suspicions: u32) -> Result<Vec<ChunkRow>, LedgerError> {
-        self.known(job).await?;
+    async fn suspects(
+        &self,
+        job: JobId,
+        suspicions: u32,
+        until: LedgerTime,
+    ) -> Result<Vec<ChunkRow>, LedgerError> {
         let rows = query(
             "SELECT * FROM chunks WHERE job = ? AND state = 'ready' AND suspicions >= ?
-             ORDER BY stage, first",
+             AND (lease_until IS NULL OR lease_until <= ?) ORDER BY stage, first",
         )
         .bind(job.to_string())
         .bind(suspicions)
-        .read_all(&self.readers)
-        .await?;
-        rows.iter().map(chunk_row).collect()
+        .bind(until.0);
+        self.rows_of(job, rows, chunk_row).await
     }
 
     async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError> {
-        self.known(job).await?;
         let rows = query(
             "SELECT c.worker, COALESCE(w.transport, '') AS transport,
                     CAST(SUM(c.last - c.first) AS BIGINT) AS items,
@@ -225,10 +230,8 @@ impl Ledger for SqlLedger {
              WHERE c.job = ? AND c.state = 'accepted'
              GROUP BY c.worker, w.transport ORDER BY c.worker",
         )
-        .bind(job.to_string())
-        .read_all(&self.readers)
-        .await?;
-        rows.iter().map(contribution).collect()
+        .bind(job.to_string());
+        self.rows_of(job, rows, contribution).await
     }
 
     async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError> {
@@ -265,8 +268,10 @@ impl Ledger for SqlLedger {
     }
 
     async fn expire(&self) -> Result<Vec<Expired>, LedgerError> {
+        // Renewals that came before this moment are written before this is.
+        let now = self.now().await?;
         self.writer
-            .write(|c, now| Box::pin(leases::expire(c, now)))
+            .write(move |c, _| Box::pin(leases::expire(c, now)))
             .await
     }
 

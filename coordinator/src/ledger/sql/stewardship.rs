@@ -6,7 +6,7 @@ use super::leases::{insert_ready, release_all};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
-use crate::ledger::memory::{check_size, make_up};
+use crate::ledger::memory::{NEW_JOB_MICROS, check_size, make_up};
 use crate::ledger::rows::*;
 use cognate_continuation::work::StageId;
 use std::collections::BTreeSet;
@@ -90,7 +90,7 @@ pub async fn submit(
     .bind(to_hex(&asked.options))
     .bind(asked.numerics_revision)
     .bind(now.0)
-    .bind(same_tenant.unwrap_or(0))
+    .bind(same_tenant.map_or(0, |least| least + NEW_JOB_MICROS))
     .execute(&mut *c)
     .await?;
     Ok(Submitted {
