@@ -135,7 +135,7 @@ pub struct DeclaredSets {
 
 /// So many endpoints of each declared set are asked whether they are isolated: what they are, the
 /// others are.
-pub const ASKED: usize = 3;
+pub const ASKED: usize = 5;
 
 impl DeclaredSets {
     /// Those of a checked system.

@@ -160,7 +160,7 @@ impl<'a> Draft<'a> {
         let representatives = self.merge(history);
         self.decide_reality(&representatives);
         self.count_solutions(history, &representatives);
-        self.find_classes();
+        self.find_classes(&representatives);
         self.warn();
         self.set
     }
@@ -179,8 +179,8 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Of the singular endpoints in a declared set a few were asked whether they are isolated; if
-    /// none of them is, the set is there, and so are the others on it.
+    /// Of the singular endpoints in a declared set a few were asked whether they are isolated; if one
+    /// shows the set and none is isolated, all are on it.
     fn settle_declared_sets(&mut self) {
         let sets = DeclaredSets::of(self.system);
         let members = sets.members(
@@ -194,11 +194,15 @@ impl<'a> Draft<'a> {
             let (asked, others): (Vec<usize>, Vec<usize>) = members
                 .iter()
                 .partition(|&&place| self.results[place].local_dimension.is_some());
-            let on_set = |&place: &usize| {
-                isolation(&self.results[place], self.tolerances) == Isolation::PositiveDimensional
+            let answers = |wanted: fn(&Isolation) -> bool| {
+                asked
+                    .iter()
+                    .any(|&place| wanted(&isolation(&self.results[place], self.tolerances)))
             };
-            if !asked.is_empty() && asked.iter().all(on_set) {
-                for place in others {
+            let on_set = answers(|found| *found == Isolation::PositiveDimensional);
+            let alone = answers(|found| matches!(found, Isolation::Isolated { .. }));
+            if on_set && !alone {
+                for place in asked.into_iter().chain(others) {
                     self.decisions[place].verdict = Verdict::PositiveDimensional;
                 }
             }
@@ -450,10 +454,19 @@ impl<'a> Draft<'a> {
         );
     }
 
-    fn find_classes(&mut self) {
+    /// Classes are of solutions: not of singular endpoints that may lie on a set of them.
+    fn find_classes(&mut self, representatives: &[usize]) {
         let set = &mut self.set;
-        let solutions = &mut set.solutions;
-        match classes::assign(solutions, self.system, self.tolerances, self.seed) {
+        let isolated = |place: &usize| {
+            let found = isolation(&self.results[*place], self.tolerances);
+            matches!(found, Isolation::Isolated { .. })
+        };
+        let both = set.solutions.iter_mut().zip(representatives);
+        let mut known: Vec<&mut Solution> = both
+            .filter(|(solution, place)| !solution.singular || isolated(place))
+            .map(|(solution, _)| solution)
+            .collect();
+        match classes::assign(&mut known, self.system, self.tolerances, self.seed) {
             Ok(counts) => set.classes = counts,
             Err(reason) => set.warnings.push(reason),
         }

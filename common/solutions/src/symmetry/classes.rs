@@ -8,10 +8,10 @@ use crate::summary::ClassCounts;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
-/// Gives every solution its class, and counts them; a reason in words where that cannot be done.
+/// Gives each of these solutions its class, and counts them; a reason in words where that cannot be done.
 /// A system without generators has no classes.
 pub fn assign(
-    solutions: &mut [Solution],
+    solutions: &mut [&mut Solution],
     system: &System,
     tolerances: &Tolerances,
     seed: u64,

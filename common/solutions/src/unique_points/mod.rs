@@ -24,38 +24,51 @@ pub struct Neighbourhood<'a> {
 /// members are ascending, and so are the clusters by their first members.
 pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> Vec<Vec<usize>> {
     let projection = Projection::new(shape, seed);
-    let reach: Vec<(f64, f64)> = points
+    // Sorted as they are, not by way of their places: a million of them do not fit in a cache.
+    let mut sorted: Vec<Reach> = points
         .iter()
-        .map(|p| {
+        .enumerate()
+        .map(|(place, p)| {
             let value = projection.value(shape, p.point);
             let margin = projection.slope() * p.radius + projection.rounding();
-            (value - margin, value + margin)
+            Reach {
+                from: value - margin,
+                to: value + margin,
+                place,
+            }
         })
         .collect();
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by(|&a, &b| reach[a].0.total_cmp(&reach[b].0).then(a.cmp(&b)));
+    sorted.sort_unstable_by(|a, b| a.from.total_cmp(&b.from).then(a.place.cmp(&b.place)));
 
     let mut sets = DisjointSets::new(points.len());
     // One point of each cluster whose interval may still meet the next ones'.
-    let mut open: Vec<usize> = Vec::new();
-    for &new in &order {
-        open.retain(|&old| reach[old].1 >= reach[new].0);
+    let mut open: Vec<Reach> = Vec::new();
+    for new in sorted {
+        open.retain(|old| old.to >= new.from);
         let mut met = None;
-        for (place, &old) in open.iter().enumerate() {
-            let near = points[old].radius + points[new].radius;
-            if shape.distance(points[old].point, points[new].point) <= near {
-                sets.join(old, new);
-                met.get_or_insert(place);
+        for (at, old) in open.iter().enumerate() {
+            let (one, two) = (&points[old.place], &points[new.place]);
+            if shape.distance(one.point, two.point) <= one.radius + two.radius {
+                sets.join(old.place, new.place);
+                met.get_or_insert(at);
             }
         }
         match met {
             // The one that reaches further goes on to stand for the cluster.
-            Some(place) if reach[open[place]].1 < reach[new].1 => open[place] = new,
+            Some(at) if open[at].to < new.to => open[at] = new,
             Some(_) => {}
             None => open.push(new),
         }
     }
     sets.clusters()
+}
+
+/// Where the number of a point may lie.
+#[derive(Clone, Copy)]
+struct Reach {
+    from: f64,
+    to: f64,
+    place: usize,
 }
 
 /// Sets that only ever grow together.
