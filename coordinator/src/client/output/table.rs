@@ -95,7 +95,7 @@ pub fn summary(
     let mut lines = Lines {
         text: String::new(),
         look,
-        number: count(paths.total).len().max(6),
+        number: (count(paths.total).len() + 1).max(6),
     };
     lines.text.push_str(&headline(summary, look));
     lines.blank();
