@@ -176,9 +176,8 @@ fn main() -> ExitCode {
         Some(Some(database)) => Some(database),
         None => None,
     };
-    let problem = problem(&wanted);
     let began = Instant::now();
-    let quiet = quiet_answer(&problem);
+    let quiet = quiet_answer(&problem(&wanted));
     println!(
         "without faults: {} paths, {:.0} s",
         quiet.counts.paths_total,
@@ -195,7 +194,8 @@ fn main() -> ExitCode {
     let begin = Instant::now();
     let (least, greatest) = wanted.pause_ms;
     while begin.elapsed() < Duration::from_secs(wanted.seconds) {
-        let job = cluster.client().submit(&problem);
+        // Another request each time, or it would be the same job.
+        let job = cluster.client().submit(&problem(&wanted));
         loop {
             let pause = Duration::from_millis(least + dice.below(greatest - least));
             let next = Instant::now() + pause;
