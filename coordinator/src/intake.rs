@@ -156,6 +156,15 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
             "options.start_solutions: they go with start kind \"given\" or \"auto\" only"
                 .to_owned(),
         )),
+        (start, _)
+            if options.sets.is_some()
+                && !matches!(start, StartKind::LinearProduct | StartKind::Auto) =>
+        {
+            Err(ApiError::Problem(
+                "options.sets: they go with start kind \"linear-product\" or \"auto\" only"
+                    .to_owned(),
+            ))
+        }
         (StartKind::Monodromy, _) => Ok(()),
         _ if options.idle_loops.is_some() || options.expected_solutions.is_some() => {
             Err(ApiError::Problem(

@@ -3,11 +3,12 @@
 use crate::check::{Answer, SEEDS, check, solve};
 use cognate_algorithms::PlanOptions;
 use cognate_algorithms::plan::StartChoice::{
-    self, LinearProduct, Polyhedral, Regeneration, TotalDegree,
+    self, LinearProduct, Monodromy, Multihomogeneous, Polyhedral, Regeneration, TotalDegree,
 };
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_systems::named::{Named, caprasse, katsura, noon};
+use cognate_systems::named::{Named, caprasse, cyclic, eco, katsura, noon, reimer};
 use cognate_systems::system::System;
+use cognate_tests::families::of_coefficients;
 use cognate_tests::systems::{shared, six_revolute_axis_vectors, written};
 
 fn options(start: StartChoice, seed: u64) -> PlanOptions {
@@ -18,14 +19,36 @@ fn options(start: StartChoice, seed: u64) -> PlanOptions {
     }
 }
 
+/// Loops go through the systems with the same monomials, and from a general one to this.
 fn solved(system: &System, start: StartChoice, seed: u64) -> SolutionSet {
-    let (_, mut sets) = solve(system, &options(start, seed), &|_| None);
+    let (_, mut sets) = match start {
+        Monodromy => {
+            let (family, parameters) = of_coefficients(system);
+            let options = PlanOptions {
+                target_parameters: vec![parameters],
+                ..options(start, seed)
+            };
+            solve(&family, &options, &|_| None)
+        }
+        start => solve(system, &options(start, seed), &|_| None),
+    };
     sets.remove(0)
 }
 
 /// Every start finds this many nonsingular solutions, the same ones, and no path fails.
 fn check_same(name: &str, system: &System, nonsingular: u64, starts: &[StartChoice]) {
-    for seed in SEEDS.take(5) {
+    check_same_with(5, name, system, nonsingular, starts);
+}
+
+/// The same with so many seeds.
+fn check_same_with(
+    seeds: usize,
+    name: &str,
+    system: &System,
+    nonsingular: u64,
+    starts: &[StartChoice],
+) {
+    for seed in SEEDS.take(seeds) {
         let mut first: Option<Vec<Vec<num_complex::Complex64>>> = None;
         for &start in starts {
             let set = solved(system, start, seed);
@@ -65,7 +88,51 @@ fn check_named(named: &Named, name: &str, starts: &[StartChoice]) {
     check_same(name, &named.system, count, starts);
 }
 
-const ALL: &[StartChoice] = &[TotalDegree, LinearProduct, Polyhedral, Regeneration];
+const ALL: &[StartChoice] = &[
+    TotalDegree,
+    LinearProduct,
+    Polyhedral,
+    Regeneration,
+    Monodromy,
+];
+
+/// The larger ones, once each.
+#[test]
+fn larger_classical_systems_by_every_start() {
+    let once = |name: &str, named: &Named, starts: &[StartChoice]| {
+        let count = named.finite_solutions.unwrap_or(0);
+        check_same_with(1, name, &named.system, count, starts);
+    };
+    once("katsura-8", &katsura(8), ALL);
+    once("noon-5", &noon(5), ALL);
+    once("cyclic-6", &cyclic(6), ALL);
+    once("eco-8", &eco(8), ALL);
+    once("reimer-5", &reimer(5), ALL);
+    once("cyclic-7", &cyclic(7), &[Polyhedral, Monodromy]);
+}
+
+/// Regular solutions; the others are where they are looked for.
+#[test]
+fn caprasse_by_every_start() {
+    check_same_with(2, "caprasse", &caprasse().system, 24, ALL);
+}
+
+#[test]
+fn mechanisms_by_every_start() {
+    let by_groups = [&[Multihomogeneous], ALL].concat();
+    let arm = shared("six_revolute_manseur_doty_tm8");
+    check_same_with(1, "6R", &arm, 32, &by_groups);
+    let poses = shared("burmester_five_poses_real4");
+    check_same_with(2, "five poses", &poses, 4, &by_groups);
+    let platform = shared("stewart_gough_dietmaier");
+    check_same_with(
+        1,
+        "Stewart-Gough",
+        &platform,
+        40,
+        &[TotalDegree, Regeneration],
+    );
+}
 
 #[test]
 fn classical_systems_by_every_start() {

@@ -155,3 +155,48 @@ fn solve_brings_its_own_service() {
     let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
     assert_eq!(left.len(), 2, "nothing is left behind: {left:?}");
 }
+
+#[test]
+fn sets_of_a_linear_product_are_taken_as_they_are_given() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    for name in ["noon_5.bertini", "noon_5_sets.json"] {
+        std::fs::write(place(name), example(name)).unwrap();
+    }
+    let (file, sets) = (place("noon_5.bertini"), place("noon_5_sets.json"));
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(cognate());
+        command.args(arguments);
+        command.output().expect("cognate can be started")
+    };
+    let info = expect(
+        &run(&["info", &file, "--sets", &sets, "--format", "json"]),
+        0,
+    );
+    let info: Value = serde_json::from_str(&info).expect("one JSON object");
+    assert_eq!(info["linear_product"], 233, "{info:#}");
+    assert_eq!(info["choice"], "linear-product", "{info:#}");
+    let summary = expect(
+        &run(&["solve", &file, "--sets", &sets, "--format", "json"]),
+        0,
+    );
+    let summary: Value = serde_json::from_str(&summary).expect("one JSON object");
+    assert_eq!(summary["problem"]["start"], "linear-product");
+    assert_eq!(summary["paths"]["total"], 233, "{summary:#}");
+    assert_eq!(summary["solutions"]["nonsingular"], 233, "{summary:#}");
+
+    // x1*x2^2 is not in {x1} {x1, x3, x4, x5} {x2, x3, x4, x5}.
+    let wrong = example("noon_5_sets.json").replacen("\"x2\", \"x3\"", "\"x1\", \"x3\"", 1);
+    let other = place("wrong.json");
+    std::fs::write(&other, wrong).unwrap();
+    for command in ["info", "solve"] {
+        let output = run(&[command, &file, "--sets", &other]);
+        expect(&output, 2);
+        let message = text(&output.stderr);
+        assert!(message.contains("the equation f1"), "{message}");
+        assert!(message.contains("monomial x1*x2^2"), "{message}");
+    }
+    let output = run(&["solve", &file, "--start", "polyhedral", "--sets", &sets]);
+    expect(&output, 2);
+    assert!(text(&output.stderr).contains("--sets"));
+}

@@ -6,6 +6,7 @@ pub mod builders;
 pub mod client;
 pub mod cluster;
 pub mod database;
+pub mod families;
 pub mod processes;
 pub mod subjects;
 pub mod systems;

@@ -143,6 +143,14 @@ impl Process {
         self.signal("TERM");
     }
 
+    /// KiB of memory that it holds now, where the system says so.
+    pub fn memory_kib(&self) -> Option<u64> {
+        let path = format!("/proc/{}/status", self.child.id());
+        let status = std::fs::read_to_string(path).ok()?;
+        let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
+        line.split_whitespace().nth(1)?.parse().ok()
+    }
+
     /// Whether it still runs.
     pub fn is_alive(&mut self) -> bool {
         if self.ended.is_none() {

@@ -19,6 +19,7 @@ pub mod progress;
 pub mod regeneration_solve;
 pub mod retried_stage;
 pub mod run_locally;
+mod set_structures;
 pub mod start_costs;
 pub mod start_pair;
 pub mod zero_dimensional_solve;

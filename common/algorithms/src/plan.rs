@@ -8,13 +8,15 @@ use crate::plan_error::PlanError;
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::{Levels, RegenerationSolve};
 use crate::retried_stage::MAX_RETRIES;
+use crate::set_structures::set_names;
 use crate::start_costs::{
-    HALVED, StartKind, Starts, check_equations, checked_degrees, mixed_volume, set_names,
+    HALVED, SETS_ARE_GIVEN, StartKind, Starts, check_equations, checked_degrees, mixed_volume,
 };
 use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::generic::SOLVING_OPERATIONS;
 use cognate_continuation::start_systems::slices;
 use cognate_continuation::tracker::settings::Settings;
@@ -88,6 +90,9 @@ pub struct PlanOptions {
     pub loops: LoopLimits,
     /// Whether the solutions are certified.
     pub certify: bool,
+    /// Sets of variables for a linear-product start, for each equation as many as its degree;
+    /// without them they are guessed. With them [`StartChoice::Auto`] is that start.
+    pub sets: Option<SetStructure>,
 }
 
 impl Default for PlanOptions {
@@ -103,6 +108,7 @@ impl Default for PlanOptions {
             max_retries: MAX_RETRIES,
             loops: LoopLimits::default(),
             certify: false,
+            sets: None,
         }
     }
 }
@@ -136,6 +142,9 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         ));
     }
     let given = options.start == StartChoice::Given || options.start_points.is_some();
+    if options.sets.is_some() && (given || options.start == StartChoice::Monodromy) {
+        return Err(PlanError::SetsWithoutLinearProduct);
+    }
     let mut plan = match (given, options.start) {
         (_, StartChoice::Monodromy) => plan_monodromy(system, options),
         (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),
@@ -210,6 +219,11 @@ fn plan_start_system(
         return Err(PlanError::StartParametersAlone);
     }
     let parameters = one_target(system, options)?;
+    let choice = match (choice, &options.sets) {
+        (StartChoice::Auto, Some(_)) => StartChoice::LinearProduct,
+        (StartChoice::LinearProduct, _) | (_, None) => choice,
+        (_, Some(_)) => return Err(PlanError::SetsWithoutLinearProduct),
+    };
     if choice == StartChoice::Polyhedral {
         return plan_polyhedral(system, parameters, "asked for".to_string(), options);
     }
@@ -221,7 +235,10 @@ fn plan_start_system(
         starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
     }
     if matches!(choice, StartChoice::Auto | StartChoice::LinearProduct) {
-        starts = starts.with_linear_product(system);
+        starts = match &options.sets {
+            Some(sets) => starts.with_sets(system, sets),
+            None => starts.with_linear_product(system),
+        };
     }
     let (kind, why) = match choice {
         StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
@@ -238,7 +255,11 @@ fn plan_start_system(
             let sets = sets.map_or(String::new(), |(tracked, start, _)| {
                 set_names(tracked, start)
             });
-            (StartKind::LinearProduct, format!("asked for; {sets}"))
+            let asked = match options.sets {
+                Some(_) => SETS_ARE_GIVEN,
+                None => "asked for",
+            };
+            (StartKind::LinearProduct, format!("{asked}; {sets}"))
         }
         _ => starts.choose()?,
     };
@@ -702,6 +723,36 @@ mod tests {
         assert_eq!(
             refusal(&many, &with_start(StartChoice::Multihomogeneous)),
             PlanError::TooManyGroups { groups: 70 }
+        );
+    }
+
+    #[test]
+    fn given_sets_are_followed_or_refused() {
+        // {x} {x, y} | {x, y}^2: 4 paths, where the groups that are found have 2.
+        let system = bilinear();
+        let sets = vec![vec![vec![0], vec![0, 1]], vec![vec![0, 1], vec![0, 1]]];
+        let mut options = PlanOptions {
+            sets: Some(sets),
+            ..PlanOptions::default()
+        };
+        let chosen = plan(&system, &options).unwrap();
+        assert_eq!((chosen.start, chosen.paths), (StartKind::LinearProduct, 4));
+        assert!(chosen.why.starts_with("the sets are given"));
+        options.start = StartChoice::Polyhedral;
+        assert_eq!(
+            refusal(&system, &options),
+            PlanError::SetsWithoutLinearProduct
+        );
+        options.start = StartChoice::LinearProduct;
+        options.sets = Some(vec![vec![vec![0], vec![0]], vec![vec![0, 1], vec![1]]]);
+        let error = refusal(&system, &options).to_string();
+        assert!(error.contains("monomial x*y"), "{error}");
+        let sets = options.sets.as_ref();
+        assert_eq!(
+            StartCosts::with_sets(&system, sets)
+                .unwrap_err()
+                .to_string(),
+            error
         );
     }
 

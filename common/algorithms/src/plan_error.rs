@@ -138,6 +138,9 @@ pub enum PlanError {
     /// No linear-product start.
     #[error("there is no linear-product start: {0}")]
     NoLinearProduct(String),
+    /// Sets are for one start only.
+    #[error("sets of variables go with the start `linear-product` or `auto` only")]
+    SetsWithoutLinearProduct,
     /// A product of projective spaces has no total degree.
     #[error("a total-degree start needs one homogeneous group or only affine ones")]
     TotalDegreeNeedsOneGroup,

@@ -1,10 +1,11 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
 use crate::plan_error::PlanError;
+use crate::set_structures::{given, guessed, set_names};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::start_systems::grouping::best_grouping;
-use cognate_continuation::start_systems::linear_product::guess;
+use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
@@ -86,14 +87,11 @@ pub struct StartCosts {
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
 
-/// Most steps of one count of the choices of a linear-product start: a fraction of a second.
-const CHOICE_STEPS: u64 = 5_000_000;
-
-/// Largest degree for which sets are guessed: the time grows with its cube.
-const MOST_FACTORS: u32 = 100;
-
 /// Why a start by groups has half as many paths as its number.
 pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
+
+/// Why a linear-product start is taken where sets are given.
+pub(crate) const SETS_ARE_GIVEN: &str = "the sets are given";
 
 /// Most operations that `cognate info` spends on a mixed volume: a few seconds.
 const COUNTING_OPERATIONS: u64 = 2_000_000_000;
@@ -193,7 +191,14 @@ impl Starts {
             Ok((grouped, _, _)) => grouped.groups.as_slice(),
             Err(_) => &[],
         };
-        self.linear_product = Some(linear_product(system, groups));
+        self.linear_product = Some(guessed(system, groups));
+        self
+    }
+
+    /// The same with a linear-product start by these sets.
+    #[must_use]
+    pub fn with_sets(mut self, system: &System, sets: &SetStructure) -> Self {
+        self.linear_product = Some(given(system, sets));
         self
     }
 
@@ -315,6 +320,12 @@ impl Starts {
 impl StartCosts {
     /// The costs of every start; an error only where the equations are no polynomials.
     pub fn of(system: &System) -> Result<Self, PlanError> {
+        Self::with_sets(system, None)
+    }
+
+    /// The same with the linear-product start by given sets, which then is the choice, as it is
+    /// for a solve. An error also where the sets do not serve.
+    pub fn with_sets(system: &System, sets: Option<&SetStructure>) -> Result<Self, PlanError> {
         let degrees = checked_degrees(system)?;
         let mut notes = BTreeMap::new();
         let counted = mixed_volume(system, COUNTING_OPERATIONS);
@@ -325,11 +336,17 @@ impl StartCosts {
         // Degrees of combinations are the same for almost every seed.
         let starts = Starts::of(system, 0).map(|starts| Starts {
             mixed_volume: Some(counted),
-            ..starts.with_linear_product(system)
+            ..match sets {
+                Some(sets) => starts.with_sets(system, sets),
+                None => starts.with_linear_product(system),
+            }
         });
         let product = starts.as_ref().ok().and_then(|s| s.linear_product.as_ref());
         let (linear_product, note) = match product {
             Some(Ok((tracked, start, number))) => (Some(*number), set_names(tracked, start)),
+            Some(Err(why)) if sets.is_some() => {
+                return Err(PlanError::NoLinearProduct(why.clone()));
+            }
             Some(Err(why)) => (None, why.clone()),
             None => (None, "the system cannot be solved".to_string()),
         };
@@ -374,7 +391,11 @@ impl StartCosts {
             };
             notes.insert("groups".into(), how.into());
         }
-        let (choice, why) = match starts.and_then(|starts| starts.choose()) {
+        let chosen = match (sets, &linear_product) {
+            (Some(_), Some(_)) => Ok((StartKind::LinearProduct, SETS_ARE_GIVEN.to_string())),
+            _ => starts.and_then(|starts| starts.choose()),
+        };
+        let (choice, why) = match chosen {
             Ok((choice, why)) => (Some(choice), why),
             Err(error) => (None, error.to_string()),
         };
@@ -422,83 +443,6 @@ fn polyhedral_is_cheaper(volume: u64, count: u64) -> bool {
 /// `count` paths.
 fn linear_product_is_cheaper(number: u64, count: u64) -> bool {
     count > 16 && number > 0 && number.saturating_add(number / 8) < count
-}
-
-/// Sets of variables that are guessed from the monomials; `groups` are tried too.
-fn linear_product(
-    system: &System,
-    groups: &[VariableGroup],
-) -> Result<(System, StartPoints, u64), String> {
-    if system.groups.iter().any(|group| group.homogeneous) {
-        return Err("not counted for homogeneous groups".into());
-    }
-    if system.equation_count() > system.dimension() {
-        return Err("not counted for combinations of equations".into());
-    }
-    let supports = supports(system).ok_or("multiplying the equations out takes too long")?;
-    let mut monomials = supports.iter().flatten();
-    if monomials.any(|m| m.iter().sum::<u32>() > MOST_FACTORS) {
-        return Err(format!("not tried for degrees above {MOST_FACTORS}"));
-    }
-    let groups: Vec<Vec<usize>> = groups.iter().map(|g| g.variables.clone()).collect();
-    let variables = system.variables.len();
-    let (sets, count) = guess(&supports, variables, &groups, CHOICE_STEPS)
-        .ok_or("counting the choices of factors takes too long")?;
-    let mut tracked = system.clone();
-    tracked.groups = vec![VariableGroup {
-        variables: (0..variables).collect(),
-        homogeneous: false,
-    }];
-    Ok((tracked, StartPoints::LinearProduct { sets, count }, count))
-}
-
-/// The sets of a linear-product start in words, equations of the same sets together:
-/// `{x} {y, z}^2 | ...`; without end where they are many.
-pub(crate) fn set_names(system: &System, start: &StartPoints) -> String {
-    const MOST: usize = 3;
-    let StartPoints::LinearProduct { sets, .. } = start else {
-        return String::new();
-    };
-    let all = system.variables.len();
-    let one = |set: &[u32]| match set.len() {
-        0 => "{}".to_string(),
-        n if n == all && n > 2 => "{all}".to_string(),
-        _ => {
-            let names: Vec<&str> = set
-                .iter()
-                .map(|&v| system.variables[v as usize].as_str())
-                .collect();
-            format!("{{{}}}", names.join(", "))
-        }
-    };
-    let equations: Vec<String> = sets
-        .iter()
-        .map(|factors| {
-            let runs = factors.chunk_by(|a, b| a == b);
-            let runs: Vec<String> = runs
-                .map(|run| match run.len() {
-                    1 => one(&run[0]),
-                    n => format!("{}^{n}", one(&run[0])),
-                })
-                .collect();
-            runs.join(" ")
-        })
-        .collect();
-    let runs: Vec<String> = equations
-        .chunk_by(|a, b| a == b)
-        .map(|run| match run.len() {
-            1 => run[0].clone(),
-            n => format!("{n} times {}", run[0]),
-        })
-        .collect();
-    let more = match runs.len().saturating_sub(MOST) {
-        0 => String::new(),
-        n => format!(" | and {n} more"),
-    };
-    format!(
-        "the sets {}{more}",
-        runs[..runs.len().min(MOST)].join(" | ")
-    )
 }
 
 /// Names of the variables, group by group.

@@ -110,7 +110,7 @@ pub enum Start {
     Multihomogeneous,
     /// From known solutions: --start-solutions
     Given,
-    /// Fewer paths, by products of linear forms in sets of variables that are found
+    /// Fewer paths, by products of linear forms in sets of variables that are found, or --sets
     LinearProduct,
     /// As many paths as the mixed volume of the equations' monomials
     Polyhedral,
@@ -158,7 +158,7 @@ pub struct ProblemArguments {
         value_enum,
         default_value_t,
         hide_possible_values = true,
-        value_name = "auto|total-degree|multihomogeneous|given|monodromy"
+        value_name = "auto|total-degree|multihomogeneous|linear-product|polyhedral|regeneration|monodromy|given"
     )]
     pub start: Start,
     /// Known solutions to start from: our solutions.jsonl, Bertini's start format or PHCpack's list
@@ -173,6 +173,11 @@ pub struct ProblemArguments {
     /// Variable groups instead of those in the file: "x,y;z,w"
     #[arg(long, value_name = "GROUPS")]
     pub groups: Option<String>,
+    /// Sets of variables for --start linear-product (JSON): a list for each equation, with as
+    /// many sets as its degree, whose product of linear forms has all of its monomials, as in
+    /// [[["x"], ["x", "y"]], [["x", "y"]]]
+    #[arg(long, value_name = "FILE")]
+    pub sets: Option<PathBuf>,
     /// Pairs of variables that are conjugates at a real solution: "p~P,t1~T1"
     #[arg(long, value_name = "PAIRS")]
     pub conjugates: Option<String>,
@@ -442,6 +447,9 @@ pub struct Info {
     /// Variable groups instead of those in the file: "x,y;z,w"
     #[arg(long, value_name = "GROUPS")]
     pub groups: Option<String>,
+    /// Sets of variables for the linear-product start instead of those that are found (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub sets: Option<PathBuf>,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -64,6 +64,19 @@ pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem
     Ok(problem)
 }
 
+/// The sets of a linear-product start: variables by index, for each factor of each equation.
+pub fn read_sets(
+    path: Option<&Path>,
+    system: &System,
+) -> Result<Option<Vec<Vec<Vec<u32>>>>, ClientError> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    let (name, content) = read_file(path)?;
+    let sets = formats::sets::read(&name, &content, system);
+    sets.map(Some).map_err(|e| described(&e))
+}
+
 /// Everything that the arguments say, checked.
 pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
     let formats::Problem {
@@ -91,6 +104,14 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         if given && a.start != Start::Monodromy {
             return Err(wrong(option, "only goes with --start monodromy"));
         }
+    }
+    let sets = read_sets(a.sets.as_deref(), &system)?;
+    let serves = match a.start {
+        Start::Auto => a.start_solutions.is_none(),
+        start => start == Start::LinearProduct,
+    };
+    if sets.is_some() && !serves {
+        return Err(wrong("--sets", "only go with --start linear-product"));
     }
     warnings.extend(intake::precision_warning(&file));
     let start_solutions = match &a.start_solutions {
@@ -156,6 +177,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         idle_loops: a.idle_loops,
         expected_solutions: a.expect,
         certify: a.certify,
+        sets,
     };
     Ok(Prepared {
         submission: Submission {

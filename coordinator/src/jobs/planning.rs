@@ -129,6 +129,7 @@ pub fn plan_options(
             PrecisionChoice::Adaptive | PrecisionChoice::Bits(_) => MAX_RETRIES,
         },
         certify: options.certify,
+        sets: options.sets.clone(),
         ..PlanOptions::default()
     })
 }

@@ -1,6 +1,6 @@
 //! Stage and PathResult messages to the types of `continuation`.
 
-use super::problem::{complexes, settings};
+use super::problem::{complexes, equation_sets, settings};
 use super::{digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
@@ -165,20 +165,8 @@ fn start_points(m: &v1::StartPoints) -> Result<StartPoints, ProtocolError> {
         },
         Kind::LinearProduct(p) => {
             let field = "linear_product.equations";
-            within_limit(field, p.equations.len(), sizes::EQUATIONS)?;
-            for (i, equation) in p.equations.iter().enumerate() {
-                let field = format!("{field}[{i}].sets");
-                within_limit(&field, equation.sets.len(), limits::FACTORS)?;
-                for set in &equation.sets {
-                    within_limit(&field, set.variables.len(), sizes::VARIABLES)?;
-                }
-            }
-            let sets = |equation: &v1::EquationSets| {
-                let sets = equation.sets.iter();
-                sets.map(|set| set.variables.clone()).collect()
-            };
             StartPoints::LinearProduct {
-                sets: p.equations.iter().map(sets).collect(),
+                sets: equation_sets(field, &p.equations)?,
                 count: p.count,
             }
         }

@@ -129,7 +129,31 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
         idle_loops: m.idle_loops,
         expected_solutions: m.expected_solutions,
         certify: m.certify,
+        sets: match m.sets.is_empty() {
+            true => None,
+            false => Some(equation_sets("sets", &m.sets)?),
+        },
     })
+}
+
+/// The sets of each equation of a linear-product start; `field` names them.
+pub fn equation_sets(
+    field: &str,
+    equations: &[v1::EquationSets],
+) -> Result<Vec<Vec<Vec<u32>>>, ProtocolError> {
+    within_limit(field, equations.len(), sizes::EQUATIONS)?;
+    for (i, equation) in equations.iter().enumerate() {
+        let field = format!("{field}[{i}].sets");
+        within_limit(&field, equation.sets.len(), limits::FACTORS)?;
+        for set in &equation.sets {
+            within_limit(&field, set.variables.len(), sizes::VARIABLES)?;
+        }
+    }
+    let sets = |equation: &v1::EquationSets| {
+        let sets = equation.sets.iter();
+        sets.map(|set| set.variables.clone()).collect()
+    };
+    Ok(equations.iter().map(sets).collect())
 }
 
 /// A choice of settings, every number in its range.

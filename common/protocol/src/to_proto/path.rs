@@ -1,5 +1,6 @@
 //! Stage and PathResult to their messages.
 
+use super::problem::equation_sets;
 use super::{complex, complexes, digest, pairs};
 use crate::submission::SettingsChoice;
 use crate::v1;
@@ -113,17 +114,7 @@ fn start_points(points: &StartPoints) -> v1::StartPoints {
                 count: *count,
             }),
             StartPoints::LinearProduct { sets, count } => Kind::LinearProduct(v1::LinearProduct {
-                equations: sets
-                    .iter()
-                    .map(|factors| v1::EquationSets {
-                        sets: factors
-                            .iter()
-                            .map(|set| v1::VariableSet {
-                                variables: set.clone(),
-                            })
-                            .collect(),
-                    })
-                    .collect(),
+                equations: equation_sets(sets),
                 count: *count,
             }),
             StartPoints::MixedCells { count } => Kind::MixedCells(v1::MixedCells { count: *count }),

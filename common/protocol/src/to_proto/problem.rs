@@ -87,7 +87,23 @@ pub fn options(options: &Options) -> v1::Options {
         idle_loops: options.idle_loops,
         expected_solutions: options.expected_solutions,
         certify: options.certify,
+        sets: options
+            .sets
+            .as_ref()
+            .map_or(Vec::new(), |sets| equation_sets(sets)),
     }
+}
+
+/// The sets of each equation.
+pub fn equation_sets(sets: &[Vec<Vec<u32>>]) -> Vec<v1::EquationSets> {
+    let set = |variables: &Vec<u32>| v1::VariableSet {
+        variables: variables.clone(),
+    };
+    sets.iter()
+        .map(|factors| v1::EquationSets {
+            sets: factors.iter().map(set).collect(),
+        })
+        .collect()
 }
 
 /// A choice of settings.

@@ -242,6 +242,7 @@ impl Draw {
             idle_loops: Some(count as u32).filter(|&n| n > 1),
             expected_solutions: Some(length as u64).filter(|&n| n > 0),
             certify: length > 1,
+            sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
         }
     }
 

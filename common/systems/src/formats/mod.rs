@@ -14,6 +14,7 @@ pub mod options;
 pub mod phcpack;
 pub mod points;
 pub(crate) mod scope;
+pub mod sets;
 mod sharing;
 pub mod symmetry;
 

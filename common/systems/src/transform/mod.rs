@@ -2,6 +2,7 @@
 
 mod fix_parameters;
 mod homogenize;
+mod independent;
 mod randomize;
 
 pub use fix_parameters::{FixError, fix_parameters};

@@ -4,7 +4,9 @@
 //! every isolated solution of F is an isolated solution of almost every such
 //! combination, and conjugation stays a symmetry (Sommese, Wampler: The
 //! Numerical Solution of Systems of Polynomials, 2005, section 13.5).
+//! Equations of lower degree that `independent` finds stay as they are.
 
+use super::independent::independent;
 use crate::evaluation::{Evaluate, Interpreter};
 use crate::expression::{Expressions, NodeId};
 use crate::polynomial::Degrees;
@@ -15,6 +17,10 @@ use cognate_numeric::scalar::Complex;
 use std::cmp::Reverse;
 
 /// The system with `dimension()` equations instead of more; a square one comes back as it is.
+///
+/// Linear equations and smooth quadrics in variables of their own, such as circles, stay what they
+/// are where that keeps degrees low (see `independent`): twelve cubics and six circles in twelve
+/// unknowns have 2^6 * 3^6 paths from their total degree instead of 3^12.
 ///
 /// A pure function of its arguments. `degrees` are those of `system`. In a
 /// homogeneous group an equation of lower degree is multiplied by random real
@@ -34,7 +40,11 @@ pub fn randomize(system: &System, degrees: &Degrees, seed: u64) -> System {
     }
     let mut order: Vec<usize> = (0..equations).collect();
     order.sort_by_key(|&i| (Reverse(degrees.total[i]), i));
-    let (kept, rest) = order.split_at(unknowns);
+    // What would be raised to a higher degree by being combined.
+    let mut whole = independent(system, degrees, degrees.total[order[unknowns - 1]]);
+    whole.truncate(unknowns - 1);
+    order.retain(|i| !whole.contains(i));
+    let (kept, rest) = order.split_at(unknowns - whole.len());
     let mut result = System {
         equations: Vec::new(),
         equation_names: Vec::new(),
@@ -61,6 +71,13 @@ pub fn randomize(system: &System, degrees: &Degrees, seed: u64) -> System {
         let name = system.equation_names.get(i).cloned();
         let name = name.unwrap_or_else(|| format!("equation {}", i + 1));
         result.equation_names.push(format!("{name} and others"));
+    }
+    // The higher degrees come first.
+    for &i in whole.iter().rev() {
+        result.equations.push(system.equations[i]);
+        let name = system.equation_names.get(i).cloned();
+        let name = name.unwrap_or_else(|| format!("equation {}", i + 1));
+        result.equation_names.push(name);
     }
     result
 }
@@ -208,8 +225,8 @@ mod tests {
              f1 = x + y - 1; f2 = x^3 - y; f3 = x^2 - y^2 + 2*x - 1;",
         );
         let square = randomize(&system, &degrees(&system).unwrap(), 1);
-        assert_eq!(degrees(&square).unwrap().total, [3, 2]);
-        assert_eq!(square.equation_names, ["f2 and others", "f3 and others"]);
+        assert_eq!(degrees(&square).unwrap().total, [3, 1]);
+        assert_eq!(square.equation_names, ["f2 and others", "f1"]);
         let again = randomize(&square, &degrees(&square).unwrap(), 2);
         assert_eq!(again, square);
     }

@@ -16,10 +16,12 @@ pub fn run(a: &Info) -> Result<Exit, ClientError> {
         eprintln!("warning: {warning}");
     }
     let name = problem::short_name(&a.file);
-    let costs = StartCosts::of(&read.system).map_err(|e| ClientError::Input {
-        origin: name.clone(),
-        message: e.to_string(),
-    })?;
+    let sets = problem::read_sets(a.sets.as_deref(), &read.system)?;
+    let costs =
+        StartCosts::with_sets(&read.system, sets.as_ref()).map_err(|e| ClientError::Input {
+            origin: name.clone(),
+            message: e.to_string(),
+        })?;
     let text = match a.format {
         Format::Table => table(&name, &read, &costs, Look::of_standard_output()),
         Format::Json => {

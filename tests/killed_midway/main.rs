@@ -1,0 +1,182 @@
+//! Killed midway: a large polyhedral solve on two workers, of which one is killed (-9) on each leg, and
+//! the coordinator too. Every path must have its class, memory must stay flat; a report says what it was.
+//!
+//! `cargo run --release -p cognate-tests --bin killed_midway -- [--cyclic 10] [--seed 1]`
+
+use cognate_systems::formats::{self, FileSettings, Format};
+use cognate_systems::named::cyclic;
+use cognate_tests::client::{Submission, accepted, has_ended};
+use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// How long a lease lasts here.
+const LEASE: Duration = Duration::from_secs(5);
+/// Give up when nothing new is accepted for so long.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// What is asked for.
+struct Wanted {
+    size: usize,
+    seed: u64,
+}
+
+fn wanted() -> Result<Wanted, String> {
+    let mut wanted = Wanted { size: 10, seed: 1 };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let value = words.next().ok_or(format!("{word}: a number is missing"))?;
+        let number = |value: &str| value.parse().map_err(|e| format!("{word} {value}: {e}"));
+        match word.as_str() {
+            "--cyclic" => wanted.size = number(&value)? as usize,
+            "--seed" => wanted.seed = number(&value)?,
+            _ => return Err(format!("{word}: expected --cyclic N or --seed N")),
+        }
+    }
+    match wanted.size {
+        3..=11 => Ok(wanted),
+        size => Err(format!("--cyclic {size}: expected 3 to 11")),
+    }
+}
+
+/// The largest of numbers of KiB, in MiB, from here to there in the run.
+struct Memory {
+    seen: Vec<u64>,
+}
+
+impl Memory {
+    fn add(&mut self, kib: Option<u64>) {
+        self.seen.extend(kib);
+    }
+
+    /// MiB at the largest in each quarter of the run.
+    fn quarters(&self) -> String {
+        let size = self.seen.len().div_ceil(4).max(1);
+        let largest = self.seen.chunks(size).map(|quarter| {
+            let most = quarter.iter().max().copied().unwrap_or(0);
+            format!("{}", most / 1024)
+        });
+        largest.collect::<Vec<_>>().join(", ")
+    }
+}
+
+fn main() -> ExitCode {
+    let wanted = match wanted() {
+        Ok(wanted) => wanted,
+        Err(message) => {
+            eprintln!("error: {message}");
+            return ExitCode::from(2);
+        }
+    };
+    let named = cyclic(wanted.size);
+    let text = formats::write(Format::Bertini, &named.system, &FileSettings::default());
+    let mut submission = Submission::of(text.expect("systems of our own can be written"));
+    submission.options.seed = Some(wanted.seed);
+    submission.options.start = cognate_protocol::v1::StartKind::Polyhedral.into();
+    let mut cluster = Cluster::start(CoordinatorOptions {
+        lease: Some(LEASE),
+        ..CoordinatorOptions::default()
+    });
+    for _ in 0..2 {
+        cluster.add_worker(&WorkerOptions::default());
+    }
+    let begin = Instant::now();
+    let job = cluster.client().submit(&submission);
+    println!("submitted after {:.1} s", begin.elapsed().as_secs_f64());
+    let mut memory = [Memory { seen: vec![] }, Memory { seen: vec![] }];
+    let mut killed = [false; 3];
+    let mut last = (Instant::now(), 0);
+    loop {
+        std::thread::sleep(Duration::from_millis(200));
+        memory[0].add(cluster.coordinator.memory_kib());
+        let workers = cluster.workers.iter().filter_map(|w| w.memory_kib());
+        memory[1].add(workers.max());
+        let Ok(progress) = cluster.client().progress(&job) else {
+            continue;
+        };
+        if has_ended(&progress) {
+            break;
+        }
+        let done = accepted(&progress);
+        if done > last.1 {
+            last = (Instant::now(), done);
+        }
+        assert!(last.0.elapsed() < PATIENCE, "nothing new: {progress:?}");
+        let seconds = begin.elapsed().as_secs_f64();
+        // One worker on each leg, the coordinator on the second.
+        for (leg, part, fault) in [(0, 4, 0), (1, 4, 1), (1, 2, 2)] {
+            let Some(stage) = progress.stages.get(leg).filter(|_| !killed[fault]) else {
+                continue;
+            };
+            if stage.accepted * part < stage.total || stage.accepted == stage.total {
+                continue;
+            }
+            killed[fault] = true;
+            let of = format!(
+                "{} of {} paths of leg {}",
+                stage.accepted,
+                stage.total,
+                leg + 1
+            );
+            if fault == 2 {
+                println!("{seconds:.1} s: the coordinator killed (-9) after {of}");
+                cluster.kill_coordinator();
+                cluster.restart_coordinator();
+            } else {
+                println!("{seconds:.1} s: a worker killed (-9) after {of}");
+                cluster.workers.remove(0).kill();
+                cluster.add_worker(&WorkerOptions::default());
+            }
+        }
+    }
+    let took = begin.elapsed().as_secs_f64();
+    let client = cluster.client();
+    client.wait_until_solved(&job);
+    let counts = client.counts(&job);
+    let answer = client.answer(&job);
+    let classes = counts.paths_finite
+        + counts.paths_singular
+        + counts.paths_positive_dimensional.unwrap_or(0)
+        + counts.paths_excess.unwrap_or(0)
+        + counts.paths_at_infinity
+        + counts.paths_failed;
+    println!(
+        "\ncyclic-{}, seed {}, {took:.1} s",
+        wanted.size, wanted.seed
+    );
+    println!(
+        "  {} paths: {} finite, {} singular, {} on positive-dimensional sets, {} at infinity, {} failed",
+        counts.paths_total,
+        counts.paths_finite,
+        counts.paths_singular,
+        counts.paths_positive_dimensional.unwrap_or(0),
+        counts.paths_at_infinity,
+        counts.paths_failed
+    );
+    println!(
+        "  {} nonsingular solutions, {} singular; {} paths tracked again",
+        counts.solutions_nonsingular, counts.solutions_singular, counts.paths_retracked
+    );
+    println!(
+        "  largest memory in each quarter, MiB: coordinator {}; a worker {}",
+        memory[0].quarters(),
+        memory[1].quarters()
+    );
+    let named_all = classes == counts.paths_total
+        && answer.paths.len() as u64 == counts.paths_total
+        && answer.paths.iter().all(|path| path.class != 0);
+    cluster.stop();
+    let known = named.finite_solutions;
+    if let Some(known) = known {
+        println!("  published: {known} solutions");
+    }
+    let good = named_all
+        && counts.paths_failed == 0
+        && known.is_none_or(|known| known == counts.solutions_nonsingular)
+        && killed == [true; 3];
+    if !good {
+        println!("  NOT AS PROMISED: all named {named_all}, faults {killed:?}");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}
