@@ -5,6 +5,7 @@
 
 use cognate_systems::formats::{self, FileSettings, Format};
 use cognate_systems::named::cyclic;
+use cognate_tests::arguments;
 use cognate_tests::client::{Submission, accepted, has_ended};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use std::process::ExitCode;
@@ -17,20 +18,18 @@ const PATIENCE: Duration = Duration::from_secs(600);
 
 /// What is asked for.
 struct Wanted {
-    size: usize,
+    size: u64,
     seed: u64,
 }
 
 fn wanted() -> Result<Wanted, String> {
     let mut wanted = Wanted { size: 10, seed: 1 };
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let value = words.next().ok_or(format!("{word}: a number is missing"))?;
-        let number = |value: &str| value.parse().map_err(|e| format!("{word} {value}: {e}"));
-        match word.as_str() {
-            "--cyclic" => wanted.size = number(&value)? as usize,
-            "--seed" => wanted.seed = number(&value)?,
-            _ => return Err(format!("{word}: expected --cyclic N or --seed N")),
+    for (option, value) in arguments::options()? {
+        let number = arguments::number(&option, &value)?;
+        match option.as_str() {
+            "--cyclic" => wanted.size = number,
+            "--seed" => wanted.seed = number,
+            _ => return Err(format!("{option}: expected --cyclic N or --seed N")),
         }
     }
     match wanted.size {
@@ -68,7 +67,7 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let named = cyclic(wanted.size);
+    let named = cyclic(wanted.size as usize);
     let text = formats::write(Format::Bertini, &named.system, &FileSettings::default());
     let mut submission = Submission::of(text.expect("systems of our own can be written"));
     submission.options.seed = Some(wanted.seed);

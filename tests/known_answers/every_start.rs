@@ -120,8 +120,10 @@ fn caprasse_by_every_start() {
 #[test]
 fn mechanisms_by_every_start() {
     let by_groups = [&[Multihomogeneous], ALL].concat();
+    // The 256 paths from its total degree take minutes: not here.
     let arm = shared("six_revolute_manseur_doty_tm8");
-    check_same_with(1, "6R", &arm, 32, &by_groups);
+    let starts = [Multihomogeneous, Polyhedral, Regeneration, Monodromy];
+    check_same_with(1, "6R", &arm, 32, &starts);
     let poses = shared("burmester_five_poses_real4");
     check_same_with(2, "five poses", &poses, 4, &by_groups);
     let platform = shared("stewart_gough_dietmaier");

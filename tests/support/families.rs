@@ -264,8 +264,11 @@ pub fn six_revolute() -> Family {
     }
 }
 
-/// All systems with the same monomials: every coefficient is a parameter. With it the parameters
-/// of the system that is given, which has none itself.
+/// All systems with the same monomials and constants: every coefficient is a parameter. With it
+/// the parameters of the system that is given, which has none itself.
+///
+/// Without constants solutions with a coordinate 0 would be among themselves: katsura-8 has 16 with
+/// every second coordinate 0 that no loop connects to the 240 others.
 ///
 /// # Panics
 /// When an equation cannot be multiplied out.
@@ -275,7 +278,8 @@ pub fn of_coefficients(system: &System) -> (System, Vec<Complex64>) {
     for &equation in &system.equations {
         let n = system.variables.len();
         let polynomial = Polynomial::expand(&system.expressions, equation, n, 0);
-        let polynomial = polynomial.expect("it is small, and its coefficients are rational");
+        let mut polynomial = polynomial.expect("it is small, and its coefficients are rational");
+        polynomial.terms.entry(vec![0; n]).or_default();
         let mut sum = out.integer(0);
         for (exponents, coefficient) in &polynomial.terms {
             let mut term = out.parameter(values.len() as u32);
