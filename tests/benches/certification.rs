@@ -7,16 +7,10 @@
 use cognate_algorithms::run_locally::run_locally;
 use cognate_algorithms::{PlanOptions, plan};
 use cognate_continuation::certification::Krawczyk;
+use cognate_tests::measures::cpu_seconds;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// CPU seconds of this thread so far; `None` where the system does not tell.
-fn cpu_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(nanoseconds * 1e-9)
-}
 
 fn main() {
     println!(
@@ -43,10 +37,10 @@ fn main() {
             ..PlanOptions::default()
         };
         let mut planned = plan(&system, &options).expect("a plan");
-        let before = cpu_seconds();
+        let before = cpu_seconds().ok();
         let sets = run_locally(&planned.system, &mut planned.algorithm, &|_| None, 16)
             .expect("paths that can be tracked");
-        let tracking = cpu_seconds().zip(before).map(|(a, b)| a - b);
+        let tracking = cpu_seconds().ok().zip(before).map(|(a, b)| a - b);
         let points: Vec<Vec<Complex64>> = sets[0]
             .solutions
             .iter()
@@ -55,13 +49,13 @@ fn main() {
             .collect();
         let mut krawczyk = Krawczyk::new(&system, &[]);
         let mut bits: BTreeMap<u32, usize> = BTreeMap::new();
-        let before = cpu_seconds();
+        let before = cpu_seconds().ok();
         for point in &points {
             if let Some(certificate) = krawczyk.certify(point).certificate() {
                 *bits.entry(certificate.precision_bits).or_default() += 1;
             }
         }
-        let certifying = cpu_seconds().zip(before).map(|(a, b)| a - b);
+        let certifying = cpu_seconds().ok().zip(before).map(|(a, b)| a - b);
         let shown = |seconds: Option<f64>| match seconds {
             Some(seconds) => format!("{seconds:.4}"),
             None => "-".to_owned(),

@@ -12,6 +12,7 @@ use cognate_solutions::path_crossing::crossings;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::unique_points::{Neighbourhood, clusters};
 use cognate_systems::named::katsura;
+use cognate_tests::measures::memory_bytes;
 use num_complex::Complex64;
 use std::time::Instant;
 
@@ -23,18 +24,6 @@ const COORDINATES: usize = 4;
 const TWICE: usize = 10;
 /// Beyond this, whole results do not fit beside one another: only their points are compared.
 const WHOLE_RESULTS: usize = 1_000_000;
-
-/// Peak memory of this process, in MiB.
-fn peak() -> Result<u64, Failure> {
-    let status = std::fs::read_to_string("/proc/self/status")?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    let kilobytes: u64 = line
-        .ok_or("no VmHWM")?
-        .trim()
-        .trim_end_matches(" kB")
-        .parse()?;
-    Ok(kilobytes / 1024)
-}
 
 fn endpoints(count: usize) -> Vec<Complex64> {
     let mut random = RandomStream::new(count as u64, Purpose::Test, 0);
@@ -130,7 +119,7 @@ fn main() -> Result<(), Failure> {
             "{count:>10} {distinct:>10} {seconds:>9.3} {per:>16.1} {:>9} {:>11} {:>9}",
             crossed.0,
             crossed.1,
-            peak()?
+            memory_bytes("self", "VmHWM")? >> 20
         );
     }
     Ok(())

@@ -13,6 +13,7 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_tests::families::{Family, octahedral, six_revolute, stewart_gough};
+use cognate_tests::measures::cpu_seconds;
 use num_complex::Complex64;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -27,13 +28,6 @@ const GENERAL: u64 = 1000;
 const WIDTH: usize = 16;
 /// Two solutions are the same below this distance, relative to their largest coordinate.
 const SAME: f64 = 1e-8;
-
-/// CPU seconds of this thread so far.
-fn cpu_seconds() -> Result<f64, Failure> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat")?;
-    let nanoseconds: f64 = text.split_whitespace().next().ok_or("empty")?.parse()?;
-    Ok(nanoseconds * 1e-9)
-}
 
 /// Solves; CPU seconds with it, all that planning and classifying takes among them.
 fn solved(

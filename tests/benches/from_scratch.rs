@@ -18,18 +18,12 @@ use cognate_solutions::classification::{Tolerances, classify};
 use cognate_solutions::degenerate::lies_in;
 use cognate_solutions::point_shape::PointShape;
 use cognate_systems::formats::points::read_parameters;
+use cognate_tests::measures::cpu_seconds;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
-
-/// CPU seconds of this thread so far.
-fn cpu_seconds() -> Result<f64, Failure> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat")?;
-    let nanoseconds: f64 = text.split_whitespace().next().ok_or("empty")?.parse()?;
-    Ok(nanoseconds * 1e-9)
-}
 
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args()

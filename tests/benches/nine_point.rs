@@ -24,6 +24,7 @@ use cognate_systems::evaluation::{Evaluate, Program};
 use cognate_systems::formats::points::read_parameters;
 use cognate_systems::named::{nine_point, nine_point_with_rotations, rotations};
 use cognate_systems::system::System;
+use cognate_tests::measures::cpu_seconds;
 use num_complex::Complex64;
 use std::path::Path;
 use std::sync::Arc;
@@ -36,13 +37,6 @@ const ROUNDS: usize = 5;
 const SHARE: u64 = 1440;
 /// Two endpoints are the same below this distance, relative to their largest coordinate.
 const SAME: f64 = 1e-8;
-
-/// CPU seconds of this thread so far.
-fn cpu_seconds() -> Result<f64, Failure> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat")?;
-    let nanoseconds: f64 = text.split_whitespace().next().ok_or("empty")?.parse()?;
-    Ok(nanoseconds * 1e-9)
-}
 
 /// The least CPU seconds that the work took.
 fn best(mut work: impl FnMut()) -> Result<f64, Failure> {

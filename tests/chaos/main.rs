@@ -7,7 +7,7 @@
 
 use cognate_protocol::v1::Precision;
 use cognate_protocol::v1::precision::Kind;
-use cognate_tests::arguments::{number, options as arguments};
+use cognate_tests::arguments::{number, options as arguments, or_exit};
 use cognate_tests::builders::katsura;
 use cognate_tests::client::{Answer, Submission, accepted, has_ended, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
@@ -164,13 +164,7 @@ fn options(wanted: &Wanted, ledger: Option<String>) -> CoordinatorOptions {
 }
 
 fn main() -> ExitCode {
-    let wanted = match wanted() {
-        Ok(wanted) => wanted,
-        Err(message) => {
-            eprintln!("error: {message}");
-            return ExitCode::from(2);
-        }
-    };
+    let wanted = or_exit(wanted());
     let database = match wanted.postgres.then(Database::start) {
         Some(None) => return ExitCode::SUCCESS,
         Some(Some(database)) => Some(database),

@@ -8,6 +8,7 @@ use cognate_systems::named::cyclic;
 use cognate_tests::arguments;
 use cognate_tests::client::{Submission, accepted, has_ended};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
+use cognate_tests::subjects::paths_in_classes;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -38,35 +39,25 @@ fn wanted() -> Result<Wanted, String> {
     }
 }
 
-/// The largest of numbers of KiB, in MiB, from here to there in the run.
+/// Bytes that were held from time to time in the run.
 struct Memory {
     seen: Vec<u64>,
 }
 
 impl Memory {
-    fn add(&mut self, kib: Option<u64>) {
-        self.seen.extend(kib);
-    }
-
     /// MiB at the largest in each quarter of the run.
     fn quarters(&self) -> String {
         let size = self.seen.len().div_ceil(4).max(1);
         let largest = self.seen.chunks(size).map(|quarter| {
             let most = quarter.iter().max().copied().unwrap_or(0);
-            format!("{}", most / 1024)
+            format!("{}", most >> 20)
         });
         largest.collect::<Vec<_>>().join(", ")
     }
 }
 
 fn main() -> ExitCode {
-    let wanted = match wanted() {
-        Ok(wanted) => wanted,
-        Err(message) => {
-            eprintln!("error: {message}");
-            return ExitCode::from(2);
-        }
-    };
+    let wanted = arguments::or_exit(wanted());
     let named = cyclic(wanted.size as usize);
     let text = formats::write(Format::Bertini, &named.system, &FileSettings::default());
     let mut submission = Submission::of(text.expect("systems of our own can be written"));
@@ -87,9 +78,9 @@ fn main() -> ExitCode {
     let mut last = (Instant::now(), 0);
     loop {
         std::thread::sleep(Duration::from_millis(200));
-        memory[0].add(cluster.coordinator.memory_kib());
-        let workers = cluster.workers.iter().filter_map(|w| w.memory_kib());
-        memory[1].add(workers.max());
+        memory[0].seen.push(cluster.coordinator.memory_bytes());
+        let workers = cluster.workers.iter().map(|w| w.memory_bytes());
+        memory[1].seen.extend(workers.max());
         let Ok(progress) = cluster.client().progress(&job) else {
             continue;
         };
@@ -133,12 +124,6 @@ fn main() -> ExitCode {
     client.wait_until_solved(&job);
     let counts = client.counts(&job);
     let answer = client.answer(&job);
-    let classes = counts.paths_finite
-        + counts.paths_singular
-        + counts.paths_positive_dimensional.unwrap_or(0)
-        + counts.paths_excess.unwrap_or(0)
-        + counts.paths_at_infinity
-        + counts.paths_failed;
     println!(
         "\ncyclic-{}, seed {}, {took:.1} s",
         wanted.size, wanted.seed
@@ -161,7 +146,7 @@ fn main() -> ExitCode {
         memory[0].quarters(),
         memory[1].quarters()
     );
-    let named_all = classes == counts.paths_total
+    let named_all = paths_in_classes(&counts) == counts.paths_total
         && answer.paths.len() as u64 == counts.paths_total
         && answer.paths.iter().all(|path| path.class != 0);
     cluster.stop();

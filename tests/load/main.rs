@@ -5,7 +5,7 @@
 //! the large job has 4^quartics paths (0: none); each client keeps so many of its jobs going.
 
 use cognate_systems::named::{cyclic, katsura, noon};
-use cognate_tests::arguments::{number, options};
+use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::client::{Client, accepted};
 use cognate_tests::cluster::Cluster;
 use cognate_tests::subjects::Subject;
@@ -118,13 +118,7 @@ fn mib(bytes: u64) -> f64 {
 }
 
 fn main() -> ExitCode {
-    let wanted = match wanted() {
-        Ok(wanted) => wanted,
-        Err(message) => {
-            eprintln!("error: {message}");
-            return ExitCode::from(2);
-        }
-    };
+    let wanted = or_exit(wanted());
     let cluster = Cluster::with_workers(2);
     let subjects = small();
     let watching = cluster.client();

@@ -5,7 +5,7 @@
 
 use cognate_protocol::v1::SummaryCounts;
 use cognate_systems::named::{cyclic, eco, katsura, noon};
-use cognate_tests::arguments::{number, options};
+use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::client::Client;
 use cognate_tests::cluster::Cluster;
 use cognate_tests::subjects::Subject;
@@ -108,13 +108,7 @@ fn solve(client: &Client, subject: &Subject, times: u64) -> Tally {
 }
 
 fn main() -> ExitCode {
-    let wanted = match wanted() {
-        Ok(wanted) => wanted,
-        Err(message) => {
-            eprintln!("error: {message}");
-            return ExitCode::from(2);
-        }
-    };
+    let wanted = or_exit(wanted());
     let cluster = Cluster::with_workers(2);
     let client = cluster.client();
     println!(

@@ -17,6 +17,14 @@ pub fn options() -> Result<Vec<(String, String)>, String> {
     Ok(options)
 }
 
+/// What is asked for; where the arguments are wrong the program says so and ends with 2.
+pub fn or_exit<T>(wanted: Result<T, String>) -> T {
+    wanted.unwrap_or_else(|message| {
+        eprintln!("error: {message}");
+        std::process::exit(2)
+    })
+}
+
 /// The value of an option as a number.
 ///
 /// # Errors

@@ -1,5 +1,6 @@
 //! Families of mechanisms: systems with parameters, and members of them by number.
 
+use crate::systems::{SerialArm, axis_equations};
 use cognate_systems::expression::Expressions;
 use cognate_systems::formats;
 use cognate_systems::polynomial::Polynomial;
@@ -213,26 +214,13 @@ pub fn six_revolute() -> Family {
         // a over the sine.
         definitions.push(format!("\"r{k}\": \"a{k}*(1+t{k}^2)/(2*t{k})\""));
     }
-    let dot = |a: &[String; 3], b: &[String; 3]| {
-        format!("{}*{}+{}*{}+{}*{}", a[0], b[0], a[1], b[1], a[2], b[2])
-    };
-    let mut equations = Vec::new();
-    for k in 2..=5 {
-        equations.push(format!("{}-1", dot(&z(k), &z(k))));
-    }
-    for k in 1..=5 {
-        equations.push(format!("{}-cosine{k}", dot(&z(k), &z(k + 1))));
-    }
-    for c in 0..3 {
-        let (i, j) = ((c + 1) % 3, (c + 2) % 3);
-        let mut sum = format!("-p{}", c + 1);
-        for k in 1..=5 {
-            let (a, b) = (z(k), z(k + 1));
-            sum += &format!("+r{k}*({}*{}-{}*{})", a[i], b[j], a[j], b[i]);
-            sum += &format!("+d{k}*{}", b[c]);
-        }
-        equations.push(sum);
-    }
+    let equations = axis_equations(&SerialArm {
+        axis: &z,
+        cosine: &|k| format!("cosine{k}"),
+        length: &|k| format!("r{k}"),
+        offset: &|k| format!("d{k}"),
+        place: &|c| format!("p{}", c + 1),
+    });
     let variables: Vec<String> = (2..=5).flat_map(z).collect();
     // Parameters below a line hide the monomials from the search for groups; these have 320 paths.
     let of = |a: usize, b: usize| quoted(&[z(a), z(b)].concat());

@@ -7,6 +7,7 @@ pub mod client;
 pub mod cluster;
 pub mod database;
 pub mod families;
+pub mod measures;
 pub mod processes;
 pub mod subjects;
 pub mod systems;

@@ -3,6 +3,7 @@
 //! The program is the `cognate` that cargo builds beside the test; nothing
 //! outlives the test that started it.
 
+use crate::measures::memory_bytes;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -95,11 +96,7 @@ impl Process {
 
     /// Memory that it holds now, in bytes; 0 where the system does not say (Linux does).
     pub fn memory_bytes(&self) -> u64 {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id()));
-        let status = status.unwrap_or_default();
-        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-        let kib = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
-        1024 * kib.unwrap_or(0)
+        memory_bytes(&self.child.id().to_string(), "VmRSS").unwrap_or(0)
     }
 
     /// CPU time that it has used, in seconds; 0 where the system does not say.
@@ -141,14 +138,6 @@ impl Process {
     /// SIGTERM: it is asked to stop.
     pub fn terminate(&mut self) {
         self.signal("TERM");
-    }
-
-    /// KiB of memory that it holds now, where the system says so.
-    pub fn memory_kib(&self) -> Option<u64> {
-        let path = format!("/proc/{}/status", self.child.id());
-        let status = std::fs::read_to_string(path).ok()?;
-        let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
-        line.split_whitespace().nth(1)?.parse().ok()
     }
 
     /// Whether it still runs.

@@ -6,6 +6,16 @@ use cognate_systems::formats::{self, FileSettings, Format};
 use cognate_systems::named::Named;
 use cognate_systems::system::System;
 
+/// The sum of all classes of paths: their total, where none is missing.
+pub fn paths_in_classes(counts: &SummaryCounts) -> u64 {
+    counts.paths_finite
+        + counts.paths_singular
+        + counts.paths_positive_dimensional.unwrap_or(0)
+        + counts.paths_excess.unwrap_or(0)
+        + counts.paths_at_infinity
+        + counts.paths_failed
+}
+
 /// A system and how many solutions it has.
 #[derive(Clone, Debug)]
 pub struct Subject {
@@ -71,12 +81,7 @@ impl Subject {
 
     /// Whether all solutions were found and every path is in one class.
     pub fn is_right(&self, counts: &SummaryCounts) -> bool {
-        let classes = counts.paths_finite
-            + counts.paths_singular
-            + counts.paths_positive_dimensional.unwrap_or(0)
-            + counts.paths_excess.unwrap_or(0)
-            + counts.paths_at_infinity
-            + counts.paths_failed;
-        counts.solutions_nonsingular == self.solutions && classes == counts.paths_total
+        counts.solutions_nonsingular == self.solutions
+            && paths_in_classes(counts) == counts.paths_total
     }
 }

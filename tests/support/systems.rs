@@ -45,6 +45,46 @@ pub fn written(input: &str) -> System {
     }
 }
 
+/// A 6R arm in the notation of equations: each number by its place.
+pub struct SerialArm<'a> {
+    /// The direction of axis 1 to 6.
+    pub axis: &'a dyn Fn(usize) -> [String; 3],
+    /// Of the twist between axis 1 to 5 and the next.
+    pub cosine: &'a dyn Fn(usize) -> String,
+    /// Of the common normal from there, over the sine of the twist.
+    pub length: &'a dyn Fn(usize) -> String,
+    /// Along the next axis.
+    pub offset: &'a dyn Fn(usize) -> String,
+    /// Coordinate 0 to 2 of the way from base to hand.
+    pub place: &'a dyn Fn(usize) -> String,
+}
+
+/// Its twelve equations: unit lengths of axes 2 to 5, twists, and the way from base to hand.
+pub fn axis_equations(arm: &SerialArm<'_>) -> Vec<String> {
+    let z = arm.axis;
+    let dot = |a: &[String; 3], b: &[String; 3]| {
+        format!("{}*{}+{}*{}+{}*{}", a[0], b[0], a[1], b[1], a[2], b[2])
+    };
+    let mut equations = Vec::new();
+    for k in 2..=5 {
+        equations.push(format!("{}-1", dot(&z(k), &z(k))));
+    }
+    for k in 1..=5 {
+        equations.push(format!("{}-{}", dot(&z(k), &z(k + 1)), (arm.cosine)(k)));
+    }
+    for c in 0..3 {
+        let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+        let mut sum = format!("-{}", (arm.place)(c));
+        for k in 1..=5 {
+            let (a, b, length) = (z(k), z(k + 1), (arm.length)(k));
+            sum += &format!("+{length}*({}*{}-{}*{})", a[i], b[j], a[j], b[i]);
+            sum += &format!("+{}*{}", (arm.offset)(k), b[c]);
+        }
+        equations.push(sum);
+    }
+    equations
+}
+
 /// Inverse kinematics of a general 6R arm by the directions z2..z5 of its inner
 /// axes: lengths, twists, and one vector equation for the way from base to hand.
 pub fn six_revolute_axis_vectors() -> System {
@@ -55,26 +95,13 @@ pub fn six_revolute_axis_vectors() -> System {
             k => ["x", "y", "w"].map(|c| format!("{c}{k}")),
         }
     };
-    let dot = |a: &[String; 3], b: &[String; 3]| {
-        format!("{}*{}+{}*{}+{}*{}", a[0], b[0], a[1], b[1], a[2], b[2])
-    };
-    let mut equations = Vec::new();
-    for k in 2..=5 {
-        equations.push(format!("{}-1", dot(&z(k), &z(k))));
-    }
-    for k in 1..=5 {
-        equations.push(format!("{}-{k}/7", dot(&z(k), &z(k + 1))));
-    }
-    for c in 0..3 {
-        let (i, j) = ((c + 1) % 3, (c + 2) % 3);
-        let mut sum = format!("-{}/11", c + 5);
-        for k in 1..=5 {
-            let (a, b) = (z(k), z(k + 1));
-            sum += &format!("+{}/5*({}*{}-{}*{})", k + 2, a[i], b[j], a[j], b[i]);
-            sum += &format!("+{}/3*{}", 2 * k + 1, b[c]);
-        }
-        equations.push(sum);
-    }
+    let equations = axis_equations(&SerialArm {
+        axis: &z,
+        cosine: &|k| format!("{k}/7"),
+        length: &|k| format!("{}/5", k + 2),
+        offset: &|k| format!("{}/3", 2 * k + 1),
+        place: &|c| format!("{}/11", c + 5),
+    });
     let names: Vec<String> = (2..=5).flat_map(z).collect();
     let functions: Vec<String> = (1..=12).map(|i| format!("f{i}")).collect();
     let lines: Vec<String> = functions

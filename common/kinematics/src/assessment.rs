@@ -103,6 +103,12 @@ impl Assessment {
         self.drive().transmission_degrees / 90.0 / self.size
     }
 
+    /// Which of two stands first: the better grade, then the better quality.
+    pub fn order(&self, other: &Self) -> std::cmp::Ordering {
+        let grades = self.grade.cmp(&other.grade);
+        grades.then(other.quality().total_cmp(&self.quality()))
+    }
+
     /// Its type in words, driven from the better side.
     pub fn kind(&self) -> &'static str {
         self.mobility.name(self.driver)

@@ -9,7 +9,7 @@
 use crate::design::{Design, ranked};
 use crate::four_unknowns::bilinear_system;
 use crate::linkage::{Linkage, Side};
-use crate::plane::{modulus, unit};
+use crate::plane::{modulus, real_place, scale, unit};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -108,10 +108,7 @@ impl Poses {
                 }
             }
         }
-        if !(1e-290..=1e290).contains(&extent) {
-            return Err(PoseFault::Extent(extent));
-        }
-        let scale = f64::from_bits(extent.to_bits() & (0x7ff << 52));
+        let scale = scale(extent).ok_or(PoseFault::Extent(extent))?;
         Ok(Self {
             places,
             turns,
@@ -149,9 +146,9 @@ impl Poses {
 
     /// A real dyad's pivot and joint: in the plane, the joint where it is in the first pose.
     pub fn dyad(&self, solution: &[Complex64; 4]) -> [Complex64; 2] {
-        let real = |z: Complex64, conjugate: Complex64| (z + conjugate.conj()) / 2.0;
         let [a, aa, b, bb] = *solution;
-        [real(a, aa), real(b, bb)].map(|z| self.places[0] + z * self.turns[0] * self.scale)
+        [real_place(a, aa), real_place(b, bb)]
+            .map(|z| self.places[0] + z * self.turns[0] * self.scale)
     }
 
     /// Every pair of dyads as a linkage, best first.

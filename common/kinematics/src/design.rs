@@ -51,10 +51,6 @@ impl Design {
 
 /// Best first: by grade, then by quality.
 pub fn ranked(mut designs: Vec<Design>) -> Vec<Design> {
-    designs.sort_by(|one, two| {
-        let (one, two) = (&one.assessment, &two.assessment);
-        let grades = one.grade.cmp(&two.grade);
-        grades.then(two.quality().total_cmp(&one.quality()))
-    });
+    designs.sort_by(|one, two| one.assessment.order(&two.assessment));
     designs
 }

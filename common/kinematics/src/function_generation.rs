@@ -9,7 +9,7 @@
 use crate::design::Design;
 use crate::four_unknowns::bilinear_system;
 use crate::linkage::{Linkage, Side};
-use crate::plane::{modulus, unit};
+use crate::plane::{modulus, real_place, unit};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -121,9 +121,8 @@ impl AnglePairs {
     /// A real solution as a linkage in its five positions, side A the input; `None` for the root 0.
     /// The coupler point is the middle of the coupler.
     pub fn linkage(&self, solution: &[Complex64; 4]) -> Option<Design> {
-        let real = |z: Complex64, conjugate: Complex64| (z + conjugate.conj()) / 2.0;
         let [z, zz, w, ww] = *solution;
-        let (z, w) = (real(z, zz), real(w, ww));
+        let (z, w) = (real_place(z, zz), real_place(w, ww));
         if modulus(z) < NO_LINKAGE && modulus(w) < NO_LINKAGE {
             return None;
         }

@@ -9,7 +9,7 @@
 
 use crate::body_guidance::{PoseFault, Poses};
 use crate::four_unknowns::bilinear_system;
-use crate::plane::{modulus, unit};
+use crate::plane::{modulus, real_place, unit};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -96,9 +96,8 @@ impl TimedPoints {
     /// # Errors
     /// When the coupler does not move or turn: then any dyad of a whole family is a partner.
     pub fn driver(&self, solution: &[Complex64; 4]) -> Result<Driver, PoseFault> {
-        let real = |z: Complex64, conjugate: Complex64| (z + conjugate.conj()) / 2.0;
         let [z, zz, c, cc] = *solution;
-        let (z, c) = (real(z, zz), real(c, cc));
+        let (z, c) = (real_place(z, zz), real_place(c, cc));
         let (first, scale) = (self.points()[0], self.given.scale());
         let turn = |k: usize| {
             let d = (self.points()[k] - first) / scale;

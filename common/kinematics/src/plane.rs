@@ -23,6 +23,20 @@ pub fn unit(z: Complex64) -> Complex64 {
     }
 }
 
+/// The number that an isotropic coordinate and its conjugate, each with its own rounding, stand for.
+pub fn real_place(z: Complex64, conjugate: Complex64) -> Complex64 {
+    (z + conjugate.conj()) / 2.0
+}
+
+/// What lengths of this extent are divided by: the power of 2 that is not larger; `None` where
+/// differences overflow or vanish in double precision.
+pub fn scale(extent: f64) -> Option<f64> {
+    // The exponent alone, as bits: 2^k <= extent < 2^(k+1).
+    (1e-290..=1e290)
+        .contains(&extent)
+        .then(|| f64::from_bits(extent.to_bits() & (0x7ff << 52)))
+}
+
 /// The signed area of the parallelogram of two vectors: positive where `w` lies to the left of `z`.
 pub fn cross(z: Complex64, w: Complex64) -> f64 {
     z.re * w.im - z.im * w.re

@@ -12,7 +12,7 @@
 use crate::design::Design;
 use crate::linkage::Linkage;
 use crate::nine_point::realization::{made_real, rotation};
-use crate::plane::{modulus, unit};
+use crate::plane::{modulus, scale, unit};
 use cognate_systems::formats;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -212,9 +212,7 @@ impl PosesAndPoints {
         let turns: Vec<_> = positions.iter().map(|(_, turn)| turn.map(unit)).collect();
         let away = places.iter().map(|&p| modulus(p - places[0]));
         let extent = away.fold(0.0, f64::max);
-        if !(1e-290..=1e290).contains(&extent) {
-            return Err(MixtureFault::Extent(extent));
-        }
+        let scale = scale(extent).ok_or(MixtureFault::Extent(extent))?;
         for j in 0..places.len() {
             for k in j + 1..places.len() {
                 let together = modulus(places[j] - places[k]) <= COINCIDENT * extent;
@@ -228,7 +226,6 @@ impl PosesAndPoints {
                 }
             }
         }
-        let scale = f64::from_bits(extent.to_bits() & (0x7ff << 52));
         Ok(Self {
             mixture,
             places,

@@ -129,7 +129,7 @@ impl Store {
         let digest = digest_of(&bytes);
         let address = object_address(digest);
         // Many jobs share their system: to look is cheaper than to write and be refused.
-        if let Err(object_store::Error::NotFound { .. }) = self.objects.head(&address).await {
+        if self.objects.head(&address).await.is_err() {
             self.create(&address, bytes).await?;
         }
         Ok(digest)

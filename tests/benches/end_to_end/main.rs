@@ -13,6 +13,7 @@ use cognate_algorithms::{PlanOptions, plan};
 use cognate_systems::formats::{self, FileSettings, Format};
 use cognate_systems::named::{cyclic, eco, katsura, noon, reimer};
 use cognate_systems::system::System;
+use cognate_tests::measures::cpu_seconds;
 use cognate_tests::systems::{shared, six_revolute_axis_vectors};
 use std::path::Path;
 
@@ -20,13 +21,6 @@ use std::path::Path;
 const PATIENCE: u32 = 120;
 /// Every start is measured with seeds from 1 to here.
 const SEEDS: u64 = 3;
-
-/// CPU seconds of this thread so far; `None` where the system does not tell.
-fn cpu_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(nanoseconds * 1e-9)
-}
 
 /// One start on one system, over all seeds.
 struct Measured {
@@ -73,15 +67,14 @@ fn measure(
             seed,
             ..PlanOptions::default()
         };
-        let clock = || cpu_seconds().ok_or("no /proc/thread-self/schedstat here");
-        let begin = clock()?;
+        let begin = cpu_seconds()?;
         let mut plan = match plan(system, &options) {
             Ok(plan) => plan,
             Err(error) => return Ok(Err(format!("{start:?}: {error}"))),
         };
-        let planned = clock()?;
+        let planned = cpu_seconds()?;
         let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 16)?;
-        solving.push(clock()? - planned);
+        solving.push(cpu_seconds()? - planned);
         planning.push(planned - begin);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
         let before = measured.as_ref();

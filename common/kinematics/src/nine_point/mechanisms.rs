@@ -32,9 +32,7 @@ pub struct Curve {
 impl Mechanism {
     /// Whether it stands before another one.
     fn order(&self, other: &Self) -> std::cmp::Ordering {
-        let (one, two) = (&self.assessment, &other.assessment);
-        let grades = one.grade.cmp(&two.grade);
-        grades.then(two.quality().total_cmp(&one.quality()))
+        self.assessment.order(&other.assessment)
     }
 }
 

@@ -1,6 +1,6 @@
 //! PathPoints: nine points as they were given, and as parameters of the nine-point system.
 
-use crate::plane::modulus;
+use crate::plane::{modulus, scale};
 use num_complex::Complex64;
 
 /// Points nearer to each other than this, relative to the extent of all, are one.
@@ -55,11 +55,7 @@ impl PathPoints {
                 }
             }
         }
-        if !(1e-290..=1e290).contains(&extent) {
-            return Err(PointFault::Extent(extent));
-        }
-        // The exponent alone, as bits: 2^k <= extent < 2^(k+1).
-        let scale = f64::from_bits(extent.to_bits() & (0x7ff << 52));
+        let scale = scale(extent).ok_or(PointFault::Extent(extent))?;
         Ok(Self { points, scale })
     }
 

@@ -53,7 +53,6 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
 }
 
 fn read(a: &NinePoint) -> Result<Task, ClientError> {
-    let short = |path| problem::short_name(path).chars().take(60).collect();
     if let Some(path) = &a.targets {
         let (name, content) = problem::read_file(path)?;
         let sets = point_files::read_many(&name, &content).map_err(ClientError::Format)?;
@@ -67,14 +66,18 @@ fn read(a: &NinePoint) -> Result<Task, ClientError> {
     Ok(Task::One(short(path), Box::new(points)))
 }
 
+/// What people call a file, cut to what fits beside other words.
+fn short(path: &Path) -> String {
+    problem::short_name(path).chars().take(60).collect()
+}
+
 fn sister(
     path: &Path,
     read: impl Fn(&str, &[u8]) -> Result<Sister, String>,
 ) -> Result<Task, ClientError> {
     let (name, content) = problem::read_file(path)?;
     let sister = read(&name, &content).map_err(ClientError::Format)?;
-    let short = problem::short_name(path).chars().take(60).collect();
-    Ok(Task::Sister(short, sister))
+    Ok(Task::Sister(short(path), sister))
 }
 
 async fn perform(

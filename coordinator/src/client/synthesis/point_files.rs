@@ -22,6 +22,11 @@ pub(super) fn decoded<'a>(name: &str, content: &'a [u8]) -> Result<&'a str, Stri
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
+/// Whether a text is meant as JSON.
+pub(super) fn is_json(text: &str) -> bool {
+    text.trim_start().starts_with(['{', '['])
+}
+
 /// The JSON value that a text holds.
 pub(super) fn parsed(name: &str, text: &str) -> Result<Value, String> {
     serde_json::from_str(text)
@@ -31,7 +36,7 @@ pub(super) fn parsed(name: &str, text: &str) -> Result<Value, String> {
 /// Reads nine points; the message names file, line and field.
 pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
     let text = decoded(name, content)?;
-    let placed = if text.trim_start().starts_with(['{', '[']) {
+    let placed = if is_json(text) {
         json(name, text)?
     } else {
         csv(name, text)?

@@ -2,7 +2,7 @@
 //! as CSV or as JSON, checked line by line.
 
 use super::designs::Sister;
-use super::point_files::{Placed, complex, decoded, kind, parsed, rows, rows_with_blanks};
+use super::point_files::{Placed, complex, decoded, is_json, kind, parsed, rows, rows_with_blanks};
 use cognate_kinematics::body_guidance::{PoseFault, Poses};
 use cognate_kinematics::function_generation::{AngleFault, AnglePairs};
 use cognate_kinematics::path_timing::TimedPoints;
@@ -125,10 +125,6 @@ fn directed(name: &str, content: &[u8], field: &str) -> Result<Directed, String>
     let found = five(name, found, field)?;
     let part = |k: usize| found.each_ref().map(|(item, _)| item[k]);
     Ok((found.each_ref().map(|(_, at)| at.clone()), part(0), part(1)))
-}
-
-fn is_json(text: &str) -> bool {
-    text.trim_start().starts_with(['{', '['])
 }
 
 /// Degrees, or `[cos, sin]` for an angle that is known exactly.

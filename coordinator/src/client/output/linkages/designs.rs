@@ -35,8 +35,6 @@ struct Words {
     given: &'static str,
     /// How many there can be, and who says so.
     most: String,
-    /// What the first position is called.
-    first: &'static str,
 }
 
 impl Designs {
@@ -45,17 +43,14 @@ impl Designs {
             Sister::Poses(_) => Words {
                 given: "through the five poses",
                 most: "at most 4 dyads (Burmester)".into(),
-                first: "pose 1",
             },
             Sister::TimedPoints(_) => Words {
                 given: "through the five points at the crank's angles",
                 most: "at most 4 drivers with 3 partners each".into(),
-                first: "position 1",
             },
             Sister::AnglePairs(_) => Words {
                 given: "for the five pairs of angles",
                 most: "at most 3 linkages; the root 0 is none".into(),
-                first: "position 1",
             },
             Sister::PosesAndPoints(given) => Words {
                 given: "through the poses and points",
@@ -63,7 +58,6 @@ impl Designs {
                     "at most {} linkages, each of two paths (Brake and others 2016)",
                     count(given.mixture().linkages())
                 ),
-                first: "the first pose",
             },
         }
     }
@@ -86,11 +80,10 @@ impl Designs {
 
     /// Whether every path of every job is settled.
     pub fn exit(&self) -> Exit {
-        let rounds = self.found.rounds.iter();
-        let open = rounds.map(|round| summary::exit(&round.summary));
-        open.into_iter()
-            .find(|exit| *exit != Exit::Solved)
-            .unwrap_or(Exit::Solved)
+        let exits = self.found.rounds.iter();
+        let mut exits = exits.map(|round| summary::exit(&round.summary));
+        let open = exits.find(|exit| *exit != Exit::Solved);
+        open.unwrap_or(Exit::Solved)
     }
 
     /// Names of the two dyads of a design.
@@ -238,8 +231,11 @@ fn dyads(designs: &Designs, look: Look) -> String {
         };
         format!("{}, {}", shown(z.re), shown(z.im))
     };
-    let joint = format!("joint in {}", designs.words().first);
-    let mut columns = Columns::new(&["dyad", "pivot", &joint, "proved"]);
+    let joint = match designs.sister {
+        Sister::Poses(_) => "joint in pose 1",
+        _ => "joint in position 1",
+    };
+    let mut columns = Columns::new(&["dyad", "pivot", joint, "proved"]);
     for (k, dyad) in designs.found.dyads.iter().enumerate() {
         let proved = if dyad.certified { "yes" } else { "-" };
         let [pivot, joint] = dyad.ends.map(place);

@@ -1,0 +1,33 @@
+//! Measures: CPU time of the thread that asks, memory of a process, as Linux tells them.
+
+use std::io;
+
+fn field(path: &str, text: Option<&str>) -> io::Result<f64> {
+    let number = text.and_then(|text| text.parse().ok());
+    number.ok_or_else(|| io::Error::other(format!("{path} is not as expected")))
+}
+
+/// CPU seconds of this thread so far.
+///
+/// # Errors
+/// Where the system does not say.
+pub fn cpu_seconds() -> io::Result<f64> {
+    let path = "/proc/thread-self/schedstat";
+    let text = std::fs::read_to_string(path)?;
+    Ok(field(path, text.split_whitespace().next())? * 1e-9)
+}
+
+/// A line of a process's status (`self`, or its number) that counts memory, in bytes: `VmRSS`,
+/// `VmHWM`.
+///
+/// # Errors
+/// Where the system does not say.
+pub fn memory_bytes(process: &str, line: &str) -> io::Result<u64> {
+    let path = format!("/proc/{process}/status");
+    let text = std::fs::read_to_string(&path)?;
+    let found = text
+        .lines()
+        .find_map(|l| l.strip_prefix(line)?.strip_prefix(':'));
+    let kib = field(&path, found.and_then(|rest| rest.split_whitespace().next()))?;
+    Ok(1024 * kib as u64)
+}
