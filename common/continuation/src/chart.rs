@@ -53,8 +53,9 @@ pub(crate) fn norm(point: &[Complex64]) -> f64 {
 }
 
 impl Chart {
-    /// A random patch for each group of the system.
-    pub fn new(system: &System, seed: u64) -> Self {
+    /// A random patch for each group of the system, others for each `attempt`: of many paths some
+    /// end where one patch has its infinity.
+    pub fn new(system: &System, seed: u64, attempt: u16) -> Self {
         let mut first = 0;
         let groups = system
             .groups
@@ -62,7 +63,8 @@ impl Chart {
             .enumerate()
             .map(|(k, group)| {
                 let count = group.variables.len() + usize::from(!group.homogeneous);
-                let mut stream = RandomStream::new(seed, Purpose::Patch, k as u64);
+                let number = k as u64 | u64::from(attempt) << 32;
+                let mut stream = RandomStream::new(seed, Purpose::Patch, number);
                 let group = ChartGroup {
                     variables: group.variables.clone(),
                     homogeneous: group.homogeneous,
@@ -82,8 +84,8 @@ impl Chart {
 
     /// The affine chart: y_0 = 1 in every affine group, so that the chart's coordinates are the
     /// system's variables. Homogeneous groups keep their random patches.
-    pub fn affine(system: &System, seed: u64) -> Self {
-        let mut chart = Self::new(system, seed);
+    pub fn affine(system: &System, seed: u64, attempt: u16) -> Self {
+        let mut chart = Self::new(system, seed, attempt);
         for group in chart.groups.iter_mut().filter(|group| !group.homogeneous) {
             group.patch.fill(Complex64::default());
             group.patch[0] = Complex64::new(1.0, 0.0);
@@ -286,7 +288,7 @@ mod tests {
             ],
             ..System::default()
         };
-        let chart = Chart::new(&system, 5);
+        let chart = Chart::new(&system, 5, 0);
         assert_eq!(chart.dimension(), 3);
         let values: Vec<Complex64> = (1..5).map(|k| Complex64::new(f64::from(k), 0.5)).collect();
         let point = chart.from_variables(&values).unwrap();

@@ -78,6 +78,7 @@ struct Beyond {
     system: System,
     degrees: Degrees,
     start_system: Option<StartSystem>,
+    first_chart: Chart,
     homotopy: OnceLock<Homotopy>,
 }
 
@@ -105,6 +106,8 @@ struct Checked<'a> {
     degrees: Degrees,
     asked: Option<AskedSystem>,
     chart: Chart,
+    /// The chart of the first attempt.
+    first_chart: Chart,
     /// Whether paths begin in the system's own coordinates.
     affine: bool,
     points: Points,
@@ -196,7 +199,8 @@ impl<'a> Checked<'a> {
         let overdetermined = system.equation_count() > dimension;
         let (asked, of_system);
         let tracked = if overdetermined {
-            let (kind, chart) = (&stage.homotopy, Chart::new(system, stage.seed));
+            let kind = &stage.homotopy;
+            let chart = Chart::new(system, stage.seed, stage.attempt);
             // On the way to the system its points are no solutions of it yet.
             asked = kind
                 .ends_at_the_system()
@@ -225,11 +229,14 @@ impl<'a> Checked<'a> {
                 "the exchange is none of the system's groups and equations".into(),
             ));
         }
-        let chart = match (affine, exchange) {
-            (true, _) => Chart::affine(system, stage.seed),
-            (false, None) => Chart::new(system, stage.seed),
-            (false, Some(exchange)) => Chart::new(system, stage.seed).with_exchange(exchange),
+        let chart = |attempt| match (affine, exchange) {
+            (true, _) => Chart::affine(system, stage.seed, attempt),
+            (false, None) => Chart::new(system, stage.seed, attempt),
+            (false, Some(exchange)) => {
+                Chart::new(system, stage.seed, attempt).with_exchange(exchange)
+            }
         };
+        let (first_chart, chart) = (chart(0), chart(stage.attempt));
         let base = match &stage.start_points {
             StartPoints::Selected { base, .. } => base,
             other => other,
@@ -357,6 +364,7 @@ impl<'a> Checked<'a> {
             degrees: of_system,
             asked,
             chart,
+            first_chart,
             affine,
             points,
             start_system,
@@ -382,6 +390,7 @@ impl PreparedStage {
             &stage.homotopy,
             checked.start_system.as_ref(),
             checked.chart.clone(),
+            &checked.first_chart,
             &sample(&checked.points, &checked.chart),
             stage.seed,
         );
@@ -389,6 +398,7 @@ impl PreparedStage {
             system: checked.system.into_owned(),
             degrees: checked.degrees,
             start_system: checked.start_system,
+            first_chart: checked.first_chart,
             homotopy: OnceLock::new(),
         });
         Ok(Self {
@@ -426,7 +436,7 @@ impl PreparedStage {
     pub(crate) fn homotopy_beyond(&self) -> Option<&Homotopy> {
         let beyond = self.beyond.as_ref()?;
         Some(beyond.homotopy.get_or_init(|| {
-            let chart = Chart::new(&beyond.system, self.stage.seed);
+            let chart = Chart::new(&beyond.system, self.stage.seed, self.stage.attempt);
             let begins = sample(&self.points, &chart);
             Homotopy::new(
                 &beyond.system,
@@ -434,6 +444,7 @@ impl PreparedStage {
                 &self.stage.homotopy,
                 beyond.start_system.as_ref(),
                 chart,
+                &beyond.first_chart,
                 &begins,
                 self.stage.seed,
             )
@@ -694,30 +705,47 @@ mod tests {
         }
     }
 
+    /// Paths that are tracked again go on in another patch, and the homotopy is the same one: each
+    /// start point has the end that it had.
     #[test]
     fn a_path_tracked_again_keeps_its_start_and_its_end() {
-        let system = katsura(4).system;
-        let first = prepare(&system);
-        let mut again = stage(&degrees(&system).unwrap().total);
-        again.start_points = StartPoints::Selected {
-            base: Box::new(again.start_points),
-            indices: vec![3, 7],
-        };
-        again.settings = again.settings.tightened(1);
-        again.attempt = 1;
-        let again = PreparedStage::new(&system, &again, &|_| None).unwrap();
-        let (old, new) = (first.track(0..16, 8), again.track(0..2, 8));
-        for (result, index) in new.iter().zip([3, 7]) {
-            assert_eq!((result.origin, result.attempt), (PathIndex(index), 1));
-            let before = &old[index as usize];
-            let pairs = before
-                .endpoint
-                .to_double()
-                .iter()
-                .zip(result.endpoint.to_double());
-            for (a, b) in pairs {
-                assert!((a - b).norm_sqr() < 1e-20);
+        for system in [katsura(4).system, cyclic(5).system] {
+            let first = prepare(&system);
+            let indices: Vec<u64> = (0..first.items()).step_by(3).collect();
+            let mut again = stage(&degrees(&system).unwrap().total);
+            again.start_points = StartPoints::Selected {
+                base: Box::new(again.start_points),
+                indices: indices.clone(),
+            };
+            again.settings = again.settings.tightened(1);
+            again.attempt = 1;
+            let again = PreparedStage::new(&system, &again, &|_| None).unwrap();
+            assert_ne!(first.start_point(3), again.start_point(3), "another patch");
+            let old = first.track(0..first.items(), 8);
+            let new = again.track(0..again.items(), 8);
+            let mut regular = 0;
+            for (result, &index) in new.iter().zip(&indices) {
+                assert_eq!((result.origin, result.attempt), (PathIndex(index), 1));
+                let before = &old[index as usize];
+                let ends_regularly = |path: &PathResult| path.outcome == PathOutcome::Regular;
+                assert_eq!(
+                    ends_regularly(before),
+                    ends_regularly(result),
+                    "path {index}"
+                );
+                if !ends_regularly(result) {
+                    continue;
+                }
+                regular += 1;
+                let (a, b) = (before.endpoint.to_double(), result.endpoint.to_double());
+                let pairs = || a.iter().zip(b.iter());
+                for (x, y) in pairs() {
+                    for (v, w) in pairs() {
+                        assert!((x * w - v * y).norm_sqr() < 1e-20, "path {index}");
+                    }
+                }
             }
+            assert!(regular > 5);
         }
     }
 

@@ -113,39 +113,22 @@ pub(crate) fn normalize(
     scale(out, equations, &exponents);
 }
 
-/// The same, equations that are exchanged with one scale.
-fn normalize_exchanged(
-    out: &mut Expressions,
-    equations: &mut [NodeId],
-    exchanged: Option<&[usize]>,
-    dimension: usize,
-    parameters: &[Complex64],
-    stream: &mut RandomStream,
-) {
-    let mut exponents = scales(out, equations, dimension, parameters, stream);
-    for (i, &j) in exchanged.unwrap_or(&[]).iter().enumerate() {
-        exponents[j] = exponents[i.min(j)];
-    }
-    scale(out, equations, &exponents);
-}
-
-/// Scales of a system and of the start equations of a homotopy that goes on in other charts, and
-/// is the same there: they are taken in the system's own coordinates.
-fn scales_beside(
+/// Scales of a system and of the start equations: in whatever chart a homotopy goes on, it is the
+/// same with the scales of one chart only.
+fn scales_of_both(
     system: &System,
     degrees: &Degrees,
     parameters: &[Complex64],
     start: impl FnOnce(&mut Expressions, &[Vec<NodeId>]) -> Vec<NodeId>,
-    seed: u64,
+    chart: &Chart,
+    stream: &mut RandomStream,
 ) -> [Vec<i32>; 2] {
-    let chart = Chart::affine(system, seed);
     let mut out = Expressions::new();
     let coordinates = chart.nodes(&mut out);
     let values: Vec<NodeId> = parameters.iter().map(|&z| exact(&mut out, z)).collect();
     let asked = homogenize(system, degrees, &mut out, &coordinates, &values);
     let start = start(&mut out, &coordinates);
-    let mut stream = RandomStream::new(seed, Purpose::Probe, 1);
-    [asked, start].map(|equations| scales(&out, &equations, chart.dimension(), &[], &mut stream))
+    [asked, start].map(|equations| scales(&out, &equations, chart.dimension(), &[], stream))
 }
 
 /// `base^exponent` by multiplication: the same bits everywhere.
@@ -211,9 +194,29 @@ fn arrange(
     )
 }
 
+impl StartSystem {
+    /// The start equations of a straight-line homotopy over the chart's homogeneous coordinates.
+    fn equations(
+        &self,
+        system: &System,
+        degrees: &Degrees,
+        out: &mut Expressions,
+        coordinates: &[Vec<NodeId>],
+    ) -> Vec<NodeId> {
+        match self {
+            Self::Generic(s) => s.constant_equations(system, &degrees.by_group, out, coordinates),
+            Self::TotalDegree(s) => s.equations(out, &coordinates[0]),
+            Self::Multihomogeneous(s) => s.equations(out, coordinates),
+            Self::LinearProduct(s) => s.equations(out, &coordinates[0]),
+            Self::Toric(_) => panic!("a straight-line homotopy has a start system"),
+        }
+    }
+}
+
 impl Homotopy {
     /// Makes the program. The system has been checked, is square, and the
-    /// lengths of all parameter values fit it. `begins`: points of the chart where paths begin,
+    /// lengths of all parameter values fit it. `first_chart`: that of the first attempt, to whose
+    /// scales all others keep. `begins`: points of the chart where paths begin,
     /// as a sample; none where start points are made from a start system.
     pub(crate) fn new(
         system: &System,
@@ -221,6 +224,7 @@ impl Homotopy {
         kind: &HomotopyKind,
         start_system: Option<&StartSystem>,
         chart: Chart,
+        first_chart: &Chart,
         begins: &[Vec<Complex64>],
         seed: u64,
     ) -> Self {
@@ -276,61 +280,62 @@ impl Homotopy {
             HomotopyKind::PathVariable { .. } => vec![one],
         };
         let level = Level::of(kind, seed);
+        // Where two systems are joined, all charts must join them alike.
+        let mut beside = RandomStream::new(seed, Purpose::Probe, 1);
         let shared_scales = match (kind, start_system) {
-            (HomotopyKind::Generic { parameters }, Some(StartSystem::Generic(generic))) => {
-                let start = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
-                    generic.constant_equations(system, &degrees.by_group, out, coordinates)
+            (
+                HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters },
+                Some(start),
+            ) => {
+                let stream = match kind {
+                    HomotopyKind::StraightLine { .. } => &mut probe,
+                    _ => &mut beside,
                 };
-                Some(scales_beside(system, degrees, parameters, start, seed))
+                let both = scales_of_both(
+                    system,
+                    degrees,
+                    parameters,
+                    |out, coordinates| start.equations(system, degrees, out, coordinates),
+                    first_chart,
+                    stream,
+                );
+                Some(match start {
+                    StartSystem::Multihomogeneous(start) => both.map(|exponents| {
+                        let exchanged = |i: usize| start.exchanged().map_or(i, |to| to[i]);
+                        (0..exponents.len())
+                            .map(|i| exponents[i.min(exchanged(i))])
+                            .collect()
+                    }),
+                    _ => both,
+                })
             }
             (HomotopyKind::Intersect { parameters, .. }, _) => level.map(|level| {
                 let degree = degrees.total[level.next()];
                 let product = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
                     vec![level.product(out, &coordinates[0], degree)]
                 };
-                scales_beside(system, degrees, parameters, product, seed)
+                scales_of_both(
+                    system,
+                    degrees,
+                    parameters,
+                    product,
+                    first_chart,
+                    &mut beside,
+                )
             }),
-            _ => None,
-        };
-        let exchanged = match start_system {
-            Some(StartSystem::Multihomogeneous(start)) => start.exchanged(),
             _ => None,
         };
         match &shared_scales {
             Some([asked, _]) => scale(&mut out, &mut equations, asked),
-            None => normalize_exchanged(
-                &mut out,
-                &mut equations,
-                exchanged,
-                dimension,
-                &at_start,
-                &mut probe,
-            ),
+            None => normalize(&mut out, &mut equations, dimension, &at_start, &mut probe),
         }
 
         let (arc, start, targets) = match kind {
             HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. } => {
-                let mut starts = match start_system {
-                    Some(StartSystem::Generic(s)) => {
-                        s.constant_equations(system, &degrees.by_group, &mut out, &coordinates)
-                    }
-                    Some(StartSystem::TotalDegree(s)) => s.equations(&mut out, &coordinates[0]),
-                    Some(StartSystem::Multihomogeneous(s)) => s.equations(&mut out, &coordinates),
-                    Some(StartSystem::LinearProduct(s)) => s.equations(&mut out, &coordinates[0]),
-                    Some(StartSystem::Toric(_)) | None => {
-                        panic!("a straight-line homotopy has a start system")
-                    }
-                };
-                match &shared_scales {
-                    Some([_, start]) => scale(&mut out, &mut starts, start),
-                    None => normalize_exchanged(
-                        &mut out,
-                        &mut starts,
-                        exchanged,
-                        dimension,
-                        &[],
-                        &mut probe,
-                    ),
+                let start_system = start_system.expect("a straight-line homotopy has a start");
+                let mut starts = start_system.equations(system, degrees, &mut out, &coordinates);
+                if let Some([_, start]) = &shared_scales {
+                    scale(&mut out, &mut starts, start);
                 }
                 let (of_target, of_start) = (out.parameter(0), out.parameter(1));
                 for (equation, start) in equations.iter_mut().zip(starts) {
@@ -339,12 +344,12 @@ impl Homotopy {
                     *equation = out.add(f, g);
                 }
                 let gamma = match (kind, start_system) {
-                    (HomotopyKind::Generic { parameters }, Some(StartSystem::Generic(generic))) => {
+                    (HomotopyKind::Generic { parameters }, StartSystem::Generic(generic)) => {
                         generic.gamma(system, parameters, seed)
                     }
                     _ => generic_unit(seed, Purpose::Gamma),
                 };
-                if shared_scales.is_some() {
+                if matches!(kind, HomotopyKind::Generic { .. }) {
                     // Both together as this chart would have them.
                     normalize(
                         &mut out,

@@ -68,7 +68,7 @@ impl PreparedLocalDimension {
         let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
         let found = degrees(system).map_err(wrong)?;
         check_homogeneous(system, &found).map_err(wrong)?;
-        let chart = Chart::new(system, stage.seed);
+        let chart = Chart::new(system, stage.seed, stage.attempt);
         Ok(Self {
             asked: AskedSystem::new(system, &found, &stage.homotopy, chart, stage.seed),
             candidates,

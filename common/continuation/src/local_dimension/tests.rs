@@ -17,7 +17,7 @@ fn read(text: &str) -> System {
 
 /// Dimensions of the dual spaces at a point given by real values, moved by about `error`.
 fn tower(system: &System, at: &[f64], bound: u64, error: f64, seed: u64) -> LocalDimension {
-    let chart = Chart::new(system, seed);
+    let chart = Chart::new(system, seed, 0);
     let values: Vec<Complex64> = at.iter().map(|&x| Complex64::new(x, 0.0)).collect();
     let mut point = chart
         .from_variables(&values)
