@@ -123,6 +123,10 @@ fn classified(path: &ClassifiedPath) -> v1::ClassifiedPath {
 }
 
 fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::WorkerOverview {
+    // What the ledger remembers, whichever coordinator saw it.
+    let evicted = row
+        .evicted
+        .then(|| LedgerError::Evicted(row.says.worker.clone()).to_string());
     v1::WorkerOverview {
         worker: row.says.worker.to_string(),
         host: row.says.host,
@@ -136,7 +140,7 @@ fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::Wor
         leased_chunks: u32::try_from(row.leased_chunks).unwrap_or(u32::MAX),
         accepted_chunks: row.chunks_done,
         accepted_paths: row.items_done,
-        refused: refused.unwrap_or_default(),
+        refused: evicted.or(refused).unwrap_or_default(),
     }
 }
 

@@ -137,7 +137,10 @@ fn verdict(answer: Result<Completion, ApiError>) -> Result<v1::ReportVerdict, Ap
         })
     };
     match answer {
-        Ok(Completion::Accepted) => of(v1::Verdict::Accepted, String::new()),
+        // Whether others agree is not the worker's business.
+        Ok(Completion::Accepted | Completion::Witnessed) => {
+            of(v1::Verdict::Accepted, String::new())
+        }
         Ok(Completion::AlreadyAccepted) => of(v1::Verdict::AlreadyAccepted, String::new()),
         Ok(Completion::Stale) => of(v1::Verdict::Stale, String::new()),
         Ok(Completion::HashDiffers) => of(v1::Verdict::HashDiffers, String::new()),
@@ -194,7 +197,18 @@ impl WorkerApi for WorkerService {
         let (context, question) = (self.context.clone(), pull);
         let pulled = guarded(async move { Ok(context.coordinator.pull(question).await?) });
         let leases = tokio::select! {
-            leases = pulled => leases?,
+            leases = pulled => match leases {
+                Err(ApiError::Coordinator(CoordinatorError::Ledger(LedgerError::Evicted(worker)))) => {
+                    let refused = LedgerError::Evicted(worker.clone()).to_string();
+                    tracing::error!(%worker, refused, "a worker gets no work");
+                    self.context.refuse(worker, &refused);
+                    return Ok(Response::new(v1::PullResponse {
+                        refused,
+                        ..v1::PullResponse::default()
+                    }));
+                }
+                other => other?,
+            },
             // Whatever was leased in this moment, the same question gets it again.
             () = stopping.cancelled() => return Ok(draining()),
         };

@@ -24,6 +24,9 @@ pub struct Policy {
     pub split_into: u64,
     /// A job has at most this many chunks with workers. Default 20,000.
     pub in_flight_limit: u32,
+    /// So many of a hundred chunks are accepted only once two workers found the same. Default 0;
+    /// each costs the work of all of them that much again.
+    pub audit_percent: u32,
     /// How large chunks are.
     pub sizing: Sizing,
 }
@@ -37,6 +40,7 @@ impl Default for Policy {
             suspicion_limit: 3,
             split_into: 8,
             in_flight_limit: 20_000,
+            audit_percent: 0,
             sizing: Sizing::default(),
         }
     }

@@ -67,6 +67,7 @@ tables! {
         suspicion_limit: u32,
         split_into: u64,
         in_flight_limit: u32,
+        audit_percent: u32,
     }
     /// The fields of `Sizing`.
     ChunksTable {
@@ -138,6 +139,7 @@ impl ConfigFile {
                     r.in_flight_limit,
                     policy.in_flight_limit,
                 )?,
+                audit_percent: r.audit_percent.unwrap_or(policy.audit_percent).min(100),
                 sizing: Sizing {
                     longest_ms: number("longest_ms", c.longest_ms, sizing.longest_ms)?,
                     shared_ms: number("shared_ms", c.shared_ms, sizing.shared_ms)?,

@@ -2,18 +2,20 @@
 //! silent, cannot be heard and report twice, on one ledger that fails and one store. Real paths, a
 //! clock set by hand.
 
-use super::{Coordinator, NewProblem, Pull, Report};
+use super::{Coordinator, CoordinatorError, NewProblem, Pull, Report};
 use crate::chunks::leasing::Policy;
 use crate::jobs::drive::{Drive, Driven, Tools};
-use crate::ledger::Ledger;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
+use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::Store;
+use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_protocol::submission::{Options, SettingsChoice};
 use cognate_systems::system::System;
+use num_complex::Complex64;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -65,6 +67,8 @@ struct Worker {
     width: usize,
     leases: Vec<Lease>,
     said: Option<Report>,
+    /// Its arithmetic is broken.
+    wrong: bool,
 }
 
 /// A coordinator process with the job that it drives.
@@ -88,6 +92,8 @@ pub struct Cluster {
     pub tracked: u64,
     /// Replies that were lost and heard the second time.
     pub heard_again: u64,
+    /// One of the workers computes wrongly.
+    broken: bool,
     /// Items whose results were accepted, by stage.
     accepted: BTreeSet<(u32, u64)>,
     processes: Vec<Process>,
@@ -117,6 +123,7 @@ impl Cluster {
             deadly: None,
             tracked: 0,
             heard_again: 0,
+            broken: false,
             accepted: BTreeSet::new(),
             processes: Vec::new(),
             workers: Vec::new(),
@@ -159,7 +166,14 @@ impl Cluster {
             width,
             leases: Vec::new(),
             said: None,
+            wrong: false,
         });
+    }
+
+    /// Breaks a worker's arithmetic.
+    pub fn break_worker(&mut self, worker: usize) {
+        self.workers[worker].wrong = true;
+        self.broken = true;
     }
 
     fn kill_worker(&mut self, worker: usize) {
@@ -285,6 +299,10 @@ impl Cluster {
         };
         match self.processes[process].coordinator.pull(pull).await {
             Ok(leases) => asking.leases.extend(leases),
+            Err(CoordinatorError::Ledger(LedgerError::Evicted(_))) => {
+                self.kill_worker(worker);
+                self.start_worker();
+            }
             Err(_) => self.crash(process),
         }
     }
@@ -346,9 +364,13 @@ impl Cluster {
             return;
         }
         self.tracked += lease.items.len();
+        let mut results = prepared.run(items, self.workers[worker].width);
+        if self.workers[worker].wrong {
+            results[0].endpoint = Coordinates::Double(vec![Complex64::new(1.0, 2.0); 3]);
+        }
         let report = Report {
             lease: lease.lease,
-            results: prepared.run(items, self.workers[worker].width),
+            results,
             cpu_micros: 1000 * lease.items.len(),
         };
         self.workers[worker].said = Some(report);
@@ -363,10 +385,12 @@ impl Cluster {
         for _ in 0..9 {
             let sent = self.processes[process].coordinator.complete(report.clone());
             match sent.await {
-                Ok(Completion::HashDiffers) => panic!("paths are pure"),
+                Ok(Completion::HashDiffers) => assert!(self.broken, "paths are pure"),
+                // What a broken worker found may be done again.
+                Ok(Completion::Accepted) if self.broken => {}
                 Ok(Completion::Accepted) => self.count(&report),
                 // The row was written, and the reply was lost.
-                Ok(Completion::AlreadyAccepted) if !self.is_counted(&report) => {
+                Ok(Completion::AlreadyAccepted) if !self.broken && !self.is_counted(&report) => {
                     self.heard_again += 1;
                     self.count(&report);
                 }

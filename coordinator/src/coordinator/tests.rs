@@ -119,6 +119,49 @@ async fn whatever_fails_the_same_is_found() {
 }
 
 #[tokio::test]
+async fn a_worker_that_computes_wrongly_is_outvoted() {
+    let (reference, _) = quiet(&problem()).await;
+    let (mut solved, mut failed) = (0, 0);
+    for seed in 0..24 {
+        let mut cluster = cluster([1, 3, 5, 16][seed as usize % 4], seed);
+        // Of every second cluster only a part is audited: what the worker did is done again.
+        let is_full = seed % 2 == 0;
+        cluster.policy.audit_percent = if is_full { 100 } else { 50 };
+        cluster.policy.suspicion_limit = 1000;
+        cluster.start_coordinator();
+        for _ in 0..4 {
+            cluster.start_worker();
+        }
+        cluster.break_worker(seed as usize % 4);
+        for worker in 0..4 {
+            cluster.pull(0, worker).await;
+        }
+        cluster.submit(&problem()).await;
+        let row = cluster.run().await;
+        let workers = cluster.ledger.workers(100).await.unwrap();
+        let evicted = workers.iter().filter(|worker| worker.evicted).count();
+        assert!(evicted <= 1, "seed {seed}: only one computes wrongly");
+        // A worker that died before it was outvoted leaves what it did.
+        if is_full || evicted == 1 {
+            match row.state {
+                JobState::Solved => {
+                    assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+                    solved += evicted;
+                }
+                _ => {
+                    let reason = row.reason.unwrap_or_default();
+                    assert!(!is_full, "seed {seed}: {reason}");
+                    assert!(reason.contains("computed wrongly"), "{reason}");
+                    failed += 1;
+                }
+            }
+        }
+    }
+    println!("outvoted: {solved} jobs solved, {failed} failed");
+    assert!(solved > 6, "of those that were not killed first: {solved}");
+}
+
+#[tokio::test]
 async fn a_coordinator_killed_at_any_write_loses_nothing() {
     survives_a_kill_at_any_write(&problem()).await;
 }

@@ -1,6 +1,7 @@
 //! What workers call: pull, renew, report, give back.
 
 use super::{Coordinator, CoordinatorError};
+use crate::chunks::audit::is_audited;
 use crate::ledger::identity::{ItemRange, LeaseId, RequestId, WorkerId};
 use crate::ledger::memory::MOST_MICROS;
 use crate::ledger::rows::{Completion, GiveBack, Lease, LeaseRequest, Renewal, WorkerSeen};
@@ -162,12 +163,25 @@ impl Coordinator {
             }
             Err(error) => return Err(error.into()),
         };
-        let completion = self.ledger.complete(lease, object).await?;
+        let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
+            self.ledger.witness(lease, object).await?
+        } else {
+            self.ledger.complete(lease, object).await?
+        };
         match completion {
+            Completion::Witnessed => {
+                tracing::debug!(%lease, "a chunk is done again on another worker, to compare");
+                self.work.notify_waiters();
+                self.changed();
+            }
             Completion::Accepted => {
                 tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
                 self.changed();
                 self.wake_steward(lease.chunk.job);
+                if is_audited(lease.chunk, self.policy.audit_percent) {
+                    // Whoever was outvoted has lost chunks.
+                    self.work.notify_waiters();
+                }
             }
             Completion::HashDiffers => {
                 tracing::error!(%lease, "a chunk was accepted before with other results: one of \

@@ -217,8 +217,12 @@ impl Drive {
         let Some(stage) = next_to_absorb(&stages) else {
             return self.judge_suspects(tools).await;
         };
-        let stage = stage.stage;
+        let (stage, items) = (stage.stage, stage.items);
         let results = self.results(tools, stage).await?;
+        if results.len() as u64 != items {
+            // A worker was outvoted in between, and what it did is done again.
+            return Err(LedgerError::Fenced(self.job).into());
+        }
         tracing::info!(job = %self.job, stage = stage.0, items = results.len(), "absorbing a stage");
         let wanted = self
             .at_work(move |steward| steward.absorb(stage, results))

@@ -52,6 +52,9 @@ macro_rules! ledger_conformance {
             case!(a_lost_reply_to_a_lease_is_sent_again);
             case!(stages_open_and_close_in_order);
             case!(leases_are_cut_to_size);
+            case!(an_audited_chunk_needs_two_that_agree);
+            case!(what_an_outvoted_worker_found_is_done_again);
+            case!(a_job_that_used_an_outvoted_worker_fails);
 
             #[test]
             fn it_agrees_with_the_oracle() {
@@ -266,6 +269,115 @@ pub async fn silence_is_a_suspicion_and_a_drain_is_none(ledger: &dyn Ledger, clo
     };
     assert_eq!(expired, [expected]);
     assert_eq!(counts(ledger, job).await, (5, 0, 0, 0));
+}
+
+/// Workers that are here.
+async fn here(ledger: &dyn Ledger, names: &[&str]) {
+    for name in names {
+        ledger.seen(seen(name, 1)).await.unwrap();
+    }
+}
+
+/// The next chunk for this worker, whole.
+async fn take(ledger: &dyn Ledger, who: &str, name: &str) -> Lease {
+    let mut wanted = wants(who, name, 1);
+    wanted.duration_ms = 60_000;
+    ledger.lease(wanted).await.unwrap()[0].clone()
+}
+
+pub async fn an_audited_chunk_needs_two_that_agree(ledger: &dyn Ledger, _: &ManualClock) {
+    here(ledger, &["u", "v", "w"]).await;
+    let (job, _) = running(ledger, "r", "t", 8, 8).await;
+    let first = take(ledger, "v", "1").await;
+    let found = result(first.items, 1, 5);
+    let done = ledger.witness(first.lease, found.clone()).await.unwrap();
+    assert_eq!(done, Completion::Witnessed);
+    assert_eq!(counts(ledger, job).await, (8, 0, 0, 0));
+    // The answer was lost; and it does not change its mind.
+    let again = ledger.witness(first.lease, found.clone()).await.unwrap();
+    assert_eq!(again, Completion::Witnessed);
+    let other = ledger.witness(first.lease, result(first.items, 2, 5)).await;
+    assert_eq!(other.unwrap(), Completion::HashDiffers);
+    // Not the same worker again, while there are others.
+    assert!(ledger.lease(wants("v", "2", 1)).await.unwrap().is_empty());
+    let second = take(ledger, "w", "1").await;
+    assert_eq!(second.items, first.items, "the whole chunk");
+    let done = ledger
+        .witness(second.lease, result(second.items, 2, 5))
+        .await;
+    assert_eq!(done.unwrap(), Completion::Witnessed);
+    let third = take(ledger, "u", "1").await;
+    let done = ledger.witness(third.lease, found).await.unwrap();
+    assert_eq!(done, Completion::Accepted);
+    assert_eq!(counts(ledger, job).await, (0, 0, 8, 0));
+    let rows = ledger.workers(9).await.unwrap();
+    let evicted: Vec<_> = rows.iter().filter(|row| row.evicted).collect();
+    assert_eq!(evicted.len(), 1);
+    assert_eq!(evicted[0].says.worker, worker("w"));
+    let refused = ledger.lease(wants("w", "3", 1)).await;
+    assert!(matches!(refused, Err(LedgerError::Evicted(_))));
+    assert!(ledger.lease(wants("v", "3", 1)).await.unwrap().is_empty());
+}
+
+pub async fn what_an_outvoted_worker_found_is_done_again(ledger: &dyn Ledger, _: &ManualClock) {
+    here(ledger, &["u", "v", "w"]).await;
+    let (job, old) = running(ledger, "r", "t", 32, 8).await;
+    // One chunk that nobody looks at, one that it has, one that is audited.
+    let alone = take(ledger, "w", "1").await;
+    let done = ledger
+        .complete(alone.lease, result(alone.items, 7, 5))
+        .await;
+    assert_eq!(done.unwrap(), Completion::Accepted);
+    let audited = take(ledger, "w", "2").await;
+    let held = take(ledger, "w", "3").await;
+    let done = ledger
+        .witness(audited.lease, result(audited.items, 7, 5))
+        .await;
+    assert_eq!(done.unwrap(), Completion::Witnessed);
+    for who in ["u", "v"] {
+        let lease = take(ledger, who, "1").await;
+        assert_eq!(lease.items, audited.items);
+        let found = result(lease.items, 1, 5);
+        ledger.witness(lease.lease, found).await.unwrap();
+    }
+    assert_eq!(counts(ledger, job).await, (24, 0, 8, 0));
+    let late = ledger.complete(held.lease, result(held.items, 7, 5)).await;
+    assert_eq!(late.unwrap(), Completion::Stale);
+    let again = take(ledger, "u", "2").await;
+    assert_eq!(again.items, alone.items);
+    assert!(
+        again.lease.epoch > alone.lease.epoch,
+        "its object has another place"
+    );
+    // Whoever drove the job has read what is not so any more.
+    let refused = ledger.advance(job, old, Advance::default()).await;
+    assert!(matches!(refused, Err(LedgerError::Fenced(_))));
+    let new = ledger.steward(job, &coordinator("c"), 1000).await.unwrap();
+    assert!(new > Some(old));
+}
+
+pub async fn a_job_that_used_an_outvoted_worker_fails(ledger: &dyn Ledger, _: &ManualClock) {
+    here(ledger, &["u", "v", "w"]).await;
+    let (job, epoch) = running(ledger, "r", "t", 8, 8).await;
+    let used = take(ledger, "w", "1").await;
+    ledger
+        .complete(used.lease, result(used.items, 7, 5))
+        .await
+        .unwrap();
+    let step = Advance {
+        close: vec![StageId(0)],
+        open: vec![stage(1, 8, 8)],
+        ..Advance::default()
+    };
+    ledger.advance(job, epoch, step).await.unwrap();
+    for (who, hash) in [("w", 7), ("u", 1), ("v", 1)] {
+        let lease = take(ledger, who, "2").await;
+        let found = result(lease.items, hash, 5);
+        ledger.witness(lease.lease, found).await.unwrap();
+    }
+    let row = ledger.job(job).await.unwrap().unwrap();
+    assert_eq!(row.state, JobState::Failed);
+    assert!(row.reason.unwrap().contains("worker w computed wrongly"));
 }
 
 pub async fn who_speaks_again_is_not_dead(ledger: &dyn Ledger, clock: &ManualClock) {

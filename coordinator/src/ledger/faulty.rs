@@ -182,6 +182,13 @@ impl Ledger for FaultyLedger {
     ) -> Result<Completion, LedgerError> {
         self.write(self.inner.complete(lease, result)).await
     }
+    async fn witness(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError> {
+        self.write(self.inner.witness(lease, result)).await
+    }
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         self.write(self.inner.give_back(lease, why)).await
     }

@@ -2,11 +2,16 @@
 //!
 //! Deterministic: the same calls at the same times give the same answers.
 
+mod audit;
+mod books;
+
+pub use self::audit::tainted;
+
+use self::books::{Books, Job, Stage, Worker};
 use super::clock::{Clock, LedgerTime};
 use super::identity::*;
 use super::rows::*;
 use super::{Ledger, LedgerError};
-use crate::chunks::sizing::Situation;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,47 +34,6 @@ pub struct MemoryLedger {
     books: Mutex<Books>,
 }
 
-#[derive(Default)]
-struct Books {
-    requests: BTreeMap<RequestId, JobId>,
-    jobs: BTreeMap<JobId, Job>,
-    /// Virtual time of each tenant: microseconds of CPU that were used or are in use.
-    tenants: BTreeMap<Tenant, i64>,
-    workers: BTreeMap<WorkerId, Worker>,
-    leases: BTreeMap<WorkerId, BTreeSet<ChunkId>>,
-}
-
-struct Job {
-    row: JobRow,
-    virtual_time: i64,
-    stages: BTreeMap<StageId, Stage>,
-}
-
-struct Stage {
-    /// The row, with the counts of the chunks.
-    row: StageRow,
-    chunks: BTreeMap<u64, Chunk>,
-    /// First items of the chunks that are ready.
-    ready: BTreeSet<u64>,
-}
-
-struct Chunk {
-    row: ChunkRow,
-    /// Whose question it was leased for; of a chunk that is ready, who fell silent with it.
-    request: Option<RequestId>,
-    /// When the lease ended that was not renewed.
-    silent_since: Option<LedgerTime>,
-    charged: i64,
-}
-
-struct Worker {
-    says: WorkerSeen,
-    first_seen: LedgerTime,
-    last_seen: LedgerTime,
-    items_done: u64,
-    chunks_done: u64,
-}
-
 impl MemoryLedger {
     /// An empty ledger.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
@@ -83,257 +47,6 @@ impl MemoryLedger {
         self.books
             .lock()
             .expect("no call panics while it holds the books")
-    }
-}
-
-impl Stage {
-    /// Takes a chunk into the counts.
-    fn count(&mut self, first: u64) {
-        let Some(chunk) = self.chunks.get(&first).map(|c| &c.row) else {
-            return;
-        };
-        if chunk.state == ChunkState::Ready {
-            self.ready.insert(first);
-        }
-        let (count, result) = of_state(&mut self.row, &chunk.state);
-        count.items += chunk.items.len();
-        count.chunks += 1;
-        if let Some(outcomes) = result {
-            self.row.outcomes.add(outcomes);
-        }
-    }
-
-    /// Takes a chunk that has no result out of the counts, before it changes.
-    fn discount(&mut self, first: u64) {
-        let Some(chunk) = self.chunks.get(&first).map(|c| &c.row) else {
-            return;
-        };
-        self.ready.remove(&first);
-        let (count, _) = of_state(&mut self.row, &chunk.state);
-        count.items -= chunk.items.len();
-        count.chunks -= 1;
-    }
-
-    /// Puts a new chunk in.
-    fn insert(&mut self, row: ChunkRow) {
-        let first = row.items.first;
-        let chunk = Chunk {
-            row,
-            request: None,
-            silent_since: None,
-            charged: 0,
-        };
-        self.chunks.insert(first, chunk);
-        self.count(first);
-    }
-}
-
-/// The count that a chunk of this state belongs to, and its outcomes where it has a result.
-fn of_state<'a>(row: &'a mut StageRow, state: &ChunkState) -> (&'a mut Count, Option<Outcomes>) {
-    match state {
-        ChunkState::Ready => (&mut row.ready, None),
-        ChunkState::Leased { .. } => (&mut row.leased, None),
-        ChunkState::Accepted { result, .. } => (&mut row.accepted, Some(result.outcomes)),
-        ChunkState::Failed { result } => (&mut row.failed, Some(result.outcomes)),
-    }
-}
-
-impl Job {
-    fn leased_chunks(&self) -> u64 {
-        self.stages.values().map(|s| s.row.leased.chunks).sum()
-    }
-}
-
-impl Books {
-    fn job(&mut self, job: JobId) -> Result<&mut Job, LedgerError> {
-        self.jobs.get_mut(&job).ok_or(LedgerError::UnknownJob(job))
-    }
-
-    fn fenced(&mut self, job: JobId, epoch: Epoch) -> Result<&mut Job, LedgerError> {
-        let found = self.job(job)?;
-        if found.row.steward_epoch != epoch || found.row.state.has_ended() {
-            return Err(LedgerError::Fenced(job));
-        }
-        Ok(found)
-    }
-
-    fn stage(&mut self, id: ChunkId) -> Option<&mut Stage> {
-        self.jobs.get_mut(&id.job)?.stages.get_mut(&id.stage)
-    }
-
-    /// A chunk whose state and items stay as they are.
-    fn chunk(&mut self, id: ChunkId) -> Option<&mut Chunk> {
-        self.stage(id)?.chunks.get_mut(&id.first)
-    }
-
-    /// Puts a chunk into another state; the one that it had.
-    fn change(&mut self, id: ChunkId, state: ChunkState) -> Option<ChunkState> {
-        let stage = self.stage(id)?;
-        stage.discount(id.first);
-        let chunk = stage.chunks.get_mut(&id.first)?;
-        let before = std::mem::replace(&mut chunk.row.state, state);
-        stage.count(id.first);
-        Some(before)
-    }
-
-    /// Adds to the virtual time of a job and its tenant.
-    fn charge(&mut self, job: JobId, micros: i64) {
-        if let Some(job) = self.jobs.get_mut(&job) {
-            job.virtual_time += micros;
-            *self
-                .tenants
-                .entry(job.row.asked.tenant.clone())
-                .or_default() += micros;
-        }
-    }
-
-    /// Takes a leased chunk from its worker and puts it into another state.
-    fn unlease(&mut self, id: ChunkId, state: ChunkState) -> Option<WorkerId> {
-        let ChunkState::Leased { worker, .. } = self.change(id, state)? else {
-            return None;
-        };
-        let chunk = self.chunk(id)?;
-        chunk.request = None;
-        chunk.silent_since = None;
-        let charged = std::mem::take(&mut chunk.charged);
-        self.charge(id.job, -charged);
-        if let Some(held) = self.leases.get_mut(&worker) {
-            held.remove(&id);
-        }
-        Some(worker)
-    }
-
-    fn release_all(&mut self, job: JobId) {
-        let held: Vec<ChunkId> = self.leases.values().flatten().copied().collect();
-        for id in held.into_iter().filter(|id| id.job == job) {
-            self.unlease(id, ChunkState::Ready);
-        }
-    }
-
-    fn present_threads(&self, now: LedgerTime, request: &LeaseRequest) -> u64 {
-        let others = self.workers.values().filter(|w| {
-            w.says.worker != request.worker
-                && !w.says.draining
-                && now.since_ms(w.last_seen) < PRESENT_MS
-        });
-        others.map(|w| u64::from(w.says.threads)).sum::<u64>() + u64::from(request.threads)
-    }
-
-    /// The chunk whose turn it is: the tenant's, then the job's least virtual time.
-    fn choose(&self, request: &LeaseRequest) -> Option<ChunkId> {
-        let turn = |job: &Job| {
-            let tenant = self.tenants.get(&job.row.asked.tenant).copied();
-            (tenant.unwrap_or(0), job.virtual_time, job.row.number)
-        };
-        let mut candidates: Vec<&Job> = self
-            .jobs
-            .values()
-            .filter(|job| {
-                job.row.state == JobState::Running
-                    && job.row.asked.numerics_revision == request.numerics_revision
-                    && job.leased_chunks() < u64::from(request.in_flight_limit)
-            })
-            .collect();
-        candidates.sort_by_key(|job| turn(job));
-        candidates
-            .iter()
-            .flat_map(|job| job.stages.values())
-            .flat_map(|stage| {
-                stage
-                    .ready
-                    .iter()
-                    .filter_map(|first| stage.chunks.get(first))
-            })
-            .find(|chunk| chunk.row.suspicions < request.suspicion_limit)
-            .map(|chunk| chunk.row.chunk)
-    }
-
-    fn lease_one(&mut self, now: LedgerTime, request: &LeaseRequest) -> Option<Lease> {
-        let id = self.choose(request)?;
-        let all_threads = self.present_threads(now, request);
-        let running = |job: &&Job| job.row.state == JobState::Running;
-        let jobs = self.jobs.values().filter(running).count() as u64;
-        let job = self.jobs.get_mut(&id.job)?;
-        let stage = job.stages.get_mut(&id.stage)?;
-        let counts = stage.row.clone();
-        let wanted = request.sizing.items(&Situation {
-            ready_items: counts.ready.items,
-            done_items: counts.accepted.items,
-            done_micros: counts.cpu_micros,
-            threads: u64::from(request.threads),
-            all_threads,
-            jobs,
-        });
-        stage.discount(id.first);
-        let chunk = stage.chunks.get_mut(&id.first)?;
-        let rest = ItemRange {
-            first: id.first.saturating_add(wanted),
-            last: chunk.row.items.last,
-        };
-        let cut = (!rest.is_empty()).then(|| {
-            let mut row = chunk.row.clone();
-            row.chunk.first = rest.first;
-            row.items = rest;
-            row
-        });
-        if cut.is_some() {
-            chunk.row.items.last = rest.first;
-        }
-        let charged = estimate(chunk.row.items.len(), &counts);
-        let until = now.after_ms(request.duration_ms);
-        chunk.row.epoch.0 += 1;
-        chunk.row.state = ChunkState::Leased {
-            worker: request.worker.clone(),
-            until,
-        };
-        chunk.request = Some(request.request.clone());
-        chunk.silent_since = None;
-        chunk.charged = charged;
-        let chunk = chunk.row.clone();
-        stage.count(id.first);
-        if let Some(row) = cut {
-            stage.insert(row);
-        }
-        job.row.started.get_or_insert(now);
-        let lease = Lease {
-            lease: LeaseId {
-                chunk: id,
-                epoch: chunk.epoch,
-            },
-            items: chunk.items,
-            until,
-            problem: job.row.asked.problem,
-            definition: counts.definition,
-            alone: chunk.alone,
-        };
-        self.charge(id.job, charged);
-        self.leases
-            .entry(request.worker.clone())
-            .or_default()
-            .insert(id);
-        Some(lease)
-    }
-
-    /// Takes the suspicions back that rest on the silence of a session that speaks.
-    fn acquit(&mut self, session: &str) {
-        for stage in self.jobs.values_mut().flat_map(|j| j.stages.values_mut()) {
-            for first in &stage.ready {
-                let Some(chunk) = stage.chunks.get_mut(first) else {
-                    continue;
-                };
-                let same = |lost: &RequestId| lost.as_str().starts_with(session);
-                if chunk.request.as_ref().is_some_and(same) {
-                    chunk.request = None;
-                    chunk.silent_since = None;
-                    chunk.row.suspicions = chunk.row.suspicions.saturating_sub(1);
-                }
-            }
-        }
-    }
-
-    fn held(&self, worker: &WorkerId) -> Vec<ChunkId> {
-        let held = self.leases.get(worker);
-        held.map_or_else(Vec::new, |set| set.iter().copied().collect())
     }
 }
 
@@ -740,6 +453,9 @@ impl Ledger for MemoryLedger {
                 break;
             }
         }
+        if leases.is_empty() && request.slots > 0 && books.is_evicted(&request.worker) {
+            return Err(LedgerError::Evicted(request.worker));
+        }
         Ok(leases)
     }
 
@@ -781,20 +497,7 @@ impl Ledger for MemoryLedger {
                 if chunk.row.epoch == lease.epoch && chunk.row.items == result.items =>
             {
                 let worker = worker.clone();
-                let (items, micros) = (result.items.len(), result.cpu_micros);
-                let accepted = ChunkState::Accepted {
-                    worker: worker.clone(),
-                    result,
-                };
-                books.unlease(lease.chunk, accepted);
-                books.charge(lease.chunk.job, micros as i64);
-                if let Some(stage) = books.stage(lease.chunk) {
-                    stage.row.cpu_micros += micros;
-                }
-                if let Some(worker) = books.workers.get_mut(&worker) {
-                    worker.items_done += items;
-                    worker.chunks_done += 1;
-                }
+                books.accept(lease.chunk, worker, result);
                 Ok(Completion::Accepted)
             }
             ChunkState::Accepted { result: first, .. } if first.items == result.items => {
@@ -807,6 +510,20 @@ impl Ledger for MemoryLedger {
                 })
             }
             _ => Ok(Completion::Stale),
+        }
+    }
+
+    async fn witness(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError> {
+        check_size("the CPU time of a chunk", result.cpu_micros)?;
+        let now = self.clock.now();
+        let witnessed = self.books().witness(now, lease, &result);
+        match witnessed {
+            Some(completion) => Ok(completion),
+            None => self.complete(lease, result).await,
         }
     }
 
@@ -868,6 +585,7 @@ impl Ledger for MemoryLedger {
                 last_seen: now,
                 items_done: 0,
                 chunks_done: 0,
+                evicted: false,
             });
         worker.says = says;
         worker.last_seen = now;
@@ -886,6 +604,7 @@ impl Ledger for MemoryLedger {
                 items_done: w.items_done,
                 chunks_done: w.chunks_done,
                 leased_chunks: books.held(&w.says.worker).len() as u64,
+                evicted: w.evicted,
             })
             .collect();
         rows.sort_by(|a, b| {

@@ -18,7 +18,7 @@ pub mod sql;
 mod state_machine;
 
 use self::clock::LedgerTime;
-use self::identity::{CoordinatorId, Epoch, JobId, LeaseId, RequestId};
+use self::identity::{CoordinatorId, Epoch, JobId, LeaseId, RequestId, WorkerId};
 use self::rows::*;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
@@ -41,6 +41,9 @@ pub enum LedgerError {
     /// A stage was opened twice, or closed while some of its chunks were not finished.
     #[error("stage {1:?} of job {0} cannot be opened or closed now")]
     StageOrder(JobId, StageId),
+    /// The worker was outvoted at an audit.
+    #[error("worker {0} computed wrongly: two others found something else for a chunk of it")]
+    Evicted(WorkerId),
     /// A number is too large for the ledger.
     #[error("{0} is larger than the ledger can hold")]
     TooLarge(&'static str),
@@ -147,6 +150,15 @@ pub trait Ledger: Send + Sync {
     ) -> Result<Vec<Renewal>, LedgerError>;
     /// Accepts a chunk's result, whose object is already durable.
     async fn complete(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError>;
+    /// The same for a chunk that is audited: it is accepted once two executions agree, and ready
+    /// again until then, for another worker where there is one. Whoever found something else is
+    /// evicted: it gets no chunk any more, its leases end, and what it alone has found in open
+    /// stages is ready again. A job that has used such a result in a closed stage fails.
+    async fn witness(
         &self,
         lease: LeaseId,
         result: ResultObject,

@@ -194,6 +194,13 @@ impl Outcomes {
         outcomes
     }
 
+    /// Takes another count out of this one, which holds it.
+    pub fn take(&mut self, other: Self) {
+        self.regular -= other.regular;
+        self.singular -= other.singular;
+        self.failed -= other.failed;
+    }
+
     /// Adds another count to this one.
     pub fn add(&mut self, other: Self) {
         self.regular += other.regular;
@@ -364,6 +371,8 @@ pub enum Completion {
     Accepted,
     /// It was before, by this very lease: the first answer was lost.
     AlreadyAccepted,
+    /// The chunk is audited: it is ready again, and accepted once another execution agrees.
+    Witnessed,
     /// The lease had ended: drop the result.
     Stale,
     /// Another result was accepted for the same items: one of two workers computes wrongly.
@@ -431,6 +440,8 @@ pub struct WorkerRow {
     pub chunks_done: u64,
     /// Chunks that it has now.
     pub leased_chunks: u64,
+    /// Two others found something else for a chunk of it: it gets none any more.
+    pub evicted: bool,
 }
 
 /// What one worker did for one job.

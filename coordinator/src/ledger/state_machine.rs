@@ -72,6 +72,7 @@ enum Call {
         hash: u8,
         cpu_micros: u64,
         other_items: bool,
+        audited: bool,
     },
     GiveBack {
         lease: usize,
@@ -115,9 +116,10 @@ fn call() -> impl Strategy<Value = Call> {
             |(who, name, slots, threads, limit)| Call::Lease { who, name, slots, threads, limit }
         ),
         2 => proptest::collection::vec(lease.clone(), 0..4).prop_map(|leases| Call::Renew { leases }),
-        10 => (lease.clone(), 0..9u8, 0..90_000u64, 0..12u8).prop_map(
-            |(lease, hash, cpu_micros, other)| Call::Complete {
-                lease, hash: u8::from(hash == 0), cpu_micros, other_items: other == 0
+        10 => (lease.clone(), 0..9u8, 0..90_000u64, 0..12u8, 0..3u8).prop_map(
+            |(lease, hash, cpu_micros, other, audited)| Call::Complete {
+                lease, hash: u8::from(hash == 0), cpu_micros, other_items: other == 0,
+                audited: audited == 0
             }
         ),
         2 => (lease, any::<bool>()).prop_map(|(lease, failed)| Call::GiveBack { lease, failed }),
@@ -179,10 +181,29 @@ impl Pair<'_> {
     async fn run(&self, calls: &[Call]) {
         let mut leases: Vec<Lease> = Vec::new();
         let mut accepted: BTreeSet<(StageOf, u64)> = BTreeSet::new();
+        let mut evicted = 0;
         for call in calls {
-            self.carry_out(call, &mut leases, &mut accepted).await;
+            self.carry_out(call, &mut leases, &mut accepted, &mut evicted)
+                .await;
             self.check(&accepted).await;
         }
+    }
+
+    /// The items of all accepted chunks.
+    async fn accepted(&self) -> BTreeSet<(StageOf, u64)> {
+        let mut accepted = BTreeSet::new();
+        for job in both!(self, jobs(10)).unwrap_or_default() {
+            for stage in both!(self, stages(job.job)).unwrap_or_default() {
+                let finished = both!(self, finished_chunks(job.job, stage.stage, 0, 1000));
+                for chunk in finished.unwrap_or_default() {
+                    if let ChunkState::Accepted { .. } = chunk.state {
+                        let items = chunk.items.first..chunk.items.last;
+                        accepted.extend(items.map(|item| ((job.job, stage.stage), item)));
+                    }
+                }
+            }
+        }
+        accepted
     }
 
     async fn job(&self, index: usize) -> Option<JobRow> {
@@ -195,6 +216,7 @@ impl Pair<'_> {
         call: &Call,
         leases: &mut Vec<Lease>,
         accepted: &mut BTreeSet<(StageOf, u64)>,
+        evicted: &mut usize,
     ) {
         match call.clone() {
             Call::Submit {
@@ -238,6 +260,7 @@ impl Pair<'_> {
                 hash,
                 cpu_micros,
                 other_items,
+                audited,
             } => {
                 let Some(lease) = leases.iter().rev().nth(lease % 12) else {
                     return;
@@ -245,7 +268,18 @@ impl Pair<'_> {
                 let mut items = lease.items;
                 items.last += u64::from(other_items);
                 let object = result(items, hash, cpu_micros);
-                let done = both!(self, complete(lease.lease, object.clone()));
+                let done = if audited {
+                    both!(self, witness(lease.lease, object.clone()))
+                } else {
+                    both!(self, complete(lease.lease, object.clone()))
+                };
+                let workers = both!(self, workers(10)).unwrap_or_default();
+                if workers.iter().filter(|worker| worker.evicted).count() > *evicted {
+                    // What only that worker has found is done again.
+                    *evicted = workers.iter().filter(|worker| worker.evicted).count();
+                    *accepted = self.accepted().await;
+                    return;
+                }
                 if done == Some(Completion::Accepted) {
                     let ChunkId { job, stage, .. } = lease.lease.chunk;
                     for item in items.first..items.last {

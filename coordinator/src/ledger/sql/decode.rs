@@ -205,6 +205,7 @@ pub fn worker_row(row: &Row) -> Result<WorkerRow, LedgerError> {
         items_done: number(row, "items_done")?,
         chunks_done: number(row, "chunks_done")?,
         leased_chunks: number(row, "leased_chunks")?,
+        evicted: number(row, "evicted")? != 0,
     })
 }
 

@@ -9,21 +9,21 @@ use crate::ledger::identity::*;
 use crate::ledger::memory::{PRESENT_MS, check_size, estimate};
 use crate::ledger::rows::*;
 
-fn signed(value: u64) -> i64 {
+pub fn signed(value: u64) -> i64 {
     i64::try_from(value).unwrap_or(i64::MAX)
 }
 
 /// What a chunk's row says that the operations here need.
-struct Found {
-    items: ItemRange,
-    state: String,
-    epoch: Epoch,
-    charged: i64,
-    row: Row,
+pub struct Found {
+    pub items: ItemRange,
+    pub state: String,
+    pub epoch: Epoch,
+    pub charged: i64,
+    pub row: Row,
 }
 
 /// One chunk.
-async fn find(c: &mut Connection, chunk: ChunkId) -> Result<Option<Found>, LedgerError> {
+pub async fn find(c: &mut Connection, chunk: ChunkId) -> Result<Option<Found>, LedgerError> {
     let row = query("SELECT * FROM chunks WHERE job = ? AND stage = ? AND first = ?")
         .bind(chunk.job.to_string())
         .bind(chunk.stage.0)
@@ -93,18 +93,23 @@ pub async fn lease(
             None => break,
         }
     }
+    if leases.is_empty() && is_evicted(c, &request.worker).await? {
+        return Err(LedgerError::Evicted(request.worker));
+    }
     Ok(leases)
 }
 
 /// Takes the suspicions back that rest on the silence of a session that speaks.
 async fn acquit(c: &mut Connection, session: &str) -> Result<(), LedgerError> {
+    // Names are visible ASCII, so that every one that begins so is below this one.
+    let end = format!("{session}\u{7f}");
     query(
-        "UPDATE chunks SET suspicions = suspicions - 1, request = NULL, lease_until = NULL
-         WHERE state = 'ready' AND suspicions > 0
-           AND substr(request, 1, CAST(? AS INTEGER)) = ?",
+        "UPDATE chunks SET request = NULL, lease_until = NULL,
+                suspicions = CASE WHEN suspicions > 0 THEN suspicions - 1 ELSE 0 END
+         WHERE state = 'ready' AND request IS NOT NULL AND request >= ? AND request < ?",
     )
-    .bind(i64::try_from(session.len()).unwrap_or(i64::MAX))
     .bind(session)
+    .bind(end)
     .execute(c)
     .await?;
     Ok(())
@@ -114,9 +119,10 @@ async fn acquit(c: &mut Connection, session: &str) -> Result<(), LedgerError> {
 /// many threads all other workers have; how many jobs are running.
 const CHOOSE: &str = "
     SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
-           c.epoch AS chunk_epoch, c.alone AS chunk_alone,
+           c.epoch AS chunk_epoch, c.alone AS chunk_alone, c.votes AS chunk_votes,
            (SELECT CAST(COALESCE(SUM(threads), 0) AS BIGINT) FROM workers
-            WHERE last_seen > ? AND draining = 0 AND worker <> ?) AS other_threads,
+            WHERE last_seen > ? AND draining = 0 AND evicted = 0 AND worker <> ?)
+           AS other_threads,
            (SELECT COUNT(*) FROM jobs r
             WHERE r.ended IS NULL AND r.state = 'running') AS running_jobs
     FROM jobs j
@@ -125,9 +131,17 @@ const CHOOSE: &str = "
     JOIN chunks c ON c.job = s.job AND c.stage = s.stage
      AND c.first = (SELECT MIN(r.first) FROM chunks r
                     WHERE r.job = s.job AND r.stage = s.stage AND r.state = 'ready'
-                      AND r.suspicions < ?)
+                      AND r.suspicions < ?
+                      AND (r.votes = 0
+                           OR NOT EXISTS (SELECT 1 FROM votes v WHERE v.job = r.job
+                                          AND v.stage = r.stage AND v.first = r.first
+                                          AND v.worker = ?)
+                           OR NOT EXISTS (SELECT 1 FROM workers o WHERE o.last_seen > ?
+                                          AND o.draining = 0 AND o.evicted = 0
+                                          AND o.numerics_revision = ? AND o.worker <> ?)))
     WHERE j.ended IS NULL AND j.state = 'running' AND j.numerics_revision = ?
       AND j.leased_chunks < ? AND s.ready_chunks > 0
+      AND NOT EXISTS (SELECT 1 FROM workers e WHERE e.worker = ? AND e.evicted = 1)
     ORDER BY t.virtual_time, j.virtual_time, j.number, s.stage LIMIT 1";
 
 /// The writes of one lease; together they are one exchange with the engine's thread, which costs
@@ -163,8 +177,13 @@ async fn lease_one(
         .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
         .bind(request.worker.as_str())
         .bind(request.suspicion_limit)
+        .bind(request.worker.as_str())
+        .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
+        .bind(request.numerics_revision)
+        .bind(request.worker.as_str())
         .bind(request.numerics_revision)
         .bind(request.in_flight_limit)
+        .bind(request.worker.as_str())
         .fetch_optional(&mut *c)
         .await?;
     let Some(row) = row else {
@@ -189,7 +208,12 @@ async fn lease_one(
         first: chunk.first,
         last: chunk.first.saturating_add(wanted).min(last),
     };
-    let is_cut = items.last < last;
+    // What was voted on is the whole chunk.
+    let is_cut = items.last < last && number(&row, "chunk_votes")? == 0;
+    let items = ItemRange {
+        last: if is_cut { items.last } else { last },
+        ..items
+    };
     let charged = estimate(items.len(), &stage);
     let until = now.after_ms(request.duration_ms);
     let epoch = Epoch(number(&row, "chunk_epoch")? + 1);
@@ -315,6 +339,14 @@ const ACCEPT: &str = "
     UPDATE workers SET items_done = items_done + ?, chunks_done = chunks_done + 1
     WHERE worker = ?";
 
+async fn is_evicted(c: &mut Connection, worker: &WorkerId) -> Result<bool, LedgerError> {
+    let row = query("SELECT 1 AS one FROM workers WHERE worker = ? AND evicted = 1")
+        .bind(worker.as_str())
+        .fetch_optional(c)
+        .await?;
+    Ok(row.is_some())
+}
+
 /// Accepts a result, if the lease still stands.
 pub async fn complete(
     c: &mut Connection,
@@ -330,36 +362,7 @@ pub async fn complete(
     }
     match found.state.as_str() {
         "leased" if found.epoch == lease.epoch => {
-            let worker = worker(&found.row)?;
-            let job = lease.chunk.job.to_string();
-            let items = signed(result.items.len());
-            let charged = cpu_micros - found.charged;
-            query(ACCEPT)
-                .bind(result.address.as_str())
-                .bind(result.hash.to_string())
-                .bind(cpu_micros)
-                .bind(signed(result.outcomes.regular))
-                .bind(signed(result.outcomes.singular))
-                .bind(signed(result.outcomes.failed))
-                .bind(&job)
-                .bind(lease.chunk.stage.0)
-                .bind(signed(lease.chunk.first))
-                .bind(items)
-                .bind(items)
-                .bind(cpu_micros)
-                .bind(signed(result.outcomes.regular))
-                .bind(signed(result.outcomes.singular))
-                .bind(signed(result.outcomes.failed))
-                .bind(&job)
-                .bind(lease.chunk.stage.0)
-                .bind(charged)
-                .bind(&job)
-                .bind(charged)
-                .bind(&job)
-                .bind(items)
-                .bind(worker.as_str())
-                .execute(&mut *c)
-                .await?;
+            accept(c, lease, &found, &result, cpu_micros).await?;
             Ok(Completion::Accepted)
         }
         "accepted" => {
@@ -376,9 +379,50 @@ pub async fn complete(
     }
 }
 
+/// Takes the result of the worker that has the chunk.
+pub async fn accept(
+    c: &mut Connection,
+    lease: LeaseId,
+    found: &Found,
+    result: &ResultObject,
+    cpu_micros: i64,
+) -> Result<(), LedgerError> {
+    let worker = worker(&found.row)?;
+    let job = lease.chunk.job.to_string();
+    let items = signed(result.items.len());
+    let charged = cpu_micros - found.charged;
+    query(ACCEPT)
+        .bind(result.address.as_str())
+        .bind(result.hash.to_string())
+        .bind(cpu_micros)
+        .bind(signed(result.outcomes.regular))
+        .bind(signed(result.outcomes.singular))
+        .bind(signed(result.outcomes.failed))
+        .bind(&job)
+        .bind(lease.chunk.stage.0)
+        .bind(signed(lease.chunk.first))
+        .bind(items)
+        .bind(items)
+        .bind(cpu_micros)
+        .bind(signed(result.outcomes.regular))
+        .bind(signed(result.outcomes.singular))
+        .bind(signed(result.outcomes.failed))
+        .bind(&job)
+        .bind(lease.chunk.stage.0)
+        .bind(charged)
+        .bind(&job)
+        .bind(charged)
+        .bind(&job)
+        .bind(items)
+        .bind(worker.as_str())
+        .execute(&mut *c)
+        .await?;
+    Ok(())
+}
+
 /// Takes a leased chunk from its worker, with so many new suspicions. Where it fell silent the row
 /// keeps whose question it was and when the lease ended.
-async fn release(
+pub async fn release(
     c: &mut Connection,
     chunk: ChunkId,
     found: &Found,

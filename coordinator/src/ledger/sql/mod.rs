@@ -4,6 +4,7 @@
 //! after it. Readers have connections of their own. The statements are the same
 //! for both engines; what differs stands in `engine`.
 
+mod audit;
 mod decode;
 mod engine;
 mod file_system;
@@ -24,10 +25,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Version of the schema that this program writes.
-pub const SCHEMA_VERSION: i64 = 1;
+pub const SCHEMA_VERSION: i64 = 2;
 
 /// What makes version n + 1 of version n; the first makes version 1 of an empty database.
-const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [include_str!("../schema.sql")];
+const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
+    include_str!("../schema.sql"),
+    include_str!("../schema_2.sql"),
+];
 
 /// A ledger in a database.
 pub struct SqlLedger {
@@ -258,6 +262,16 @@ impl Ledger for SqlLedger {
     ) -> Result<Completion, LedgerError> {
         self.writer
             .write(move |c, _| Box::pin(leases::complete(c, lease, result)))
+            .await
+    }
+
+    async fn witness(
+        &self,
+        lease: LeaseId,
+        result: ResultObject,
+    ) -> Result<Completion, LedgerError> {
+        self.writer
+            .write(move |c, now| Box::pin(audit::witness(c, now, lease, result)))
             .await
     }
 

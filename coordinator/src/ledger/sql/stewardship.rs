@@ -256,12 +256,17 @@ pub async fn split(
         .await?
         .filter(|whole| make_up(pieces.iter().map(|p| p.items), whole.items))
         .ok_or(LedgerError::NotAPartition(chunk.job))?;
-    query("DELETE FROM chunks WHERE job = ? AND stage = ? AND first = ?")
-        .bind(chunk.job.to_string())
-        .bind(chunk.stage.0)
-        .bind(i64::try_from(chunk.first).unwrap_or(i64::MAX))
-        .execute(&mut *c)
-        .await?;
+    for statement in [
+        "DELETE FROM votes WHERE job = ? AND stage = ? AND first = ?",
+        "DELETE FROM chunks WHERE job = ? AND stage = ? AND first = ?",
+    ] {
+        query(statement)
+            .bind(chunk.job.to_string())
+            .bind(chunk.stage.0)
+            .bind(i64::try_from(chunk.first).unwrap_or(i64::MAX))
+            .execute(&mut *c)
+            .await?;
+    }
     for piece in &pieces {
         let mut row = whole.clone();
         row.chunk.first = piece.items.first;

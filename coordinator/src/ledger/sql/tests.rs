@@ -162,6 +162,25 @@ fn the_schema_of_version_1_is_what_it_was() {
     assert_eq!(&hash[..16], "0d7a7ee043c8b187", "add a migration instead");
 }
 
+#[tokio::test]
+async fn a_ledger_of_version_1_still_opens() {
+    use sqlx::{Connection, SqliteConnection};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ledger");
+    let url = format!("sqlite:{}?mode=rwc", path.display());
+    let mut old = SqliteConnection::connect(&url).await.unwrap();
+    for statements in [
+        MIGRATIONS[0],
+        "INSERT INTO ledger (schema_version) VALUES (1)",
+    ] {
+        sqlx::raw_sql(statements).execute(&mut old).await.unwrap();
+    }
+    old.close().await.unwrap();
+    let ledger = reopen(&path).await.unwrap();
+    ledger.seen(seen("w", 1)).await.unwrap();
+    assert!(!ledger.workers(1).await.unwrap()[0].evicted);
+}
+
 /// Measured, not asserted: `cargo test --release -p cognate-coordinator -- --ignored --nocapture speed`.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "a measurement"]

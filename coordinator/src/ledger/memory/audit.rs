@@ -1,0 +1,159 @@
+//! Audits in memory: votes on chunks, and what becomes of a worker that was outvoted.
+
+use super::PRESENT_MS;
+use super::books::{Books, Chunk, Stage};
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::identity::*;
+use crate::ledger::rows::*;
+use cognate_continuation::start_points::Digest;
+
+/// What one execution of a chunk found.
+pub struct Vote {
+    epoch: Epoch,
+    worker: WorkerId,
+    hash: Digest,
+}
+
+/// Why a job ends that has used results of a worker that was outvoted later.
+pub fn tainted(worker: &WorkerId) -> String {
+    format!(
+        "worker {worker} computed wrongly, which an audit has shown, and results of it were used \
+         before that: submit the job again"
+    )
+}
+
+impl Chunk {
+    /// Whether this worker has executed the chunk for an audit.
+    pub fn has_vote_of(&self, worker: &WorkerId) -> bool {
+        self.votes.iter().any(|vote| vote.worker == *worker)
+    }
+}
+
+impl Stage {
+    /// Takes an accepted result back.
+    fn reopen(&mut self, first: u64) {
+        let Some(chunk) = self.chunks.get_mut(&first) else {
+            return;
+        };
+        if let ChunkState::Accepted { result, .. } = &chunk.row.state {
+            self.row.accepted.items -= chunk.row.items.len();
+            self.row.accepted.chunks -= 1;
+            self.row.cpu_micros -= result.cpu_micros;
+            self.row.outcomes.take(result.outcomes);
+            chunk.row.state = ChunkState::Ready;
+            chunk.votes.clear();
+            self.count(first);
+        }
+    }
+
+    /// Chunks of this worker for which nobody else has found the same.
+    fn unconfirmed(&self, of: &WorkerId) -> Vec<u64> {
+        let chunks = self.chunks.iter().filter(|(_, chunk)| {
+            let ChunkState::Accepted { worker, result } = &chunk.row.state else {
+                return false;
+            };
+            let mut votes = chunk.votes.iter();
+            worker == of && !votes.any(|v| v.worker != *of && v.hash == result.hash)
+        });
+        chunks.map(|(first, _)| *first).collect()
+    }
+}
+
+impl Books {
+    pub fn is_evicted(&self, worker: &WorkerId) -> bool {
+        self.workers.get(worker).is_some_and(|known| known.evicted)
+    }
+
+    /// Whether no other worker is here that could confirm what this one finds.
+    pub fn is_only_worker(&self, now: LedgerTime, request: &LeaseRequest) -> bool {
+        !self.workers.values().any(|other| {
+            other.says.worker != request.worker
+                && other.says.numerics_revision == request.numerics_revision
+                && !other.says.draining
+                && !other.evicted
+                && now.since_ms(other.last_seen) < PRESENT_MS
+        })
+    }
+
+    /// One execution of an audited chunk; `None` where it is not the chunk's lease that stands, nor
+    /// one that voted.
+    pub fn witness(
+        &mut self,
+        now: LedgerTime,
+        lease: LeaseId,
+        result: &ResultObject,
+    ) -> Option<Completion> {
+        let chunk = self.chunk(lease.chunk)?;
+        let worker = match &chunk.row.state {
+            ChunkState::Leased { worker, .. }
+                if chunk.row.epoch == lease.epoch && chunk.row.items == result.items =>
+            {
+                worker.clone()
+            }
+            ChunkState::Accepted { .. } => return None,
+            _ => {
+                let vote = chunk.votes.iter().find(|vote| vote.epoch == lease.epoch)?;
+                return Some(if vote.hash == result.hash {
+                    Completion::Witnessed
+                } else {
+                    Completion::HashDiffers
+                });
+            }
+        };
+        let agreed = chunk.votes.iter().any(|vote| vote.hash == result.hash);
+        chunk.votes.push(Vote {
+            epoch: lease.epoch,
+            worker: worker.clone(),
+            hash: result.hash,
+        });
+        if !agreed {
+            self.unlease(lease.chunk, ChunkState::Ready);
+            self.charge(lease.chunk.job, result.cpu_micros as i64);
+            return Some(Completion::Witnessed);
+        }
+        let outvoted = chunk.votes.iter().filter(|vote| vote.hash != result.hash);
+        let outvoted: Vec<WorkerId> = outvoted.map(|vote| vote.worker.clone()).collect();
+        self.accept(lease.chunk, worker, result.clone());
+        for worker in &outvoted {
+            self.evict(now, worker);
+        }
+        Some(Completion::Accepted)
+    }
+
+    fn evict(&mut self, now: LedgerTime, worker: &WorkerId) {
+        if let Some(known) = self.workers.get_mut(worker) {
+            known.evicted = true;
+        }
+        for id in self.held(worker) {
+            self.unlease(id, ChunkState::Ready);
+        }
+        let mut ended = Vec::new();
+        for job in self.jobs.values_mut().filter(|j| !j.row.state.has_ended()) {
+            let used = |stage: &Stage| stage.row.closed && !stage.unconfirmed(worker).is_empty();
+            let is_tainted = job.stages.values().any(used);
+            let mut touched = is_tainted;
+            if is_tainted {
+                job.row.state = JobState::Failed;
+                job.row.reason = Some(tainted(worker));
+                job.row.ended = Some(now);
+                ended.push(job.row.job);
+            } else {
+                for stage in job.stages.values_mut() {
+                    for first in stage.unconfirmed(worker) {
+                        stage.reopen(first);
+                        touched = true;
+                    }
+                }
+            }
+            if touched {
+                // Whoever drives it has read what is not so any more.
+                job.row.steward = None;
+                job.row.steward_epoch.0 += 1;
+                job.row.steward_until = LedgerTime(0);
+            }
+        }
+        for job in ended {
+            self.release_all(job);
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Audits: votes on chunks, and what becomes of a worker that was outvoted. Each function is a part
+//! of one operation of a commit.
+
+use super::decode::*;
+use super::engine::{Connection, query};
+use super::leases::{Found, accept, complete, find, release, release_all, signed};
+use crate::ledger::LedgerError;
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::identity::*;
+use crate::ledger::memory::{check_size, tainted};
+use crate::ledger::rows::*;
+use cognate_continuation::start_points::Digest;
+use std::collections::BTreeSet;
+
+/// What one execution of a chunk found.
+struct Vote {
+    epoch: Epoch,
+    worker: WorkerId,
+    hash: Digest,
+}
+
+async fn votes(c: &mut Connection, chunk: ChunkId) -> Result<Vec<Vote>, LedgerError> {
+    let rows =
+        query("SELECT * FROM votes WHERE job = ? AND stage = ? AND first = ? ORDER BY epoch")
+            .bind(chunk.job.to_string())
+            .bind(chunk.stage.0)
+            .bind(signed(chunk.first))
+            .fetch_all(c)
+            .await?;
+    let vote = |row| {
+        Ok(Vote {
+            epoch: Epoch(number(row, "epoch")?),
+            worker: worker(row)?,
+            hash: digest(row, "hash")?,
+        })
+    };
+    rows.iter().map(vote).collect()
+}
+
+/// One execution of an audited chunk.
+pub async fn witness(
+    c: &mut Connection,
+    now: LedgerTime,
+    lease: LeaseId,
+    result: ResultObject,
+) -> Result<Completion, LedgerError> {
+    let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
+    let Some(found) = find(c, lease.chunk).await? else {
+        return Ok(Completion::Stale);
+    };
+    let votes = votes(c, lease.chunk).await?;
+    let stands = found.state == "leased" && found.epoch == lease.epoch;
+    if found.state == "accepted" || !(stands && found.items == result.items) {
+        let vote = votes.iter().find(|vote| vote.epoch == lease.epoch);
+        return match vote.filter(|_| found.state != "accepted") {
+            Some(vote) if vote.hash == result.hash => Ok(Completion::Witnessed),
+            Some(_) => Ok(Completion::HashDiffers),
+            None => complete(c, lease, result).await,
+        };
+    }
+    let (job, first) = (lease.chunk.job.to_string(), signed(lease.chunk.first));
+    query(
+        "INSERT INTO votes (job, stage, first, epoch, worker, hash) VALUES (?, ?, ?, ?, ?, ?);
+         UPDATE chunks SET votes = votes + 1 WHERE job = ? AND stage = ? AND first = ?",
+    )
+    .bind(&job)
+    .bind(lease.chunk.stage.0)
+    .bind(first)
+    .bind(signed(lease.epoch.0))
+    .bind(worker(&found.row)?.as_str())
+    .bind(result.hash.to_string())
+    .bind(&job)
+    .bind(lease.chunk.stage.0)
+    .bind(first)
+    .execute(&mut *c)
+    .await?;
+    if !votes.iter().any(|vote| vote.hash == result.hash) {
+        // What it took is charged, as for any other execution.
+        let used = Found {
+            charged: found.charged - cpu_micros,
+            ..found
+        };
+        release(c, lease.chunk, &used, 0, false).await?;
+        return Ok(Completion::Witnessed);
+    }
+    accept(c, lease, &found, &result, cpu_micros).await?;
+    for outvoted in votes.iter().filter(|vote| vote.hash != result.hash) {
+        evict(c, now, &outvoted.worker).await?;
+    }
+    Ok(Completion::Accepted)
+}
+
+/// Chunks of unfinished jobs that this worker has done, and for which nobody else has found the same.
+const UNCONFIRMED: &str = "
+    SELECT c.*, s.closed FROM chunks c
+    JOIN stages s ON s.job = c.job AND s.stage = c.stage
+    JOIN jobs j ON j.job = c.job
+    WHERE c.worker = ? AND c.state = 'accepted' AND j.ended IS NULL
+      AND NOT EXISTS (SELECT 1 FROM votes v
+                      WHERE v.job = c.job AND v.stage = c.stage AND v.first = c.first
+                        AND v.worker <> c.worker AND v.hash = c.hash)
+    ORDER BY c.job, c.stage, c.first";
+
+async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Result<(), LedgerError> {
+    query("UPDATE workers SET evicted = 1 WHERE worker = ?")
+        .bind(who.as_str())
+        .execute(&mut *c)
+        .await?;
+    let held = query("SELECT * FROM chunks WHERE state = 'leased' AND worker = ?")
+        .bind(who.as_str())
+        .fetch_all(&mut *c)
+        .await?;
+    for row in held {
+        let chunk = chunk_id(&row)?;
+        if let Some(found) = find(c, chunk).await? {
+            release(c, chunk, &found, 0, false).await?;
+        }
+    }
+    let (mut used, mut open) = (BTreeSet::new(), Vec::new());
+    let rows = query(UNCONFIRMED)
+        .bind(who.as_str())
+        .fetch_all(&mut *c)
+        .await?;
+    for row in &rows {
+        if number(row, "closed")? != 0 {
+            used.insert(job_id(row)?);
+        } else {
+            open.push(chunk_row(row)?);
+        }
+    }
+    for &job in &used {
+        query("UPDATE jobs SET state = 'failed', reason = ?, ended = ? WHERE job = ?")
+            .bind(tainted(who))
+            .bind(now.0)
+            .bind(job.to_string())
+            .execute(&mut *c)
+            .await?;
+        release_all(c, job).await?;
+    }
+    let mut touched = used.clone();
+    for chunk in open.iter().filter(|chunk| !used.contains(&chunk.chunk.job)) {
+        reopen(c, chunk).await?;
+        touched.insert(chunk.chunk.job);
+    }
+    for job in touched {
+        // Whoever drives it has read what is not so any more.
+        query(
+            "UPDATE jobs SET steward = NULL, steward_epoch = steward_epoch + 1, steward_until = 0
+             WHERE job = ?",
+        )
+        .bind(job.to_string())
+        .execute(&mut *c)
+        .await?;
+    }
+    Ok(())
+}
+
+/// Takes an accepted result back.
+async fn reopen(c: &mut Connection, chunk: &ChunkRow) -> Result<(), LedgerError> {
+    let ChunkState::Accepted { result, .. } = &chunk.state else {
+        return Ok(());
+    };
+    let (job, stage) = (chunk.chunk.job.to_string(), chunk.chunk.stage.0);
+    let items = signed(chunk.items.len());
+    query(
+        "UPDATE chunks SET state = 'ready', worker = NULL, address = NULL, hash = NULL,
+                cpu_micros = NULL, paths_regular = NULL, paths_singular = NULL,
+                paths_failed = NULL, votes = 0
+         WHERE job = ? AND stage = ? AND first = ?;
+         DELETE FROM votes WHERE job = ? AND stage = ? AND first = ?;
+         UPDATE stages SET ready_items = ready_items + ?, ready_chunks = ready_chunks + 1,
+                accepted_items = accepted_items - ?, accepted_chunks = accepted_chunks - 1,
+                cpu_micros = cpu_micros - ?, paths_regular = paths_regular - ?,
+                paths_singular = paths_singular - ?, paths_failed = paths_failed - ?
+         WHERE job = ? AND stage = ?",
+    )
+    .bind(&job)
+    .bind(stage)
+    .bind(signed(chunk.chunk.first))
+    .bind(&job)
+    .bind(stage)
+    .bind(signed(chunk.chunk.first))
+    .bind(items)
+    .bind(items)
+    .bind(signed(result.cpu_micros))
+    .bind(signed(result.outcomes.regular))
+    .bind(signed(result.outcomes.singular))
+    .bind(signed(result.outcomes.failed))
+    .bind(&job)
+    .bind(stage)
+    .execute(c)
+    .await?;
+    Ok(())
+}
