@@ -105,6 +105,13 @@ target/release/chaos --seconds 15 --seed 2 --ledger postgres
 step "load: 60 small jobs by 6 clients beside one of 4096 paths"
 target/release/load
 
+step "a fleet in Slurm"
+if ! command -v slurmctld >/dev/null && command -v apt-get >/dev/null; then
+  install slurmctld slurmd slurm-client munge || true
+fi
+tests/slurm/run.sh && fleet=0 || fleet=$?
+[ "$fleet" -eq 0 ] || [ "$fleet" -eq 77 ]
+
 step "many solves: 20 seeds each on one warm coordinator"
 target/release/many_solves
 printf '\nall tests passed\n'

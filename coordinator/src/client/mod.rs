@@ -9,6 +9,7 @@ pub mod config_file;
 pub mod connection;
 pub mod embedded;
 pub mod error;
+pub mod fleet;
 pub mod not_yet;
 pub mod output;
 pub mod problem;
@@ -66,7 +67,7 @@ fn in_runtime(command: Command) -> Result<Exit, ClientError> {
 
 /// A command that may be dropped at any moment.
 async fn one_shot(command: Command) -> Result<Exit, ClientError> {
-    use commands::{cancel, explain, jobs, results, submit, watch, workers};
+    use commands::{cancel, explain, fleet, jobs, results, submit, watch, workers};
     match command {
         Command::Submit(a) => submit::run(&a).await,
         Command::Watch(a) => watch::run(&a).await,
@@ -75,13 +76,13 @@ async fn one_shot(command: Command) -> Result<Exit, ClientError> {
         Command::Cancel(a) => cancel::run(&a).await,
         Command::Jobs(a) => jobs::run(&a).await,
         Command::Workers(a) => workers::run(&a).await,
+        Command::Fleet(a) => fleet::run(&a).await,
         Command::Solve(_)
         | Command::Info(_)
         | Command::Path(_)
         | Command::Coordinator(_)
         | Command::Worker(_)
-        | Command::Synthesize(_)
-        | Command::Fleet(_) => unreachable!("these were run or refused before"),
+        | Command::Synthesize(_) => unreachable!("these were run before"),
     }
 }
 

@@ -19,9 +19,9 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         | Command::Jobs(_)
         | Command::Workers(_)
         | Command::Worker(_)
+        | Command::Fleet(_)
         | Command::Info(_) => None,
         Command::Synthesize(c) => precision(c.common().precision),
-        Command::Fleet(_) => Some("fleet (workers kept in Slurm)".into()),
     };
     match missing {
         Some(what) => Err(ClientError::NotInThisVersion { what }),

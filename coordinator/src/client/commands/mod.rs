@@ -3,6 +3,7 @@
 pub mod cancel;
 pub mod coordinator;
 pub mod explain;
+pub mod fleet;
 pub mod info;
 pub mod jobs;
 pub mod path;

@@ -1,0 +1,120 @@
+//! Fleets: as many workers in a batch system as the backlog asks for.
+//!
+//! What stands is asked of the coordinator and of the batch system at each look; nothing is
+//! remembered that matters, so that this process may die and another go on.
+
+pub mod scaling;
+pub mod slurm;
+
+use super::connection::{Connection, Target};
+use super::error::ClientError;
+use cognate_protocol::v1;
+use scaling::{Backlog, Look, Meter, Patience, Step, Wishes};
+use slurm::Slurm;
+use std::time::{Duration, Instant};
+
+/// A fleet and what it is kept for.
+pub struct Fleet {
+    /// Where the backlog is asked for.
+    pub target: Target,
+    /// Where workers run.
+    pub slurm: Slurm,
+    /// How many, how fast.
+    pub wishes: Wishes,
+    /// Between two looks.
+    pub pause: Duration,
+}
+
+impl Fleet {
+    /// Looks and acts until it is dropped.
+    pub async fn keep(&self) -> ! {
+        let mut state = State::default();
+        loop {
+            // A coordinator or a controller that is away: what runs goes on, and so do we.
+            if let Err(error) = self.look(&mut state).await {
+                tracing::warn!(%error, "the fleet is left as it is");
+            }
+            tokio::time::sleep(self.pause).await;
+        }
+    }
+
+    /// One look and what follows from it.
+    pub async fn once(&self) -> Result<(), ClientError> {
+        self.look(&mut State::default()).await
+    }
+
+    async fn look(&self, state: &mut State) -> Result<(), ClientError> {
+        let mut connection = Connection::open(&self.target).await?;
+        let (jobs, workers) = (connection.jobs().await?, connection.workers().await?);
+        let tasks = self.slurm.tasks().await?;
+        let backlog = backlog(&jobs);
+        state.meter.take(&workers, Instant::now());
+        let look = Look {
+            backlog,
+            rate: state.meter.rate(),
+            tasks: &tasks,
+        };
+        let wanted = scaling::wanted(&look, &self.wishes);
+        let step = scaling::step(wanted, &tasks);
+        let Backlog { jobs, items } = backlog;
+        match step {
+            Step::Submit(count) => {
+                let now = Instant::now();
+                let accepted = state.meter.accepted();
+                if !state.patience.may_submit(now, tasks.len(), accepted) {
+                    tracing::warn!(
+                        "workers end before they have done anything: see their logs; the next try \
+                         comes later"
+                    );
+                    return Ok(());
+                }
+                let id = self.slurm.submit(count).await?;
+                state
+                    .patience
+                    .submitted(tasks.len() + count as usize, accepted);
+                tracing::info!(
+                    jobs,
+                    items,
+                    wanted,
+                    array = id,
+                    count,
+                    "workers are submitted"
+                );
+            }
+            Step::Withdraw(ids) => {
+                self.slurm.withdraw(&ids).await?;
+                tracing::info!(
+                    jobs,
+                    items,
+                    wanted,
+                    count = ids.len(),
+                    "workers that have not begun are withdrawn"
+                );
+            }
+            Step::Nothing => tracing::debug!(jobs, items, wanted, "the fleet is as it should be"),
+        }
+        Ok(())
+    }
+}
+
+/// What is carried from look to look; without it the fleet is only slower to learn.
+#[derive(Default)]
+struct State {
+    meter: Meter,
+    patience: Patience,
+}
+
+/// What there is to do.
+fn backlog(jobs: &[v1::JobOverview]) -> Backlog {
+    let unfinished = |job: &&v1::JobOverview| {
+        matches!(job.state(), v1::JobState::Queued | v1::JobState::Running)
+    };
+    let jobs: Vec<&v1::JobOverview> = jobs.iter().filter(unfinished).collect();
+    Backlog {
+        jobs: jobs.len() as u64,
+        items: jobs
+            .iter()
+            .map(|job| job.items_total.saturating_sub(job.items_accepted))
+            .sum(),
+    }
+}
