@@ -29,6 +29,26 @@ fn eco_6_names_every_path_that_it_does_not_settle() {
     }
 }
 
+/// By total degree, some paths of eco-5 have coordinates like t, t^3, t^9, t^27: doubles lose such a
+/// path half-way, and with more digits it is followed from its beginning.
+#[test]
+fn what_doubles_lose_begins_again_with_more_digits() {
+    for seed in 1..=3 {
+        let options = PlanOptions {
+            seed,
+            start: StartChoice::TotalDegree,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&eco(5).system, &options, &|_| None);
+        let paths = &sets[0].paths;
+        assert_eq!(
+            (paths.total, paths.finite, paths.at_infinity, paths.failed),
+            (54, 8, 46, 0),
+            "seed {seed}"
+        );
+    }
+}
+
 #[test]
 fn reimer_4_has_36_solutions() {
     check_named("reimer-4", &reimer(4), 120, 36);

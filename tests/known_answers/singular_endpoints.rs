@@ -2,6 +2,7 @@
 
 use crate::check::{Answer, SEEDS, check, complaints, solve};
 use cognate_algorithms::PlanOptions;
+use cognate_algorithms::plan::StartChoice;
 use cognate_systems::named::{caprasse, griewank_osborne};
 use cognate_tests::systems::written;
 
@@ -94,6 +95,33 @@ fn far_solutions_are_finite() {
                 paths: 2,
                 nonsingular: 2,
                 real: Some(Some(2)),
+                ..Answer::default()
+            },
+        );
+    }
+}
+
+/// x y = 1, y = 10^-8: one solution of norm 10^8 and one at infinity, 10^-8 apart in the patch. In
+/// doubles both are one double point.
+#[test]
+fn a_solution_beside_infinity_is_told_from_it() {
+    for exponent in [4, 6, 8] {
+        let system = written(&format!(
+            "variable_group x, y; function f, g; f = x*y - 1; g = 10^{exponent}*y - 1;"
+        ));
+        let options = PlanOptions {
+            start: StartChoice::TotalDegree,
+            ..PlanOptions::default()
+        };
+        check(
+            &format!("x y = 1, y = 10^-{exponent}"),
+            &system,
+            &options,
+            Answer {
+                paths: 2,
+                nonsingular: 1,
+                at_infinity: 1,
+                real: Some(Some(1)),
                 ..Answer::default()
             },
         );

@@ -25,9 +25,11 @@ const FIRST_TURNS: u32 = 4;
 /// After so many radii at which the path did not close the ratio of successive ones is squared, then
 /// cubed, and so on: branch points that lie so near to 0 may lie at any order of magnitude.
 const UNHURRIED: u32 = 2;
-/// A power sum counts as 0 below this part of the largest it could be: sheets that end closer
+/// A power sum counts as 0 below this part of the point's size: in doubles sheets that end closer
 /// together than about 1e-6 are told apart by a smaller radius only.
 const COALESCED: f64 = 1e-12;
+/// With more digits, below this part of how far apart the sheets are.
+const COALESCED_FINELY: f64 = 1e-15;
 /// Smallest exponent with which a coordinate is believed to vanish.
 const LEAST_POWER: f64 = 0.01;
 /// A coordinate is a power of t where its valuations differ by less than this part.
@@ -79,8 +81,10 @@ pub struct Cauchy {
     start: Vec<Complex64>,
     sum: Vec<Complex64>,
     even_sum: Vec<Complex64>,
-    /// A generic linear form of each sample, for the power sums.
+    /// A generic linear form of each sample less that of the first, for the power sums.
     samples: Vec<Complex64>,
+    /// Whether they had more digits than doubles before they were rounded.
+    fine: bool,
     vertex: u32,
     turns: u32,
     total_turns: u32,
@@ -95,11 +99,17 @@ pub struct Cauchy {
     previous: Option<(u32, Vec<Complex64>)>,
 }
 
-/// A linear form with fixed coefficients without pattern: different points of a generic patch
-/// have different values.
-fn generic_form(x: &[Complex64]) -> Complex64 {
+/// Coefficients without pattern of a linear form: different points of a generic patch have
+/// different values.
+pub(crate) fn generic_form() -> impl Iterator<Item = Complex64> {
     let mut stream = RandomStream::new(0, Purpose::Probe, 1);
-    x.iter().map(|z| z * stream.unit()).sum()
+    std::iter::repeat_with(move || stream.unit())
+}
+
+/// That form of the difference of two points.
+pub(crate) fn form_of_difference(x: &[Complex64], y: &[Complex64]) -> Complex64 {
+    let both = x.iter().zip(y).zip(generic_form());
+    both.map(|((x, y), c)| (x - y) * c).sum()
 }
 
 /// The exponent, where all valuations are one positive number.
@@ -159,14 +169,17 @@ impl Cauchy {
 
     /// The path stands at real t = radius: the turns begin here.
     ///
-    /// `homogenizing` are the values of the homogenising coordinates at the point.
+    /// `homogenizing` are the values of the homogenising coordinates at the point; `fine`: whether
+    /// the forms at the vertices have more digits than doubles before they are rounded.
     pub fn begin(
         &mut self,
         radius: f64,
         point: &[Complex64],
         noise: f64,
         homogenizing: &[Complex64],
+        fine: bool,
     ) -> Next {
+        self.fine = fine;
         self.radius = radius;
         self.start.clear();
         self.start.extend_from_slice(point);
@@ -175,7 +188,7 @@ impl Cauchy {
         self.even_sum.clear();
         self.even_sum.extend_from_slice(point);
         self.samples.clear();
-        self.samples.push(generic_form(point));
+        self.samples.push(Complex64::default());
         self.vertex = 0;
         self.turns = 0;
         self.noise = noise;
@@ -189,11 +202,13 @@ impl Cauchy {
     }
 
     /// The path stands at the vertex that was asked for. `noise`: relative error of the point;
-    /// `valuations`: t x'/x of the homogenising coordinates x.
+    /// `form`: the generic form of its difference from where the turns began; `valuations`: t x'/x
+    /// of the homogenising coordinates x.
     pub fn at_vertex(
         &mut self,
         point: &[Complex64],
         noise: f64,
+        form: Complex64,
         homogenizing: &[Complex64],
         valuations: &[Complex64],
         settings: &Settings,
@@ -205,7 +220,7 @@ impl Cauchy {
         }
         self.vertex += 1;
         if self.vertex < VERTICES {
-            self.add(point);
+            self.add(point, form);
             return Next::Vertex {
                 radius: self.radius,
                 vertex: self.vertex + 1,
@@ -226,7 +241,7 @@ impl Cauchy {
                 }
                 return self.further_inward(settings);
             }
-            self.add(point);
+            self.add(point, form);
             return Next::Vertex {
                 radius: self.radius,
                 vertex: 1,
@@ -241,7 +256,7 @@ impl Cauchy {
             self.previous = None;
             return self.inward(SHRINKAGE, settings);
         }
-        if let Some(separation) = self.separation(generic_form(&mean), size, unresolved) {
+        if let Some(separation) = self.separation(size, unresolved) {
             // The sheets end apart. Two sheets s apart at this radius r and d apart at 0 are
             // joined by a branch point at about r (d/s)^2: go inside it at once.
             let ratio = if self.turns == 2 {
@@ -276,14 +291,19 @@ impl Cauchy {
 
     /// The largest power sum at t = 0 as a part of what it could be (for two sheets the square of
     /// how far apart they end over how far apart they are here); `None` when all sheets end
-    /// together. `mean`: the generic form at the mean of all samples.
-    fn separation(&self, mean: Complex64, size: f64, unresolved: f64) -> Option<f64> {
+    /// together.
+    fn separation(&self, size: f64, unresolved: f64) -> Option<f64> {
+        let count = self.samples.len() as f64;
+        let mean = self.samples.iter().sum::<Complex64>() / count;
         let spread = self
             .samples
             .iter()
             .fold(0.0f64, |m, y| m.max((y - mean).norm_sqr()))
             .sqrt();
-        let count = self.samples.len() as f64;
+        let rounding = match self.fine {
+            true => COALESCED_FINELY * spread,
+            false => COALESCED * size,
+        };
         let mut largest: Option<f64> = None;
         for k in 2..=self.turns {
             let power_sum: Complex64 = self.samples.iter().map(|y| (y - mean).powu(k)).sum();
@@ -292,7 +312,7 @@ impl Cauchy {
             // Rounding errors of the samples, and the error of replacing integrals by sums: that
             // of 16 samples is the square of that of 8.
             let aliasing = unresolved * size / spread;
-            let error = f64::from(k) * (COALESCED + 10.0 * self.noise) * size
+            let error = f64::from(k) * (rounding + 10.0 * self.noise * size)
                 + 100.0 * f64::from(k * k) * aliasing * aliasing * spread;
             let mut bound = error;
             let mut scale = 1.0;
@@ -328,8 +348,8 @@ impl Cauchy {
         diverges
     }
 
-    fn add(&mut self, point: &[Complex64]) {
-        self.samples.push(generic_form(point));
+    fn add(&mut self, point: &[Complex64], form: Complex64) {
+        self.samples.push(form);
         let even = self.vertex.is_multiple_of(2);
         for (k, z) in point.iter().enumerate() {
             self.sum[k] += z;
@@ -387,20 +407,22 @@ mod tests {
         let mut at = 0u32;
         let place = |radius: f64, at: u32| fine[(at % (VERTICES * c)) as usize] * root(radius);
         let x = path(place(radius, 0));
-        let mut next = cauchy.begin(radius, &x, 1e-15, &x[..1]);
+        let mut next = cauchy.begin(radius, &x, 1e-15, &x[..1], false);
         for _ in 0..10_000 {
             match next {
                 Next::Vertex { .. } => {
                     at += 1;
                     let s = place(radius, at);
                     let x = path(s);
-                    next = cauchy.at_vertex(&x, 1e-15, &x[..1], &valuation(s), &settings);
+                    let form = form_of_difference(&x, cauchy.start());
+                    let valuation = valuation(s);
+                    next = cauchy.at_vertex(&x, 1e-15, form, &x[..1], &valuation, &settings);
                 }
                 Next::Inward(r) => {
                     radius = r;
                     at = 0;
                     let x = path(place(radius, 0));
-                    next = cauchy.begin(radius, &x, 1e-15, &x[..1]);
+                    next = cauchy.begin(radius, &x, 1e-15, &x[..1], false);
                 }
                 _ => break,
             }
@@ -461,21 +483,22 @@ mod tests {
             let mut radius = 0.05;
             let mut t = Complex64::new(radius, 0.0);
             let x = follow(Complex64::new(1.0, 0.0), t);
-            let mut next = cauchy.begin(radius, &x, 1e-15, &[]);
+            let mut next = cauchy.begin(radius, &x, 1e-15, &[], false);
             let settled = loop {
                 match next {
                     Next::Vertex { vertex, .. } => {
                         let to = circle[(vertex % VERTICES) as usize] * radius;
                         let x = follow(t, to);
                         t = to;
-                        next = cauchy.at_vertex(&x, 1e-15, &[], &[], &settings);
+                        let form = form_of_difference(&x, cauchy.start());
+                        next = cauchy.at_vertex(&x, 1e-15, form, &[], &[], &settings);
                     }
                     Next::Inward(r) => {
                         // After a closed curve the path is where it began.
                         let to = Complex64::new(r, 0.0);
                         let x = follow(t, to);
                         (t, radius) = (to, r);
-                        next = cauchy.begin(radius, &x, 1e-15, &[]);
+                        next = cauchy.begin(radius, &x, 1e-15, &[], false);
                     }
                     Next::Settled(settled) => break settled,
                     Next::Diverging | Next::Unsettled => panic!("{next:?} at {distance}"),

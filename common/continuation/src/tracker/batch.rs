@@ -158,6 +158,11 @@ impl<R: Real> Batch<R> {
         }
     }
 
+    /// What it remembers.
+    pub fn anchor(&self) -> &[Complex<R>] {
+        &self.anchor
+    }
+
     /// Takes a lane back to where it was at real `t`.
     pub fn return_to_anchor(&mut self, lane: usize, t: f64) {
         let (slot, only) = (self.newest, one_lane::<R>(lane));

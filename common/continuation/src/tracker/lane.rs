@@ -41,6 +41,9 @@ impl Phase {
     }
 }
 
+/// A path that went up a rung so often stays there.
+const MOST_CLIMBS: u32 = 6;
+
 /// What one path knows of itself.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lane {
@@ -61,6 +64,8 @@ pub(crate) struct Lane {
     pub highest_bits: u32,
     /// How often it went up a rung.
     pub climbs: u32,
+    /// Bits of the arithmetic in which it last began at its start point.
+    pub began_with: u32,
     /// Accepted steps in this room.
     pub steps_here: u32,
     /// Rejections since the last accepted step that only noise explains.
@@ -80,8 +85,16 @@ impl Lane {
         (self.item, self.origin, self.target) = (item, origin, target);
         (self.steps, self.rejections, self.evaluations) = (0, 0, 0);
         self.effort = 0;
-        (self.highest_bits, self.climbs) = (0, 0);
+        (self.highest_bits, self.climbs, self.began_with) = (0, 0, 0);
         self.cauchy.clear();
+    }
+
+    /// The path begins again at its start point in this arithmetic, and goes down no more.
+    pub fn begin_again(&mut self, bits: u32) {
+        self.began_with = bits;
+        self.climbs = MOST_CLIMBS;
+        self.cauchy.forget();
+        self.arrive(bits);
     }
 
     /// The path comes into a room of this arithmetic.
@@ -97,6 +110,6 @@ impl Lane {
     /// up again, twice as many steps must have gone well.
     pub fn may_go_down(&self) -> bool {
         const STEPS: u32 = 8;
-        self.climbs < 6 && self.steps_here >= STEPS << self.climbs
+        self.climbs < MOST_CLIMBS && self.steps_here >= STEPS << self.climbs
     }
 }

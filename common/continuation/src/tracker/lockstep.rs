@@ -436,11 +436,13 @@ impl<'a, R: Real> Lockstep<'a, R> {
             Phase::Idle => {}
             Phase::Starting => {
                 if !step.accepted {
-                    let failure = match self.lanes[lane].steps {
-                        0 => Failure::InvalidStartPoint,
-                        _ => Failure::StepTooSmall,
+                    if self.lanes[lane].steps == 0 {
+                        return self.give_up(lane, t, Failure::InvalidStartPoint);
+                    }
+                    return match self.begins_again(lane) {
+                        true => (),
+                        false => self.give_up(lane, t, Failure::StepTooSmall),
                     };
-                    return self.give_up(lane, t, failure);
                 }
                 self.batch
                     .read_here(lane, &mut self.point, &mut self.tangent);
@@ -536,6 +538,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 let homogenizing = self.homogenizing(false);
                 let next = if phase == Phase::Settling {
                     self.batch.drop_anchor(lane);
+                    let fine = self.fine();
                     let path = &mut self.lanes[lane];
                     let begin = (t.re, self.batch.digits(lane));
                     if step.correction <= FIRM {
@@ -543,12 +546,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     }
                     path.first_turn.get_or_insert(begin);
                     path.cauchy
-                        .begin(t.re, &self.point, step.correction, &homogenizing)
+                        .begin(t.re, &self.point, step.correction, &homogenizing, fine)
                 } else {
                     let valuations = self.valuations(t, &homogenizing);
+                    let form = self.form_from_anchor(lane);
                     self.lanes[lane].cauchy.at_vertex(
                         &self.point,
                         step.correction,
+                        form,
                         &homogenizing,
                         &valuations,
                         settings,
@@ -597,6 +602,17 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     .follow(lane, Complex64::new(radius, 0.0), 0.1 * from);
                 self.lanes[lane].phase = Phase::Inward;
             }
+            // In doubles a multiple point and points that are only close are the same (a
+            // perturbation by the unit roundoff takes a double point apart by its square root):
+            // the next rung tells.
+            cauchy::Next::Settled(settled)
+                if settled.winding_number > 1 && self.room.bits == DOUBLE && self.room.up =>
+            {
+                let path = &mut self.lanes[lane];
+                let begin = path.last_turn.take().or(path.first_turn.take());
+                let (radius, point) = begin.expect("turns begin somewhere");
+                self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
+            }
             cauchy::Next::Settled(settled) => {
                 self.point.clear();
                 self.point.extend_from_slice(&settled.endpoint);
@@ -642,6 +658,27 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
+    }
+
+    /// Whether points have more digits than doubles.
+    fn fine(&self) -> bool {
+        self.room.bits > DOUBLE
+    }
+
+    /// The endgame's generic form of how far a path is from where its turns began: on the higher
+    /// rungs with their digits, then rounded.
+    fn form_from_anchor(&self, lane: usize) -> Complex64 {
+        if !self.fine() {
+            return cauchy::form_of_difference(&self.point, self.lanes[lane].cauchy.start());
+        }
+        let mut form = Complex::<R>::zero(self.context);
+        let both = self.batch.here().iter().zip(self.batch.anchor());
+        for ((x, anchor), c) in both.zip(cauchy::generic_form()) {
+            let mut difference = x.clone();
+            difference.sub(anchor);
+            form.mul_add(&Complex::from_f64(self.context, c.re, c.im), &difference);
+        }
+        form.lane(0)
     }
 
     /// Values of the homogenising coordinates at `self.point`, which is that of the one lane
@@ -716,31 +753,62 @@ impl<'a, R: Real> Lockstep<'a, R> {
         };
         match begin {
             Some((radius, point)) => {
+                path.cauchy.forget();
                 self.depart(lane, Complex64::new(radius, 0.0), point, door);
             }
             None => self.leave(lane, t, door),
         }
     }
 
+    /// A path that came up a rung from where fewer digits had lost it follows its whole way on
+    /// this one.
+    fn begins_again(&mut self, lane: usize) -> bool {
+        let (bits, path) = (self.room.bits, &self.lanes[lane]);
+        if bits == DOUBLE || path.began_with >= bits {
+            return false;
+        }
+        let start = self.stage.start_point(path.origin);
+        let Some(start) = start.and_then(|start| self.beyond(start)) else {
+            return false;
+        };
+        self.lanes[lane].begin_again(bits);
+        let beginning = Complex64::new(1.0, 0.0);
+        self.batch.write(lane, beginning, &start);
+        self.batch.follow(lane, beginning, 0.0);
+        self.batch.refine(lane);
+        true
+    }
+
+    /// A point of the chart where paths begin in the one beyond, if there is one; `None` where
+    /// that misses it.
+    fn beyond(&self, point: Vec<Complex64>) -> Option<Vec<Complex64>> {
+        match self.stage.homotopy_beyond() {
+            Some(beyond) => {
+                let coordinates = self.stage.homotopy().chart().homogeneous(&point);
+                beyond.chart().point(&coordinates)
+            }
+            None => Some(point),
+        }
+    }
+
     /// The path goes on in another room from where it is.
     fn leave(&mut self, lane: usize, t: Complex64, door: Door) {
         let point = self.batch.digits(lane);
+        self.lanes[lane].cauchy.forget();
         self.depart(lane, t, point, door);
     }
 
     /// The path goes on in another room from this point of this one's chart.
     fn depart(&mut self, lane: usize, t: Complex64, point: Vec<Digits>, door: Door) {
-        let point = match (door, self.stage.homotopy_beyond()) {
-            (Door::Beyond, Some(beyond)) => {
+        let point = match door {
+            Door::Beyond => {
                 let rounded: Vec<Complex64> = point.iter().map(Digits::rounded).collect();
-                let coordinates = self.room.homotopy.chart().homogeneous(&rounded);
-                let there = beyond.chart().point(&coordinates);
+                let there = self.beyond(rounded);
                 there.map(|point| point.into_iter().map(Digits::from).collect())
             }
-            _ => Some(point),
+            Door::Up | Door::Down => Some(point),
         };
         let mut path = self.lanes[lane].clone();
-        path.cauchy.forget();
         if door == Door::Up {
             path.climbs += 1;
         }
