@@ -5,6 +5,7 @@
 
 mod check;
 mod classical_systems;
+mod close_paths;
 mod every_start;
 mod hard_paths;
 mod ill_conditioned;

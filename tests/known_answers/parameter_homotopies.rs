@@ -14,7 +14,7 @@ fn number(re: f64, im: f64) -> Complex64 {
 }
 
 /// Solves from given points; all are found under one name.
-fn solve_from(
+pub fn solve_from(
     system: &System,
     points: Vec<Complex64>,
     options: PlanOptions,

@@ -61,6 +61,9 @@ pub(super) struct Ended {
     pub departures: Vec<Departure>,
 }
 
+/// Shortest step on the higher rungs, as a part of the way that is left: t is a double there too.
+const LEAST_STEP: f64 = 1e-15;
+
 /// A chart and an arithmetic, and which doors there are.
 #[derive(Clone, Copy)]
 pub(super) struct Room<'a> {
@@ -75,9 +78,13 @@ pub(super) struct Room<'a> {
 
 impl Room<'_> {
     /// The stage's settings as they are meant for this arithmetic: the endgame may go as much
-    /// further in as there are more digits.
+    /// further in as there are more digits, and steps may be as short as doubles can tell values of
+    /// t apart.
     pub fn settings(&self) -> Settings {
         let mut settings = self.stage.settings().clone();
+        if self.bits > DOUBLE {
+            settings.min_step = settings.min_step.min(LEAST_STEP);
+        }
         let least = settings.endgame_min_radius;
         for _ in 1..(self.bits / DOUBLE).min(4) {
             settings.endgame_min_radius *= least;
