@@ -6,6 +6,17 @@ use cognate_algorithms::PlanOptions;
 use cognate_tests::systems::written;
 use num_complex::Complex64;
 
+/// The principal square root of re + im i with im > 0.
+fn principal_root(re: f64, im: f64) -> Complex64 {
+    let half = ((re * re + im * im).sqrt() + re.abs()) / 2.0;
+    let large = half.sqrt();
+    let small = im / (2.0 * large);
+    match re >= 0.0 {
+        true => Complex64::new(large, small),
+        false => Complex64::new(small, large),
+    }
+}
+
 /// u^2 = t - 1/2 + d i and v^2 = t - 1/3 + d i with u = x + 2 y and v = x - 3 y: two paths come within
 /// 2 sqrt(d) of each other where t = 1/2, and again where t = 1/3. The principal square roots are
 /// continuous on the way, so u and v keep their signs.
@@ -20,7 +31,7 @@ fn paths_beside_a_branch_point_keep_their_sheets() {
              g = (x - 3*y)^2 - (t - 1/3 + 1e-{exponent}*I);"
         ));
         let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
-        let root = |re: f64| Complex64::new(re, distance).sqrt();
+        let root = |re: f64| principal_root(re, distance);
         let points = |t: f64| {
             signs.map(|(s, r)| {
                 let (u, v) = (root(t - 0.5) * s, root(t - 1.0 / 3.0) * r);
