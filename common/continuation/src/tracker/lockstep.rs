@@ -26,7 +26,7 @@ use cognate_machine_code::Evaluator;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
-use cognate_numeric::scalar::{Complex, Mask, Real};
+use cognate_numeric::scalar::{Complex, DoubleDouble, Mask, Real};
 use cognate_systems::evaluation::Evaluate;
 use num_complex::Complex64;
 
@@ -50,6 +50,9 @@ const PASSING: f64 = 0.1;
 const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
+/// Square of the distance below which two ends of paths are one point, as far as the equations
+/// (of size 1) show: the solution of norm 10^8 is 10^-8 away from infinity.
+const ONE_POINT: f64 = 1e-20;
 /// With such a condition number a path may go down a rung.
 const TAME: f64 = 1e10;
 /// The first point of turns is where they may begin again on another rung if its last Newton
@@ -606,7 +609,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
             // perturbation by the unit roundoff takes a double point apart by its square root):
             // the next rung tells.
             cauchy::Next::Settled(settled)
-                if settled.winding_number > 1 && self.room.bits == DOUBLE && self.room.up =>
+                if settled.winding_number > 1
+                    && self.room.bits == DOUBLE
+                    && self.room.up
+                    && !self.is_double_point(&settled, target) =>
             {
                 let path = &mut self.lanes[lane];
                 let begin = path.last_turn.take().or(path.first_turn.take());
@@ -658,6 +664,13 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
+    }
+
+    /// Whether two sheets end so close together that the equations are as small between their ends
+    /// as at a double point.
+    fn is_double_point(&self, settled: &cauchy::Settled, target: u64) -> bool {
+        let mut refiner = Refiner::<DoubleDouble<f64>>::new(self.room.homotopy, ());
+        settled.winding_number == 2 && refiner.out_of_reach(&settled.endpoint, target) <= ONE_POINT
     }
 
     /// Whether points have more digits than doubles.
