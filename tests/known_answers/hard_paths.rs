@@ -6,7 +6,7 @@ use crate::check::solve;
 use crate::classical_systems::check_named;
 use cognate_algorithms::PlanOptions;
 use cognate_algorithms::plan::StartChoice;
-use cognate_systems::named::{eco, reimer};
+use cognate_systems::named::{eco, katsura, reimer};
 
 /// By total degree, two to four of its 162 paths come so near to others (1e-14 and less, half-way,
 /// where they are larger than 1e14) that they take too many steps with hundreds of bits. Every one
@@ -46,6 +46,23 @@ fn what_doubles_lose_begins_again_with_more_digits() {
             (paths.total, paths.finite, paths.at_infinity, paths.failed),
             (54, 8, 46, 0),
             "seed {seed}"
+        );
+    }
+}
+
+/// Start points have the digits of doubles; three Newton steps do not give them those of 512 bits.
+#[test]
+fn paths_may_begin_with_any_number_of_bits() {
+    for bits in [106, 212, 512, 2048] {
+        let mut options = PlanOptions::default();
+        options.settings.precision_bits = bits;
+        options.settings.max_precision_bits = bits;
+        let (_, sets) = solve(&katsura(3).system, &options, &|_| None);
+        let paths = &sets[0].paths;
+        assert_eq!((paths.finite, paths.failed), (8, 0), "{bits} bits");
+        assert_eq!(
+            paths.by_precision.keys().copied().collect::<Vec<_>>(),
+            [bits]
         );
     }
 }

@@ -336,10 +336,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
         // In doubles there are two corrections, and the second is the last.
         let last = if rounds == MOST_ROUNDS { third } else { second };
         let mut settled = last.less_equal(&control(limits.settled));
+        let mut refined = last.less_equal(&control(limits.refined));
         if rounds == MOST_ROUNDS {
             let mut quadratically = control(CONVERGENCE);
             quadratically.mul(second);
-            settled = settled.or(converging.and(third.less_equal(&quadratically)));
+            let converging = converging.and(third.less_equal(&quadratically));
+            settled = settled.or(converging);
+            // A start point has the digits of doubles, however many there are here.
+            refined = refined.or(converging);
         } else {
             settled = settled.or(converging);
         }
@@ -347,8 +351,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .less_equal(&limit)
             .and(settled)
             .and(batch.refine.not());
-        let refined = last
-            .less_equal(&control(limits.refined))
+        let refined = refined
             .and(first.less_equal(&control(START_ERROR)))
             .and(batch.refine);
         let accepted = moved.or(refined);
