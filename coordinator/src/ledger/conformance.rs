@@ -48,6 +48,7 @@ macro_rules! ledger_conformance {
             case!(an_old_steward_changes_nothing);
             case!(a_cancelled_job_gives_nothing_out);
             case!(tenants_and_jobs_take_turns);
+            case!(who_waits_is_not_overtaken);
             case!(other_numerics_get_no_chunk);
             case!(a_lost_reply_to_a_lease_is_sent_again);
             case!(stages_open_and_close_in_order);
@@ -521,6 +522,20 @@ pub async fn tenants_and_jobs_take_turns(ledger: &dyn Ledger, _: &ManualClock) {
         "jobs of a tenant share: {a} {b}"
     );
     assert!((a + b).abs_diff(c) <= 3000, "tenants share: {a} {b} {c}");
+}
+
+pub async fn who_waits_is_not_overtaken(ledger: &dyn Ledger, _: &ManualClock) {
+    // Its item is charged a millisecond, and takes a thousandth of it.
+    running(ledger, "a", "t", 1, 1).await;
+    let cheap = ledger.lease(wants("w", "1", 1)).await.unwrap()[0].clone();
+    let (second, _) = running(ledger, "b", "t", 1, 1).await;
+    let found = result(cheap.items, 1, 1);
+    ledger.complete(cheap.lease, found).await.unwrap();
+    let (third, _) = running(ledger, "c", "t", 1, 1).await;
+    for (name, expected) in [("2", second), ("3", third)] {
+        let lease = &ledger.lease(wants("w", name, 1)).await.unwrap()[0];
+        assert_eq!(lease.lease.chunk.job, expected);
+    }
 }
 
 pub async fn other_numerics_get_no_chunk(ledger: &dyn Ledger, _: &ManualClock) {

@@ -59,6 +59,14 @@ pub fn estimate(items: u64, counts: &StageRow) -> i64 {
     items.saturating_mul(each).min(MOST_MICROS) as i64
 }
 
+/// Where a job begins: behind the least served of its tenant's jobs, and not before those that still
+/// wait for their first lease. The least goes back when what a chunk was charged proves too much,
+/// and whoever waits would be overtaken by all that come then.
+pub fn first_virtual_time(least: Option<i64>, waiting: Option<i64>) -> i64 {
+    let behind = least.map_or(0, |least| least + NEW_JOB_MICROS);
+    waiting.map_or(behind, |waiting| waiting.max(behind))
+}
+
 /// Refuses numbers that a ledger on a database could not hold.
 pub fn check_size(what: &'static str, number: u64) -> Result<i64, LedgerError> {
     i64::try_from(number)
@@ -112,7 +120,12 @@ impl Ledger for MemoryLedger {
         books.tenants.insert(asked.tenant.clone(), tenant_time);
         let same_tenant = active.iter().filter(|(t, _)| *t == asked.tenant);
         let least = same_tenant.map(|&(_, v)| v).min();
-        let virtual_time = least.map_or(0, |least| least + NEW_JOB_MICROS);
+        let same_tenant = books.jobs.values().filter(|j| {
+            let row = &j.row;
+            row.asked.tenant == asked.tenant && !row.state.has_ended() && row.started.is_none()
+        });
+        let waiting = same_tenant.map(|j| j.virtual_time).max();
+        let virtual_time = first_virtual_time(least, waiting);
         let number = books.jobs.len() as u64 + 1;
         let row = JobRow {
             job,

@@ -6,7 +6,7 @@ use super::leases::{insert_ready, release_all};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
-use crate::ledger::memory::{NEW_JOB_MICROS, check_size, make_up};
+use crate::ledger::memory::{check_size, first_virtual_time, make_up};
 use crate::ledger::rows::*;
 use cognate_continuation::work::StageId;
 use std::collections::BTreeSet;
@@ -57,8 +57,11 @@ pub async fn submit(
                  WHERE j.ended IS NULL) AS floor,
                 (SELECT virtual_time FROM tenants WHERE tenant = ?) AS own,
                 (SELECT MIN(virtual_time) FROM jobs
-                 WHERE ended IS NULL AND tenant = ?) AS same_tenant",
+                 WHERE ended IS NULL AND tenant = ?) AS same_tenant,
+                (SELECT MAX(virtual_time) FROM jobs
+                 WHERE ended IS NULL AND started IS NULL AND tenant = ?) AS waiting",
     )
+    .bind(asked.tenant.as_str())
     .bind(asked.tenant.as_str())
     .bind(asked.tenant.as_str())
     .fetch_one(&mut *c)
@@ -66,6 +69,7 @@ pub async fn submit(
     let floor: Option<i64> = row.try_get("floor")?;
     let own: Option<i64> = row.try_get("own")?;
     let same_tenant: Option<i64> = row.try_get("same_tenant")?;
+    let waiting: Option<i64> = row.try_get("waiting")?;
     let own = own.unwrap_or(0);
     query(
         "INSERT INTO tenants (tenant, virtual_time) VALUES (?, ?)
@@ -90,7 +94,7 @@ pub async fn submit(
     .bind(to_hex(&asked.options))
     .bind(asked.numerics_revision)
     .bind(now.0)
-    .bind(same_tenant.map_or(0, |least| least + NEW_JOB_MICROS))
+    .bind(first_virtual_time(same_tenant, waiting))
     .execute(&mut *c)
     .await?;
     Ok(Submitted {
