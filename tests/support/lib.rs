@@ -4,6 +4,7 @@
 pub mod arguments;
 pub mod builders;
 pub mod client;
+pub mod close_paths;
 pub mod cluster;
 pub mod database;
 pub mod families;

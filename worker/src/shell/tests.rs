@@ -279,7 +279,7 @@ fn lost_replies_lose_no_chunk() {
     coordinator.loses_every = Some(3);
     let coordinator = Arc::new(coordinator);
     let patient = Config {
-        idle_timeout: Some(Duration::from_millis(1500)),
+        idle_timeout: Some(Duration::from_secs(5)),
         ..config()
     };
     assert_eq!(work(&coordinator, patient, None), Ending::Idle);
