@@ -13,8 +13,7 @@ folder=${1:?a folder is expected: from_scratch.sh FOLDER [SEED [KILLS]]}
 seed=${2:-1}
 kills=${3:-0}
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-cognate=${COGNATE_PROGRAM:-$root/target/release/cognate}
-[ -x "$cognate" ] || { echo "build it first: cargo build --release --bin cognate" >&2; exit 2; }
+. "$root/deploy/families/program.sh"
 mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 export COGNATE_COORDINATOR=unix:$folder/coordinator.sock

@@ -11,8 +11,7 @@ folder=${1:?a folder is expected: sweep.sh FOLDER [SETS [SEED]]}
 sets=${2:-100}
 seed=${3:-1}
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-cognate=${COGNATE_PROGRAM:-$root/target/release/cognate}
-[ -x "$cognate" ] || { echo "build it first: cargo build --release --bin cognate" >&2; exit 2; }
+. "$root/deploy/families/program.sh"
 mkdir -p "$folder"
 
 # Lehmer's generator with Park and Miller's modulus: products below 2^53, exact in any awk.

@@ -2,16 +2,18 @@
 //! still at random. Every answer must be the undisturbed one, bit for bit; a report says what it cost.
 //!
 //! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]
-//! [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000]`: jobs in turn for so long, the
-//! last to its end.
+//! [--coordinators 1] [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000] [--jobs N]`: jobs
+//! in turn for so long, or so many, the last to its end.
 
 use cognate_protocol::v1::Precision;
 use cognate_protocol::v1::precision::Kind;
 use cognate_tests::arguments::{number, options as arguments, or_exit};
 use cognate_tests::builders::katsura;
-use cognate_tests::client::{Answer, Submission, accepted, has_ended, total};
+use cognate_tests::client::{Answer, Client, Submission, accepted, has_ended, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::database::Database;
+use cognate_tests::processes::{Process, until};
+use std::cell::Cell;
 use std::fmt;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -19,6 +21,10 @@ use std::time::{Duration, Instant};
 /// Work must go on so long after a fault and the length of a lease: three seconds are promised, and
 /// two more are left to a machine with other work.
 const GOES_ON: Duration = Duration::from_secs(5);
+/// What is promised: no longer than this after the length of a lease.
+const PROMISED: Duration = Duration::from_secs(3);
+/// One of several coordinators stands still for longer than its right to drive a job, 5 s.
+const STANDSTILL: Duration = Duration::from_secs(6);
 /// No job takes longer.
 const LONGEST: Duration = Duration::from_secs(4 * 3600);
 /// Paths of a chunk.
@@ -51,8 +57,8 @@ impl fmt::Display for Fault {
         f.write_str(match self {
             Self::KillWorker => "a worker killed (-9)",
             Self::FreezeWorker => "a worker stopped for longer than its lease",
-            Self::KillCoordinator => "the coordinator killed (-9)",
-            Self::FreezeCoordinator => "the coordinator stopped for a second",
+            Self::KillCoordinator => "a coordinator killed (-9)",
+            Self::FreezeCoordinator => "a coordinator stopped for a while",
             Self::KillDatabase => "the database server killed (-9)",
         })
     }
@@ -76,6 +82,10 @@ struct Wanted {
     seconds: u64,
     seed: u64,
     postgres: bool,
+    /// One, or two over one database.
+    coordinators: usize,
+    /// The end after so many jobs.
+    jobs: u64,
     /// Which of Katsura's systems: 2^n paths.
     katsura: usize,
     /// Precision of the tracking; None: as much as each path needs.
@@ -91,6 +101,8 @@ fn wanted() -> Result<Wanted, String> {
         seconds: 30,
         seed: 1,
         postgres: false,
+        coordinators: 1,
+        jobs: u64::MAX,
         katsura: 11,
         bits: None,
         pause_ms: (500, 2000),
@@ -102,6 +114,8 @@ fn wanted() -> Result<Wanted, String> {
             "--seed" => wanted.seed = number(&word, &value)?,
             "--ledger" if value == "sqlite" => wanted.postgres = false,
             "--ledger" if value == "postgres" => wanted.postgres = true,
+            "--coordinators" => wanted.coordinators = number(&word, &value)?,
+            "--jobs" => wanted.jobs = number(&word, &value)?,
             "--katsura" => wanted.katsura = number(&word, &value)?,
             "--bits" => wanted.bits = Some(number(&word, &value)?),
             "--lease-ms" => wanted.lease = Duration::from_millis(number(&word, &value)?),
@@ -109,12 +123,17 @@ fn wanted() -> Result<Wanted, String> {
             _ => {
                 return Err(format!(
                     "{word} {value}: expected --seconds N, --seed N, --ledger sqlite|postgres, \
-                     --katsura N, --bits N, --pause-ms LEAST-GREATEST or --lease-ms N"
+                     --coordinators N, --jobs N, --katsura N, --bits N, --pause-ms LEAST-GREATEST or \
+                     --lease-ms N"
                 ));
             }
         }
     }
-    Ok(wanted)
+    match (wanted.coordinators, wanted.postgres) {
+        (1, _) | (2, true) => Ok(wanted),
+        (2, false) => Err("--coordinators 2: two of them need --ledger postgres".to_owned()),
+        _ => Err("--coordinators: expected 1 or 2".to_owned()),
+    }
 }
 
 /// `LEAST-GREATEST`.
@@ -147,19 +166,188 @@ fn quiet_answer(problem: &Submission) -> Answer {
     answer
 }
 
-fn worker() -> WorkerOptions {
-    WorkerOptions {
-        lane_width: Some(1),
-        ..WorkerOptions::default()
-    }
-}
-
 fn options(wanted: &Wanted, ledger: Option<String>) -> CoordinatorOptions {
     CoordinatorOptions {
         lease: Some(wanted.lease),
         chunk_paths: Some(CHUNK),
         ledger,
         ..CoordinatorOptions::default()
+    }
+}
+
+/// All processes: one coordinator or two, and workers that know both.
+struct Scene {
+    cluster: Cluster,
+    second: Option<(Process, String)>,
+    lease: Duration,
+    /// Logs of workers that are gone.
+    logs: Vec<String>,
+}
+
+impl Scene {
+    fn start(wanted: &Wanted, database: Option<&Database>) -> Self {
+        let cluster = Cluster::start(options(wanted, database.map(Database::url)));
+        let second = (wanted.coordinators == 2).then(|| cluster.second_coordinator());
+        let mut scene = Self {
+            cluster,
+            second,
+            lease: wanted.lease,
+            logs: Vec::new(),
+        };
+        for _ in 0..WORKERS {
+            scene.add_worker();
+        }
+        scene
+    }
+
+    fn add_worker(&mut self) {
+        self.cluster.add_worker(&WorkerOptions {
+            lane_width: Some(1),
+            second: self.second.as_ref().map(|(_, address)| address.clone()),
+            ..WorkerOptions::default()
+        });
+    }
+
+    /// A client of the first coordinator (0) or of the second.
+    fn client(&self, which: usize) -> Client {
+        match &self.second {
+            Some((_, address)) if which == 1 => until("the second coordinator answers", || {
+                Client::connect(address)
+            }),
+            _ => self.cluster.client(),
+        }
+    }
+
+    /// Of two coordinators the other; of one itself.
+    fn other(&self, which: usize) -> usize {
+        if self.second.is_some() { 1 - which } else { 0 }
+    }
+
+    fn coordinator(&mut self, which: usize) -> &mut Process {
+        match &mut self.second {
+            Some((process, _)) if which == 1 => process,
+            _ => &mut self.cluster.coordinator,
+        }
+    }
+
+    fn restart(&mut self, which: usize) {
+        if which == 1 {
+            self.second = Some(self.cluster.second_coordinator());
+        } else {
+            self.cluster.restart_coordinator();
+        }
+    }
+
+    /// Makes this go wrong while `job` runs; how long it took until the job went on.
+    fn suffer(
+        &mut self,
+        fault: Fault,
+        job: &str,
+        dice: &mut Dice,
+        database: Option<&Database>,
+    ) -> Duration {
+        let which = dice.below(1 + u64::from(self.second.is_some())) as usize;
+        let victim = dice.below(WORKERS as u64) as usize;
+        let before = self.client(0).progress(job).map_or(0, |p| accepted(&p));
+        let mut since = Instant::now();
+        match fault {
+            Fault::KillWorker => {
+                let mut killed = self.cluster.workers.remove(victim);
+                killed.kill();
+                self.logs.push(killed.log());
+                self.add_worker();
+            }
+            Fault::FreezeWorker => {
+                self.cluster.workers[victim].freeze();
+                std::thread::sleep(self.lease + Duration::from_millis(500));
+                self.cluster.workers[victim].thaw();
+            }
+            // Of two coordinators the other goes on alone, before the first is there again.
+            Fault::KillCoordinator if self.second.is_some() => {
+                self.coordinator(which).kill();
+                let took = self.goes_on(self.other(which), job, before, since);
+                self.restart(which);
+                return took;
+            }
+            Fault::KillCoordinator => {
+                self.coordinator(which).kill();
+                self.restart(which);
+            }
+            Fault::FreezeCoordinator if self.second.is_some() => {
+                self.coordinator(which).freeze();
+                let took = self.goes_on(self.other(which), job, before, since);
+                std::thread::sleep(STANDSTILL.saturating_sub(since.elapsed()));
+                self.coordinator(which).thaw();
+                return took;
+            }
+            Fault::FreezeCoordinator => {
+                self.coordinator(which).freeze();
+                std::thread::sleep(Duration::from_secs(1));
+                self.coordinator(which).thaw();
+                since = Instant::now();
+            }
+            Fault::KillDatabase => {
+                if let Some(database) = database {
+                    database.kill_and_start();
+                    since = Instant::now();
+                }
+            }
+        }
+        self.goes_on(0, job, before, since)
+    }
+
+    /// Waits until another chunk is accepted or the job has ended; how long that took. Where it takes
+    /// longer than promised, says what there was to see meanwhile.
+    fn goes_on(&self, which: usize, job: &str, before: u64, since: Instant) -> Duration {
+        let client = self.client(which);
+        let told = Cell::new(self.lease + Duration::from_secs(1));
+        client.progress_once(job, "work goes on", |p| {
+            if since.elapsed() > told.get() {
+                told.set(told.get() + Duration::from_secs(1));
+                for stage in p.stages.iter().filter(|s| s.accepted < s.total) {
+                    println!(
+                        "  {:.1} s: stage {} has {} items ready, {} with workers, {} done",
+                        since.elapsed().as_secs_f64(),
+                        stage.stage,
+                        stage.ready,
+                        stage.leased,
+                        stage.accepted
+                    );
+                }
+            }
+            has_ended(p) || accepted(p) > before
+        });
+        let took = since.elapsed();
+        if took > self.lease + PROMISED {
+            self.show_logs();
+        }
+        took
+    }
+
+    /// The last lines of all logs.
+    fn show_logs(&self) {
+        let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+        println!("  later than promised; load {}", load.trim());
+        let second = self.second.iter().map(|(process, _)| process);
+        let coordinators = std::iter::once(&self.cluster.coordinator).chain(second);
+        for process in coordinators.chain(&self.cluster.workers) {
+            let log = process.log();
+            let lines: Vec<&str> = log.lines().collect();
+            for line in &lines[lines.len().saturating_sub(25)..] {
+                println!("    {}: {line}", process.name());
+            }
+        }
+    }
+
+    fn stop(mut self) -> Vec<String> {
+        let mut logs = self.logs;
+        logs.extend(self.cluster.workers.iter().map(Process::log));
+        if let Some((process, _)) = &mut self.second {
+            process.terminate();
+            process.wait(cognate_tests::processes::PATIENCE);
+        }
+        self.cluster.stop();
+        logs
     }
 }
 
@@ -170,6 +358,7 @@ fn main() -> ExitCode {
         Some(Some(database)) => Some(database),
         None => None,
     };
+    let database = database.as_ref();
     let began = Instant::now();
     let quiet = quiet_answer(&problem(&wanted));
     println!(
@@ -177,25 +366,22 @@ fn main() -> ExitCode {
         quiet.counts.paths_total,
         began.elapsed().as_secs_f64()
     );
-    let mut cluster = Cluster::start(options(&wanted, database.as_ref().map(Database::url)));
-    let mut logs = Vec::new();
-    for _ in 0..WORKERS {
-        cluster.add_worker(&worker());
-    }
+    let mut scene = Scene::start(&wanted, database);
     let mut dice = Dice(wanted.seed);
     let (mut jobs, mut paths) = (0, 0);
     let mut faults: Vec<(Fault, Duration)> = Vec::new();
     let begin = Instant::now();
     let (least, greatest) = wanted.pause_ms;
-    while begin.elapsed() < Duration::from_secs(wanted.seconds) {
+    while begin.elapsed() < Duration::from_secs(wanted.seconds) && jobs < wanted.jobs {
         // Another request each time, or it would be the same job.
-        let job = cluster.client().submit(&problem(&wanted));
+        let job = scene.client(0).submit(&problem(&wanted));
+        let job_began = Instant::now();
         loop {
             let pause = Duration::from_millis(least + dice.below(greatest - least));
             let next = Instant::now() + pause;
             let mut ended = false;
             while Instant::now() < next && !ended {
-                let now = cluster.client().progress(&job);
+                let now = scene.client(0).progress(&job);
                 ended = now.is_ok_and(|p| has_ended(&p));
                 std::thread::sleep(Duration::from_millis(50));
             }
@@ -208,47 +394,11 @@ fn main() -> ExitCode {
                     break fault;
                 }
             };
-            let before = cluster.client().progress(&job).map_or(0, |p| accepted(&p));
-            let victim = dice.below(WORKERS as u64) as usize;
-            let mut since = Instant::now();
-            match fault {
-                Fault::KillWorker => {
-                    let mut killed = cluster.workers.remove(victim);
-                    killed.kill();
-                    logs.push(killed.log());
-                    cluster.add_worker(&worker());
-                }
-                Fault::FreezeWorker => {
-                    cluster.workers[victim].freeze();
-                    std::thread::sleep(wanted.lease + Duration::from_millis(500));
-                    cluster.workers[victim].thaw();
-                }
-                Fault::KillCoordinator => {
-                    cluster.kill_coordinator();
-                    cluster.restart_coordinator();
-                }
-                Fault::FreezeCoordinator => {
-                    cluster.coordinator.freeze();
-                    std::thread::sleep(Duration::from_secs(1));
-                    cluster.coordinator.thaw();
-                    since = Instant::now();
-                }
-                Fault::KillDatabase => {
-                    if let Some(database) = &database {
-                        database.kill_and_start();
-                        since = Instant::now();
-                    }
-                }
-            }
-            // Going again: another chunk is accepted, or the job has ended.
-            let client = cluster.client();
-            client.progress_once(&job, "work goes on", |p| {
-                has_ended(p) || accepted(p) > before
-            });
-            faults.push((fault, since.elapsed()));
-            println!("{fault}: on after {:.2} s", since.elapsed().as_secs_f64());
+            let took = scene.suffer(fault, &job, &mut dice, database);
+            faults.push((fault, took));
+            println!("{fault}: on after {:.2} s", took.as_secs_f64());
         }
-        let client = cluster.client();
+        let client = scene.client(0);
         client.wait_until_solved(&job);
         assert!(
             client.answer(&job) == quiet,
@@ -258,9 +408,13 @@ fn main() -> ExitCode {
         let end = client.progress(&job).expect("the job is known");
         assert_eq!(accepted(&end), total(&end));
         (jobs, paths) = (jobs + 1, paths + total(&end));
+        println!(
+            "job {jobs}: {} paths in {:.0} s, as without faults bit for bit",
+            total(&end),
+            job_began.elapsed().as_secs_f64()
+        );
     }
-    logs.extend(cluster.workers.iter().map(|worker| worker.log()));
-    cluster.stop();
+    let logs = scene.stop();
     report(&wanted, begin.elapsed(), jobs, paths, &faults, &logs)
 }
 
@@ -290,7 +444,8 @@ fn report(
         "SQLite"
     };
     println!(
-        "\nChaos on {ledger}, seed {}, {:.0} s",
+        "\nChaos on {ledger}, {} coordinator(s), seed {}, {:.0} s",
+        wanted.coordinators,
         wanted.seed,
         took.as_secs_f64()
     );
@@ -315,6 +470,12 @@ fn report(
     println!(
         "  {again} paths tracked again, {:.1} a fault; at most {bound} expected",
         again as f64 / faults.len().max(1) as f64
+    );
+    let promised = wanted.lease + PROMISED;
+    let later = faults.iter().filter(|(_, time)| *time > promised).count();
+    println!(
+        "  {later} of {} faults took longer than {promised:?}",
+        faults.len()
     );
     let limit = wanted.lease + GOES_ON;
     let late = faults.iter().filter(|(_, time)| *time > limit).count();

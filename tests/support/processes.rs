@@ -37,13 +37,20 @@ pub fn cognate() -> &'static Path {
             build.arg("--release");
         }
         let target = folder.parent().expect("cargo's layout");
+        // Its words are shown: it may compile for minutes, or wait for another build.
+        eprintln!(
+            "cognate is built if it is not up to date; COGNATE_PROGRAM names one that is there"
+        );
         let built = build
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .env("CARGO_TARGET_DIR", target)
-            .output()
+            .stdin(Stdio::null())
+            .status()
             .expect("cargo can be started");
-        let text = String::from_utf8_lossy(&built.stderr);
-        assert!(built.status.success(), "cognate cannot be built:\n{text}");
+        assert!(
+            built.success(),
+            "cognate cannot be built: its reasons are above"
+        );
         folder.join("cognate")
     })
 }
@@ -86,6 +93,11 @@ impl Process {
             log,
             ended: None,
         }
+    }
+
+    /// What the test calls it.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// What it has said so far.

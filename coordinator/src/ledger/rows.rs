@@ -456,3 +456,14 @@ pub struct Contribution {
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
 }
+
+/// What one execution of an audited chunk found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Vote {
+    /// Of which lease of the chunk.
+    pub epoch: Epoch,
+    /// Whose it was.
+    pub worker: WorkerId,
+    /// Hash of the results' records.
+    pub hash: Digest,
+}

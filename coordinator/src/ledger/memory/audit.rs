@@ -5,14 +5,6 @@ use super::books::{Books, Chunk, Stage};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
-use cognate_continuation::start_points::Digest;
-
-/// What one execution of a chunk found.
-pub struct Vote {
-    epoch: Epoch,
-    worker: WorkerId,
-    hash: Digest,
-}
 
 /// Why a job ends that has used results of a worker that was outvoted later.
 pub fn tainted(worker: &WorkerId) -> String {

@@ -1,6 +1,6 @@
 //! What the ledger in memory holds, and the moves that its calls are made of.
 
-use super::{PRESENT_MS, audit, estimate};
+use super::{PRESENT_MS, estimate};
 use crate::chunks::sizing::Situation;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
@@ -41,7 +41,7 @@ pub struct Chunk {
     pub silent_since: Option<LedgerTime>,
     pub charged: i64,
     /// What executions of an audited chunk found.
-    pub votes: Vec<audit::Vote>,
+    pub votes: Vec<Vote>,
 }
 
 pub struct Worker {

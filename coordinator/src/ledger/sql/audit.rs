@@ -9,15 +9,7 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::memory::{check_size, tainted};
 use crate::ledger::rows::*;
-use cognate_continuation::start_points::Digest;
 use std::collections::BTreeSet;
-
-/// What one execution of a chunk found.
-struct Vote {
-    epoch: Epoch,
-    worker: WorkerId,
-    hash: Digest,
-}
 
 async fn votes(c: &mut Connection, chunk: ChunkId) -> Result<Vec<Vote>, LedgerError> {
     let rows =

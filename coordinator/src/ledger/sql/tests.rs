@@ -181,6 +181,51 @@ async fn a_ledger_of_version_1_still_opens() {
     assert!(!ledger.workers(1).await.unwrap()[0].evicted);
 }
 
+#[tokio::test]
+async fn a_database_of_version_1_still_opens() {
+    use sqlx::{AssertSqlSafe, Connection, PgConnection};
+    let Some(server) = postgres() else { return };
+    let url = database(&server).await;
+    let mut old = PgConnection::connect(&url).await.expect("the database");
+    // As the first version made it and left it: a job of which one chunk is ready.
+    let schema = MIGRATIONS[0].replace(" TEXT", " TEXT COLLATE \"C\"");
+    let rows = "INSERT INTO ledger (schema_version) VALUES (1)".to_owned();
+    for statements in [schema, rows] {
+        let statements = AssertSqlSafe(statements);
+        sqlx::raw_sql(statements).execute(&mut old).await.unwrap();
+    }
+    let of_version = |statement: &'static str| sqlx::raw_sql(statement);
+    let missing = of_version("SELECT * FROM votes").fetch_all(&mut old).await;
+    assert!(missing.is_err(), "version 1 knows no votes");
+    old.close().await.unwrap();
+    let open = || SqlLedger::postgres(&url, None);
+    // Two coordinators of the new version at once: one of them brings it up to date.
+    let (one, two) = tokio::join!(open(), open());
+    let (one, two) = (one.unwrap(), two.unwrap());
+    one.seen(seen("w", 1)).await.unwrap();
+    assert!(!two.workers(1).await.unwrap()[0].evicted);
+    let job = two.submit(request("r"), new_job("t", 1)).await.unwrap().job;
+    let epoch = two.steward(job, &coordinator("two"), 600_000).await;
+    let open = Advance {
+        open: vec![stage(0, 10, 10)],
+        ..Advance::default()
+    };
+    two.advance(job, epoch.unwrap().unwrap(), open)
+        .await
+        .unwrap();
+    let lease = one.lease(wants("w", "1", 1)).await.unwrap().remove(0);
+    let object = result(lease.items, 1, 100_000);
+    // What the second version is for.
+    let voted = one.witness(lease.lease, object).await.unwrap();
+    assert_eq!(voted, Completion::Witnessed);
+    let mut now = PgConnection::connect(&url).await.expect("the database");
+    let votes = of_version("SELECT * FROM votes").fetch_all(&mut now).await;
+    assert_eq!(votes.unwrap().len(), 1);
+    let versions = "SELECT * FROM ledger WHERE schema_version = 2";
+    let versions = of_version(versions).fetch_all(&mut now).await;
+    assert_eq!(versions.unwrap().len(), 1);
+}
+
 /// Measured, not asserted: `cargo test --release -p cognate-coordinator -- --ignored --nocapture speed`.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "a measurement"]
