@@ -166,10 +166,13 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
             ))
         }
         (StartKind::Monodromy, _) => Ok(()),
-        _ if options.idle_loops.is_some() || options.expected_solutions.is_some() => {
+        _ if options.idle_loops.is_some()
+            || options.expected_solutions.is_some()
+            || options.trace_test =>
+        {
             Err(ApiError::Problem(
-                "options.idle_loops, options.expected_solutions: they go with start kind \
-                 \"monodromy\" only"
+                "options.idle_loops, options.expected_solutions, options.trace_test: they go \
+                 with start kind \"monodromy\" only"
                     .to_owned(),
             ))
         }

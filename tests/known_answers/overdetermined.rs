@@ -1,7 +1,9 @@
 //! More equations than unknowns: combinations are tracked, and what solves only those is excess.
 
 use crate::check::{Answer, SEEDS, check, complaints, solve};
-use cognate_algorithms::PlanOptions;
+use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::{PlanOptions, plan};
+use cognate_tests::builders::example;
 use cognate_tests::systems::{shared, written};
 
 /// Survey, system (35): exactly (0,0), (1,0) and (0,-1), where the survey prints (0,1).
@@ -75,4 +77,25 @@ fn a_repeated_equation_changes_nothing() {
             ..Answer::default()
         },
     );
+}
+
+/// Ten cubics, two quadrics and six circles in twelve unknowns: the circles stay, and of the others
+/// six combinations are tracked.
+#[test]
+fn a_loop_of_six_joints_keeps_its_circles() {
+    let text = example("six_revolute_loop.bertini");
+    let system = match cognate_systems::formats::read("loop", text.as_bytes()) {
+        Ok(problem) => problem.system,
+        Err(error) => panic!("{error}"),
+    };
+    assert_eq!((system.equation_count(), system.dimension()), (18, 12));
+    for seed in SEEDS.take(3) {
+        let options = PlanOptions {
+            start: StartChoice::TotalDegree,
+            seed,
+            ..PlanOptions::default()
+        };
+        let paths = plan(&system, &options).map(|plan| plan.paths);
+        assert_eq!(paths.ok(), Some(2_u64.pow(6) * 3_u64.pow(6)));
+    }
 }

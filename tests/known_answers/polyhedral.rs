@@ -1,11 +1,12 @@
 //! The same answers from mixed cells: as many paths as the mixed volume, and nothing lost.
 
-use crate::check::{Answer, check};
+use crate::check::{Answer, check, solve};
 use cognate_algorithms::PlanOptions;
 use cognate_algorithms::plan::{StartChoice, plan};
 use cognate_algorithms::start_costs::StartKind;
 use cognate_systems::named::{Named, caprasse, cyclic, eco, katsura, noon, reimer};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use cognate_tests::systems::{shared, with_conjugates, written};
 
 fn check_polyhedral(name: &str, system: &System, answer: Answer) {
@@ -130,4 +131,40 @@ fn auto_takes_it_where_it_saves_paths() {
         .err()
         .map(|error| error.to_string());
     assert!(refusal.is_some_and(|r| r.contains("homogeneous groups")));
+}
+
+/// Triangles with the corners (1, 0), (0, 1) and (-1, -1): normalised area 3 (Bernstein 1975).
+#[test]
+fn laurent_polynomials_have_the_mixed_volume_of_their_own_exponents() {
+    let system = written(
+        "variable_group x, y; function f, g; \
+         f = 2*x - 3*y + 5/(x*y) - 7; g = x + 4*y - 3*x^-1*y^-1 + 1;",
+    );
+    let answer = Answer {
+        paths: 3,
+        nonsingular: 3,
+        ..Answer::default()
+    };
+    check_polyhedral("Laurent", &system, answer);
+}
+
+/// x = 2y - y^2 and y = x^2 - 3x meet in (0, 0) too, which is no solution of the quotients that
+/// are asked: mixed cells do not look for it, and another start counts it by name.
+#[test]
+fn a_zero_below_the_line_is_no_solution() {
+    let system = written("variable_group x, y; function f, g; f = x/y - 2 + y; g = y/x + 3 - x;");
+    let answer = Answer {
+        paths: 3,
+        nonsingular: 3,
+        ..Answer::default()
+    };
+    check_polyhedral("quotients", &system, answer);
+    let options = PlanOptions {
+        start: StartChoice::TotalDegree,
+        ..PlanOptions::default()
+    };
+    let (paths, sets) = solve(&system, &options, &|_| None);
+    assert_eq!((paths, sets[0].counts.nonsingular), (4, 4));
+    let at_zero = sets[0].counts.degenerate.get(ZERO_DENOMINATOR);
+    assert_eq!(at_zero.copied(), Some(1));
 }

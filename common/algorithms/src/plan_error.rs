@@ -1,5 +1,6 @@
 //! PlanError: why there is no plan, in words for the person who gave the system.
 
+use crate::monodromy::trace::NoTraceTest;
 use crate::plan::MAX_PATHS;
 use crate::start_costs::StartKind;
 use crate::start_pair::StartPairError;
@@ -95,6 +96,9 @@ pub enum PlanError {
          parameters (a start system, such as total degree, serves)"
     )]
     MonodromyWithoutParameters,
+    /// Completeness cannot be tested.
+    #[error("there is no trace test for this family: {0}")]
+    NoTraceTest(NoTraceTest),
     /// A homotopy is one path, no family.
     #[error(
         "the start `monodromy` is for families with parameters, not for a homotopy with a path variable"

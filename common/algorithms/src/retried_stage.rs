@@ -400,7 +400,7 @@ impl RetriedStage {
             | HomotopyKind::Slide { parameters, .. }
             | HomotopyKind::Intersect { parameters, .. } => parameters,
             HomotopyKind::Parameter { targets, .. } => &targets[target],
-            HomotopyKind::Toric => &[],
+            HomotopyKind::Toric | HomotopyKind::Sections { .. } => &[],
         };
         let (shape, tolerances) = (&self.shape, &self.tolerances);
         let sets = (self.declared).members(parameters, results, decisions, shape, tolerances);

@@ -10,6 +10,7 @@ use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
+use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -426,9 +427,13 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
         return Err("not counted for combinations of equations".into());
     }
     let supports = supports(system).ok_or("multiplying the equations out takes too long")?;
-    mixed_cells(&affine_supports(&supports), 0, operations)
-        .map(|found| found.mixed_volume)
-        .map_err(|error| error.to_string())
+    mixed_cells(
+        &affine_supports(&supports, &nonzero_variables(system)),
+        0,
+        operations,
+    )
+    .map(|found| found.mixed_volume)
+    .map_err(|error| error.to_string())
 }
 
 /// Whether two legs for each of `volume` paths cost less than one for each of `count`.

@@ -37,7 +37,7 @@ impl ZeroDimensionalSolve {
                 }
                 (parameters, false)
             }
-            HomotopyKind::Parameter { .. } => {
+            HomotopyKind::Parameter { .. } | HomotopyKind::Sections { .. } => {
                 panic!("a parameter homotopy is planned as a parameter solve")
             }
             HomotopyKind::Toric | HomotopyKind::Generic { .. } => {

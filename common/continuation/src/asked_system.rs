@@ -83,6 +83,9 @@ impl AskedSystem {
                 let values = parameters.iter().map(|&z| exact(&mut out, z)).collect();
                 (values, vec![Vec::new()])
             }
+            HomotopyKind::Sections { .. } => {
+                panic!("sections are prepared as a parameter homotopy of the curve")
+            }
             HomotopyKind::Parameter { targets, .. } => {
                 let count = system.parameters.len() as u32;
                 (

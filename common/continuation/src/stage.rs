@@ -3,6 +3,7 @@
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
 use crate::homotopies::prepare::StartSystem;
+use crate::homotopies::sections::sections;
 use crate::homotopies::{Homotopy, HomotopyKind};
 use crate::path_result::PathResult;
 use crate::start_points::{DamagedPoints, Digest, StartPoints, StoredPoints};
@@ -17,6 +18,7 @@ use crate::work::{Stage, Work};
 use cognate_numeric::lanes::dispatch::InstructionSet;
 use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees, supports};
 use cognate_systems::system::{System, SystemError};
+use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -172,6 +174,9 @@ impl<'a> Checked<'a> {
                 }
             }
             HomotopyKind::Toric => {}
+            HomotopyKind::Sections { .. } => {
+                return Err(PrepareError::StartPoints("a section of a section".into()));
+            }
             HomotopyKind::PathVariable { parameters } => {
                 fits("parameters", parameters)?;
                 if system.path_variable.is_none() {
@@ -374,6 +379,32 @@ impl<'a> Checked<'a> {
     }
 }
 
+/// A stage on the sections of a curve is one of the curve's own system, in which the sections
+/// are parameters; `None` for every other.
+fn on_sections(system: &System, stage: &Stage) -> Result<Option<(System, Stage)>, PrepareError> {
+    let HomotopyKind::Sections {
+        parameters,
+        direction,
+        start,
+        target,
+    } = &stage.homotopy
+    else {
+        return Ok(None);
+    };
+    system.check()?;
+    let curve = sections(system, parameters, direction).ok_or_else(|| {
+        PrepareError::StartPoints("the system has no sections, or not with these numbers".into())
+    })?;
+    let along = Stage {
+        homotopy: HomotopyKind::Parameter {
+            start: start.clone(),
+            targets: vec![target.clone()],
+        },
+        ..stage.clone()
+    };
+    Ok(Some((curve, along)))
+}
+
 impl PreparedStage {
     /// Checks that stage and system fit, and compiles.
     ///
@@ -383,6 +414,9 @@ impl PreparedStage {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
+        if let Some((curve, along)) = on_sections(system, stage)? {
+            return Self::new(&curve, &along, objects);
+        }
         let checked = Checked::new(system, stage, objects)?;
         let homotopy = Homotopy::new(
             &checked.system,
@@ -418,7 +452,10 @@ impl PreparedStage {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<(), PrepareError> {
-        Checked::new(system, stage, objects).map(|_| ())
+        match on_sections(system, stage)? {
+            Some((curve, along)) => Checked::new(&curve, &along, objects).map(|_| ()),
+            None => Checked::new(system, stage, objects).map(|_| ()),
+        }
     }
 
     /// Number of items.
@@ -579,7 +616,11 @@ fn generic_system(
     let supports = supports(system).ok_or_else(|| {
         PrepareError::StartPoints("the equations are too large to be multiplied out".into())
     })?;
-    Ok(GenericSystem::new(&supports, seed))
+    Ok(GenericSystem::new(
+        &supports,
+        &nonzero_variables(system),
+        seed,
+    ))
 }
 
 #[cfg(test)]

@@ -57,6 +57,8 @@ pub struct Options {
     pub expected_solutions: Option<u64>,
     /// Whether the solutions are certified.
     pub certify: bool,
+    /// For [`StartKind::Monodromy`]: whether a trace test decides that it has all solutions.
+    pub trace_test: bool,
     /// For [`StartKind::LinearProduct`]: the variables of each factor of each equation.
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
 }

@@ -200,8 +200,9 @@ pub struct ProblemArguments {
     /// Singular solutions made regular (not in this version)
     #[arg(long, hide = true)]
     pub deflate: bool,
-    /// Whether a set of solutions is complete (not in this version)
-    #[arg(long, hide = true)]
+    /// Let a trace test decide when --start monodromy has all solutions: it is a proof but for
+    /// rounding, where loops without anything new are only evidence
+    #[arg(long)]
     pub trace_test: bool,
 }
 

@@ -30,17 +30,8 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
 }
 
 fn problem(a: &ProblemArguments) -> Option<String> {
-    let flags = [
-        (a.deflate, "--deflate (deflation of singular solutions)"),
-        (
-            a.trace_test,
-            "--trace-test (completeness of a solution set)",
-        ),
-    ];
-    flags
-        .iter()
-        .find(|(asked, _)| *asked)
-        .map(|(_, name)| (*name).into())
+    (a.deflate)
+        .then(|| "--deflate (deflation of singular solutions)".to_string())
         .or_else(|| precision(a.precision))
 }
 

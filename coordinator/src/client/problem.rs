@@ -100,6 +100,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
     for (given, option) in [
         (a.idle_loops.is_some(), "--idle-loops"),
         (a.expect.is_some(), "--expect"),
+        (a.trace_test, "--trace-test"),
     ] {
         if given && a.start != Start::Monodromy {
             return Err(wrong(option, "only goes with --start monodromy"));
@@ -177,6 +178,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         idle_loops: a.idle_loops,
         expected_solutions: a.expect,
         certify: a.certify,
+        trace_test: a.trace_test,
         sets,
     };
     Ok(Prepared {

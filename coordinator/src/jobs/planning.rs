@@ -120,6 +120,7 @@ pub fn plan_options(
                 .idle_loops
                 .unwrap_or(LoopLimits::default().idle_loops),
             count: options.expected_solutions,
+            trace_test: options.trace_test,
         },
         seed: options.seed.unwrap_or_default(),
         settings: options.settings.resolve(),

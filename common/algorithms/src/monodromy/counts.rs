@@ -10,14 +10,40 @@ pub enum Stop {
     Count,
     /// Enough loops in a row brought nothing new.
     IdleLoops,
+    /// A trace test says that none is missing.
+    TraceTest,
     /// As many paths were tracked as one solve may.
     PathLimit,
     /// No start point could be tracked to generic parameters.
     NoStart,
 }
 
+/// What moves in a trace test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TraceForm {
+    /// Linear equations whose coefficients the parameters are.
+    Slices,
+    /// Bilinear sections of the curve that the family has over a line of its parameters.
+    Sections,
+}
+
+/// What a trace test found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TraceCounts {
+    /// What moved.
+    pub form: TraceForm,
+    /// Points whose sum was followed.
+    pub points: u64,
+    /// How far the sum was off a line, in parts of the sum of moduli; `None` where a point was lost
+    /// on the way.
+    pub deviation: Option<f64>,
+    /// Whether the solutions are all that can be reached from one of them by loops.
+    pub complete: bool,
+}
+
 /// How far loops have come.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoopCounts {
     /// Independent loops in the space of parameters.
     pub loops: u64,
@@ -39,4 +65,7 @@ pub struct LoopCounts {
     pub solutions: u64,
     /// Why no more loops were made; `None` while they are.
     pub stop: Option<Stop>,
+    /// The last trace test; `None` where none was asked for or came to an end.
+    #[serde(default)]
+    pub trace_test: Option<TraceCounts>,
 }

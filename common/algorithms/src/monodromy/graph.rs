@@ -179,6 +179,42 @@ impl Graph {
         }
     }
 
+    /// Adds what is not known at a vertex; returns how many orbits that are.
+    pub fn learn(
+        &mut self,
+        vertex: usize,
+        found: &[Known],
+        group: &SymmetryGroup,
+        shape: &PointShape,
+        seed: u64,
+    ) -> usize {
+        let points = &self.vertices[vertex].points;
+        let known = points.len();
+        let all: Vec<(&[Complex64], f64)> = points
+            .iter()
+            .chain(found)
+            .map(|point| (point.values.as_slice(), point.radius))
+            .collect();
+        let orbits = group.orbits(&all, shape, seed);
+        let new = orbits.iter().filter(|orbit| orbit[0] >= known);
+        let new: Vec<Known> = new.map(|orbit| found[orbit[0] - known].clone()).collect();
+        for point in &new {
+            self.add_point(vertex, point.clone());
+        }
+        new.len()
+    }
+
+    /// The points that all of a vertex lead to along one edge; `None` while one does not.
+    pub fn reached(&self, edge: usize) -> Option<Vec<&Known>> {
+        let Edge { to, fates, .. } = &self.edges[edge];
+        let points = &self.vertices[*to].points;
+        let reached = fates.iter().map(|fate| match fate {
+            Fate::To { point, .. } => Some(&points[*point as usize]),
+            Fate::Open { .. } | Fate::Lost => None,
+        });
+        reached.collect()
+    }
+
     /// Takes in what a round of tracking showed. The order of arrivals decides the names of new
     /// points, nothing else. A path is tried again up to `most` times.
     pub fn settle(

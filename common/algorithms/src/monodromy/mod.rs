@@ -8,12 +8,15 @@
 //! each orbit is tracked. A jump of a path cannot make a false solution here,
 //! it only breaks the bijection of a leg, and that is seen ([`graph`]).
 
+mod completeness;
 pub mod counts;
 pub(crate) mod graph;
+pub mod trace;
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::parameter_solve::ParameterSolve;
 use crate::plan::MAX_PATHS;
+use crate::plan_error::PlanError;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::{MAX_RETRIES, can_be_helped};
 use crate::{Certifiable, Next, Opening, PathAlgorithm};
@@ -27,13 +30,15 @@ use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::path_crossing::radius;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
-use cognate_solutions::symmetry::{SymmetryError, SymmetryGroup};
+use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
+use completeness::Tested;
 use counts::{LoopCounts, Stop};
 use graph::{Arrival, Fate, Graph, Known};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use trace::{Curve, MOST_DEVIATION, Test};
 
 /// When loops end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,6 +50,8 @@ pub struct LoopLimits {
     /// Solutions at generic parameters, where that number is known: loops end when they are
     /// found, and go on four times longer when they are not.
     pub count: Option<u64>,
+    /// Whether a trace test decides that all are found.
+    pub trace_test: bool,
 }
 
 impl Default for LoopLimits {
@@ -52,6 +59,7 @@ impl Default for LoopLimits {
         Self {
             idle_loops: 5,
             count: None,
+            trace_test: false,
         }
     }
 }
@@ -91,9 +99,11 @@ enum Phase {
     Loops(Vec<Batch>),
     /// The images of one solution under the group are tracked on the spot: are they solutions?
     Check(Option<StageId>),
+    /// Loops among the sections of a curve, for a trace test.
+    Sections(Box<MonodromySolve>),
     /// From the base to the wanted parameters.
     Arrive(Box<ParameterSolve>),
-    /// There is nothing to go on from.
+    /// There is nothing to go on from, or nothing more is asked.
     Stuck,
 }
 
@@ -106,7 +116,7 @@ pub struct LoopStart {
     pub points: StartPoints,
     /// How many they are.
     pub count: u64,
-    /// Coordinates of one that the plan found itself: then the object is made of it.
+    /// Coordinates of all where they were found on the way: then the object is made of them.
     pub found: Option<Vec<Complex64>>,
 }
 
@@ -135,6 +145,16 @@ pub struct MonodromySolve {
     /// Last results of the start solutions, for when none of them leads anywhere.
     first_results: Vec<PathResult>,
     warnings: Vec<String>,
+    /// Loops that were weighed already when idle ones were counted.
+    weighed: u64,
+    /// The number of its first stage.
+    first_id: u32,
+    /// How completeness is tested; `None` where that is not asked.
+    test: Option<Test>,
+    /// Points of the base that the last test was about.
+    tested: Option<usize>,
+    /// Where the loops of a test are: on a curve of this family.
+    curve: Option<Box<Curve>>,
 }
 
 impl MonodromySolve {
@@ -147,8 +167,30 @@ impl MonodromySolve {
         settings: Settings,
         tolerances: Tolerances,
         seed: u64,
-    ) -> Result<Self, SymmetryError> {
+    ) -> Result<Self, PlanError> {
         let group = SymmetryGroup::of(system)?;
+        let shape = PointShape::of(system);
+        let mut solve = Self::begin(shape, group, start, limits, settings, tolerances, seed);
+        solve.targets = targets;
+        if limits.trace_test {
+            let base = &solve.graph.vertices[BASE].parameters;
+            let direction = generic_parameters(base, seed, usize::MAX >> 1);
+            let test = Test::new(system, base, direction, seed);
+            solve.test = Some(test.map_err(PlanError::NoTraceTest)?);
+        }
+        Ok(solve)
+    }
+
+    /// A solve without targets: it ends with its loops.
+    fn begin(
+        shape: PointShape,
+        group: SymmetryGroup,
+        start: LoopStart,
+        limits: LoopLimits,
+        settings: Settings,
+        tolerances: Tolerances,
+        seed: u64,
+    ) -> Self {
         let mut graph = Graph::default();
         graph.add_vertex(start.parameters.clone());
         let base = generic_parameters(&start.parameters, seed, BASE);
@@ -156,15 +198,15 @@ impl MonodromySolve {
         graph.add_edge(START, BASE, edge_seed(seed, FIRST), false);
         let count = usize::try_from(start.count).expect("a plan has no more paths than its limit");
         graph.edges[FIRST].fates = vec![Fate::Open { attempt: 0 }; count];
-        Ok(Self {
-            shape: PointShape::of(system),
+        Self {
+            shape,
             tolerances,
             settings,
             seed,
             max_retries: MAX_RETRIES,
             limits,
             start,
-            targets,
+            targets: Vec::new(),
             group_known: group.is_trivial(),
             group,
             graph,
@@ -178,7 +220,12 @@ impl MonodromySolve {
             stages: Vec::new(),
             first_results: Vec::new(),
             warnings: Vec::new(),
-        })
+            weighed: 0,
+            first_id: 0,
+            test: None,
+            tested: None,
+            curve: None,
+        }
     }
 
     /// The same with another limit of repetitions.
@@ -207,7 +254,7 @@ impl MonodromySolve {
     }
 
     fn next_id(&self) -> StageId {
-        StageId(self.stages.len() as u32)
+        StageId(self.first_id + self.stages.len() as u32)
     }
 
     /// A stage along a path of parameters.
@@ -215,9 +262,17 @@ impl MonodromySolve {
         Stage {
             id: self.next_id(),
             work: Work::Track,
-            homotopy: HomotopyKind::Parameter {
-                start: from.to_vec(),
-                targets: vec![to.to_vec()],
+            homotopy: match &self.curve {
+                None => HomotopyKind::Parameter {
+                    start: from.to_vec(),
+                    targets: vec![to.to_vec()],
+                },
+                Some(curve) => HomotopyKind::Sections {
+                    parameters: curve.parameters.clone(),
+                    direction: curve.direction.clone(),
+                    start: from.to_vec(),
+                    target: to.to_vec(),
+                },
             },
             start_points: points,
             settings: self.settings.clone(),
@@ -253,7 +308,7 @@ impl MonodromySolve {
             };
             let found = self.start.found.iter().map(|values| {
                 Arc::new(StoredPoints {
-                    dimension: values.len(),
+                    dimension: values.len() / self.start.count as usize,
                     coordinates: values.clone(),
                 })
             });
@@ -315,8 +370,13 @@ impl MonodromySolve {
                 Some(Stop::Count)
             } else if too_many {
                 Some(Stop::PathLimit)
-            } else if open.is_empty() && self.is_exhausted() {
-                Some(Stop::IdleLoops)
+            } else if open.is_empty() {
+                let exhausted = self.is_exhausted();
+                match self.test_completeness(exhausted) {
+                    Tested::Complete => Some(Stop::TraceTest),
+                    Tested::Begun => None,
+                    Tested::No => exhausted.then_some(Stop::IdleLoops),
+                }
             } else {
                 None
             };
@@ -325,13 +385,15 @@ impl MonodromySolve {
                 self.arrive();
                 return;
             }
+            if matches!(self.phase, Phase::Sections(_)) {
+                return;
+            }
         }
-        let open = if open.is_empty() {
+        let mut open = self.graph.open();
+        if open.is_empty() {
             self.add_loops();
-            self.graph.open()
-        } else {
-            open
-        };
+            open = self.graph.open();
+        }
         let batches = open.into_iter().map(|(edge, attempt, sources)| Batch {
             edge,
             attempt,
@@ -345,13 +407,12 @@ impl MonodromySolve {
     /// All legs are tracked: counts idle loops; true when they are enough.
     fn is_exhausted(&mut self) -> bool {
         let known = self.graph.vertices[BASE].points.len();
-        if self.counts.loops > 0 {
-            if known > self.exhausted_at {
-                self.counts.idle_loops = 0;
-            } else {
-                self.counts.idle_loops += (2 * LEGS - 1) as u64;
-            }
+        if known > self.exhausted_at {
+            self.counts.idle_loops = 0;
+        } else {
+            self.counts.idle_loops += self.counts.loops - self.weighed;
         }
+        self.weighed = self.counts.loops;
         self.exhausted_at = known;
         let cheap = (IDLE_PATHS / known as u64).min(MOST_IDLE);
         let wanted = u64::from(self.limits.idle_loops).max(cheap);
@@ -482,6 +543,10 @@ impl MonodromySolve {
 
     /// From everything that is known at the base to the wanted parameters.
     fn arrive(&mut self) {
+        if self.targets.is_empty() {
+            self.phase = Phase::Stuck;
+            return;
+        }
         let base = &self.graph.vertices[BASE];
         let points = self.arriving_points();
         let mut stage = self.stage(
@@ -513,14 +578,23 @@ impl MonodromySolve {
     fn warn_of_the_end(&mut self) {
         let counts = &self.counts;
         let mut warnings = Vec::new();
+        let bent = counts.trace_test.as_ref().filter(|test| {
+            let off = test.deviation;
+            off.is_some_and(|off| off > MOST_DEVIATION)
+        });
         match counts.stop {
-            Some(Stop::IdleLoops) => warnings.push(match self.limits.count {
-                Some(wanted) => format!(
+            Some(Stop::IdleLoops) => warnings.push(match (self.limits.count, bent) {
+                (Some(wanted), _) => format!(
                     "{wanted} solutions were asked for; monodromy found {}, and {} loops more \
                      brought nothing new",
                     counts.solutions, counts.idle_loops
                 ),
-                None => format!(
+                (None, Some(_)) => format!(
+                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
+                     nothing new",
+                    counts.solutions, counts.idle_loops
+                ),
+                (None, None) => format!(
                     "monodromy found {} solutions at generic parameters, and {} loops more brought \
                      nothing new: strong evidence that none is missing, but no proof",
                     counts.solutions, counts.idle_loops
@@ -530,6 +604,21 @@ impl MonodromySolve {
                 "loops ended at the limit of {MAX_PATHS} paths: solutions may be missing"
             )),
             _ => {}
+        }
+        let ended = matches!(counts.stop, Some(Stop::IdleLoops | Stop::PathLimit));
+        if let Some(test) = bent {
+            warnings.push(format!(
+                "the trace test failed: the sum of {} points is off a line by {:.0e} of their size, \
+                 so that solutions are missing",
+                test.points,
+                test.deviation.unwrap_or_default()
+            ));
+        } else if ended && self.test.is_some() {
+            warnings.push(
+                "the trace test did not come to an end: a path of it was lost, or loops do not \
+                 reach a solution that it found"
+                    .to_string(),
+            );
         }
         let known = self.graph.vertices[BASE].points.len();
         let more = self.graph.vertices[BASE + 1..].iter();
@@ -586,7 +675,7 @@ impl PathAlgorithm for MonodromySolve {
     fn certifiable(&self) -> Option<Certifiable> {
         match &self.phase {
             Phase::Arrive(solve) => solve.certifiable(),
-            Phase::Check(_) | Phase::Loops(_) | Phase::Stuck => None,
+            Phase::Check(_) | Phase::Loops(_) | Phase::Sections(_) | Phase::Stuck => None,
         }
     }
 
@@ -611,6 +700,10 @@ impl PathAlgorithm for MonodromySolve {
                     };
                 }
                 Phase::Stuck => return Next::Done,
+                Phase::Sections(inner) => match inner.next() {
+                    Next::Done => self.take_in_sections(),
+                    next => return next,
+                },
                 Phase::Check(Some(_)) => return Next::Wait,
                 Phase::Check(None) => {
                     let opening = self.check();
@@ -641,6 +734,10 @@ impl PathAlgorithm for MonodromySolve {
             solve.absorb(id, results);
             return;
         }
+        if let Phase::Sections(inner) = &mut self.phase {
+            inner.absorb(id, results);
+            return;
+        }
         let stage = self
             .stages
             .iter_mut()
@@ -665,7 +762,9 @@ impl PathAlgorithm for MonodromySolve {
                     self.phase = Phase::Loops(batches);
                 }
             }
-            Phase::Arrive(_) | Phase::Stuck => unreachable!("no stage is open then"),
+            Phase::Arrive(_) | Phase::Sections(_) | Phase::Stuck => {
+                unreachable!("no stage is open then")
+            }
         }
     }
 
@@ -682,6 +781,7 @@ impl PathAlgorithm for MonodromySolve {
             }
             phase => Progress {
                 description: match phase {
+                    Phase::Sections(inner) => format!("trace test; {}", inner.description()),
                     Phase::Stuck => "monodromy: no start solution could be tracked".to_string(),
                     _ => self.description(),
                 },
@@ -694,6 +794,9 @@ impl PathAlgorithm for MonodromySolve {
                 done: *phase == Phase::Stuck,
             },
         };
+        if let Phase::Sections(inner) = &self.phase {
+            progress.stages.extend(inner.stages.iter().copied());
+        }
         progress.stages.splice(0..0, self.stages.iter().copied());
         progress
     }

@@ -5,6 +5,8 @@ use crate::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use crate::run_locally::{drive, run_locally};
 use cognate_continuation::stage::PreparedStage;
 use cognate_continuation::start_points::Digest;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use counts::TraceForm;
 use std::collections::HashMap;
 
 fn written(text: &str) -> System {
@@ -287,4 +289,234 @@ fn what_has_no_family_is_refused() {
     assert!(refused(plain).contains("no parameters"));
     let square = "CONFIG END; INPUT variable_group x; parameter p; function f; f = x^3 - p^2; END;";
     assert!(refused(square).contains("not linear in its parameters"));
+}
+
+fn traced(text: &str, seed: u64) -> Plan {
+    let options = PlanOptions {
+        start: StartChoice::Monodromy,
+        seed,
+        loops: LoopLimits {
+            trace_test: true,
+            ..LoopLimits::default()
+        },
+        ..PlanOptions::default()
+    };
+    match plan(&written(text), &options) {
+        Ok(plan) => plan,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A plane cubic on a line.
+const SLICED: &str = "CONFIG END; INPUT variable_group x, y; parameter a, b, c; function f, g;
+    f = x^3 + y^3 - 2*x*y + 1; g = a*x + b*y + c; END;";
+
+/// Few loops are enough where the test says so; without a point it says the opposite.
+#[test]
+fn points_on_a_slice_are_complete_when_their_sum_moves_on_a_line() {
+    for seed in 0..5 {
+        // (-1, 0) is on the curve and on x + 2y + 1 = 0.
+        let number = |re: f64| Complex64::new(re, 0.0);
+        let start = Arc::new(StoredPoints {
+            dimension: 2,
+            coordinates: [-1.0, 0.0].map(number).to_vec(),
+        });
+        let options = PlanOptions {
+            start: StartChoice::Monodromy,
+            seed,
+            start_points: Some(GivenStart {
+                object: start.digest(),
+                count: 1,
+                dimension: 2,
+            }),
+            start_parameters: Some([1.0, 2.0, 1.0].map(number).to_vec()),
+            loops: LoopLimits {
+                trace_test: true,
+                ..LoopLimits::default()
+            },
+            ..PlanOptions::default()
+        };
+        let mut plan = plan(&written(SLICED), &options).unwrap();
+        let find = |_: Digest| Some(Arc::clone(&start));
+        let set = run_locally(&plan.system, &mut plan.algorithm, &find, 8).unwrap();
+        let (set, counts) = (&set[0], plan.algorithm.loops().unwrap().clone());
+        assert_eq!(
+            (set.counts.distinct, counts.stop),
+            (3, Some(Stop::TraceTest))
+        );
+        let said = counts.trace_test.as_ref().unwrap();
+        assert_eq!(
+            (said.form, said.points, said.complete),
+            (TraceForm::Slices, 3, true)
+        );
+        assert!(
+            counts.loops < MOST_IDLE && said.deviation < Some(1e-12),
+            "{counts:?}"
+        );
+        assert_eq!(set.warnings, Vec::<String>::new());
+        let AnyAlgorithm::Monodromy(solve) = &mut plan.algorithm else {
+            panic!("it is a monodromy solve")
+        };
+        let Some(Test::Pencil { pencil, moved }) = solve.test.clone() else {
+            panic!("its parameters are those of a slice")
+        };
+        solve.graph.vertices[BASE].points.pop();
+        for edge in solve
+            .graph
+            .edges
+            .iter_mut()
+            .filter(|edge| edge.from == BASE)
+        {
+            edge.fates.pop();
+        }
+        let without = solve.trace_of(&pencil, moved.unwrap());
+        assert!(
+            !without.complete && without.deviation > Some(1e-5),
+            "{without:?}"
+        );
+    }
+}
+
+/// The curve of x^3 = p + lambda v has 4 points on a bilinear section; that of two cubics 9 and,
+/// where a.x = 0, those of a polynomial of degree 6.
+#[test]
+fn a_family_is_complete_when_sections_of_its_curve_are() {
+    let cube = "CONFIG END; INPUT variable_group x; parameter p; function f; f = x^3 - p; END;";
+    let homogeneous = "CONFIG END; INPUT hom_variable_group x, y; parameter p, q; function f;
+        f = x^4 - p*x*y^3 - q*y^4; END;";
+    for (text, solutions, points) in [(CUBICS, 9, 15), (cube, 3, 4), (homogeneous, 4, 5)] {
+        for seed in 0..3 {
+            let (set, counts) = solve(&mut traced(text, seed));
+            assert_eq!((set.counts.distinct, counts.lost), (solutions, 0));
+            assert_eq!(counts.stop, Some(Stop::TraceTest), "{counts:?}");
+            let said = counts.trace_test.unwrap();
+            assert_eq!((said.form, said.points), (TraceForm::Sections, points));
+            assert!(said.complete && said.deviation < Some(1e-11), "{said:?}");
+            assert_eq!(set.warnings, Vec::<String>::new());
+        }
+    }
+}
+
+/// Solves with a tracker that fails on its way to some points: `hidden` says which results.
+fn solve_without(
+    plan: &mut Plan,
+    hidden: &mut dyn FnMut(&Stage, &[Complex64]) -> bool,
+) -> (SolutionSet, LoopCounts) {
+    let system = plan.system.clone();
+    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+    let done: Result<(), std::convert::Infallible> =
+        drive(&mut plan.algorithm, &mut |opening: &Opening| {
+            for points in &opening.objects {
+                objects.insert(points.digest(), Arc::clone(points));
+            }
+            let find = |digest: Digest| objects.get(&digest).cloned();
+            let stage = &opening.stage;
+            let prepared = PreparedStage::new(&system, stage, &find).unwrap();
+            let mut results = prepared.track(0..prepared.items(), 8);
+            for result in &mut results {
+                if hidden(stage, result.endpoint.to_double()) {
+                    result.outcome = PathOutcome::Failed(Failure::EndgameUnsettled);
+                }
+            }
+            Ok(results)
+        });
+    assert_eq!(done, Ok(()));
+    let counts = plan.algorithm.loops().unwrap().clone();
+    (plan.algorithm.solution_sets(&system).remove(0), counts)
+}
+
+fn is_near(point: &[Complex64], other: &[Complex64]) -> bool {
+    // Coordinates of a point of the plane, and lambda's: both as ratios to their first.
+    let ratio = |p: &[Complex64]| -> Vec<Complex64> {
+        let groups = p.chunks(3);
+        groups.flat_map(|g| g.iter().map(|z| z / g[0])).collect()
+    };
+    let pairs = ratio(point).into_iter().zip(ratio(other));
+    pairs.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>() < 1e-12
+}
+
+/// No loop in the space of parameters leads to one solution; sections have it all the same.
+#[test]
+fn what_loops_miss_the_trace_test_finds() {
+    let mut plan = traced(CUBICS, 1);
+    solve(&mut plan);
+    let AnyAlgorithm::Monodromy(whole) = &plan.algorithm else {
+        panic!("it is a monodromy solve")
+    };
+    let base = whole.graph.vertices[BASE].parameters.clone();
+    let missing = whole.graph.vertices[BASE].points[8].values.clone();
+    let missing = [&[Complex64::new(1.0, 0.0)], missing.as_slice()].concat();
+    let mut times = 0;
+    let (set, counts) = solve_without(&mut traced(CUBICS, 1), &mut |stage, end| {
+        let to_base = matches!(&stage.homotopy,
+            HomotopyKind::Parameter { targets, .. } if targets[0] == base);
+        let hidden = to_base && is_near(end, &missing);
+        times += u32::from(hidden);
+        hidden
+    });
+    assert!(times > 0 && counts.lost > 0);
+    assert_eq!(
+        (set.counts.distinct, counts.stop),
+        (9, Some(Stop::TraceTest))
+    );
+}
+
+/// One point is missing on every section: then the sum is on no line, and that is said.
+#[test]
+fn a_missing_point_makes_the_trace_test_fail() {
+    let (mut known, mut missing) = (Vec::<Vec<Complex64>>::new(), None::<Vec<Complex64>>);
+    let mut base = None;
+    let (set, counts) = solve_without(&mut traced(CUBICS, 2), &mut |stage, end| {
+        let HomotopyKind::Sections { target, .. } = &stage.homotopy else {
+            return false;
+        };
+        let base = base.get_or_insert_with(|| target.clone());
+        if base != target {
+            return false;
+        }
+        // The first that loops find beside the nine is the missing one.
+        let is_new = !known.iter().any(|point| is_near(point, end));
+        if missing.is_none() && known.len() == 9 && is_new {
+            missing = Some(end.to_vec());
+        }
+        known.push(end.to_vec());
+        known.truncate(9);
+        missing
+            .as_ref()
+            .is_some_and(|missing| is_near(missing, end))
+    });
+    let said = counts.trace_test.unwrap();
+    assert_eq!((said.points, said.complete), (14, false));
+    assert!(said.deviation > Some(1e-5), "{said:?}");
+    assert_eq!(
+        (set.counts.distinct, counts.stop),
+        (9, Some(Stop::IdleLoops))
+    );
+    let failed = |w: &&String| w.contains("the trace test failed");
+    assert_eq!(
+        set.warnings.iter().filter(failed).count(),
+        1,
+        "{:?}",
+        set.warnings
+    );
+    assert!(!set.warnings.iter().any(|w| w.contains("strong evidence")));
+}
+
+#[test]
+fn what_cannot_be_traced_is_refused_by_name() {
+    let options = PlanOptions {
+        start: StartChoice::Monodromy,
+        loops: LoopLimits {
+            trace_test: true,
+            ..LoopLimits::default()
+        },
+        ..PlanOptions::default()
+    };
+    let text = "CONFIG END; INPUT hom_variable_group x, y; variable_group z; parameter p, q;
+        function f, g; f = x^2 - p*y^2; g = z^2 - q; END;";
+    let error = plan(&written(text), &options).unwrap_err().to_string();
+    assert!(
+        error.contains("no trace test") && error.contains("affine groups"),
+        "{error}"
+    );
 }

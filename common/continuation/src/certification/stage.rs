@@ -49,8 +49,10 @@ pub fn parameters_at_targets(homotopy: &HomotopyKind, system: &System) -> Vec<Ve
         | HomotopyKind::Intersect { parameters, .. } => {
             vec![parameters.clone()]
         }
-        // It ends at another system.
-        HomotopyKind::Toric => vec![vec![Complex64::new(0.0, 0.0); system.parameters.len()]],
+        // They end at another system.
+        HomotopyKind::Toric | HomotopyKind::Sections { .. } => {
+            vec![vec![Complex64::new(0.0, 0.0); system.parameters.len()]]
+        }
         HomotopyKind::Parameter { targets, .. } => targets.clone(),
         HomotopyKind::PathVariable { parameters } => {
             let mut parameters = parameters.clone();

@@ -8,6 +8,7 @@
 pub mod parameter_path;
 pub mod prepare;
 pub(crate) mod regeneration;
+pub mod sections;
 pub mod toric_path;
 
 use num_complex::Complex64;
@@ -67,6 +68,18 @@ pub enum HomotopyKind {
         /// How many of them hold already.
         level: u32,
     },
+    /// On the curve of the family over a line of its parameters, from one section to another
+    /// (see [`sections`]): points have one coordinate more than the system has variables.
+    Sections {
+        /// Parameters of the system where the line begins.
+        parameters: Vec<Complex64>,
+        /// Where it leads.
+        direction: Vec<Complex64>,
+        /// The section that the start points are on.
+        start: Vec<Complex64>,
+        /// The section where they are wanted.
+        target: Vec<Complex64>,
+    },
 }
 
 impl HomotopyKind {
@@ -82,7 +95,7 @@ impl HomotopyKind {
     /// Whether the paths end at solutions of the system, rather than of one on the way to it.
     pub fn ends_at_the_system(&self) -> bool {
         match self {
-            Self::Toric | Self::Slide { .. } => false,
+            Self::Toric | Self::Slide { .. } | Self::Sections { .. } => false,
             Self::Intersect { order, level, .. } => order.len() == *level as usize + 1,
             _ => true,
         }

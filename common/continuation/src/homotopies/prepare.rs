@@ -30,6 +30,9 @@ use num_complex::Complex64;
 use std::sync::Arc;
 use std::vec::IntoIter;
 
+/// What [`crate::stage`] sees to.
+const SECTIONS: &str = "sections are prepared as a parameter homotopy of the curve";
+
 /// The start system of a straight-line homotopy.
 #[derive(Clone, Debug)]
 pub(crate) enum StartSystem {
@@ -240,6 +243,7 @@ impl Homotopy {
             }
             HomotopyKind::Toric => Vec::new(),
             HomotopyKind::Parameter { .. } => (0..count).map(|k| out.parameter(k as u32)).collect(),
+            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
             HomotopyKind::PathVariable { parameters } => (0..count)
                 .map(|k| {
                     if system.path_variable == Some(k) {
@@ -277,6 +281,7 @@ impl Homotopy {
                 .flat_map(|toric| toric.generic().coefficients())
                 .collect(),
             HomotopyKind::Parameter { start, .. } => start.clone(),
+            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
             HomotopyKind::PathVariable { .. } => vec![one],
         };
         let level = Level::of(kind, seed);
@@ -365,6 +370,7 @@ impl Homotopy {
                 let gamma = detour(seed);
                 (Some(gamma), start.clone(), targets.clone())
             }
+            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
             HomotopyKind::PathVariable { .. } => (None, vec![one], vec![vec![zero]]),
             HomotopyKind::Toric => (None, at_start.clone(), vec![at_start.clone()]),
             HomotopyKind::Slide { .. } => {

@@ -46,7 +46,7 @@ impl PreparedLocalDimension {
             | HomotopyKind::Generic { parameters }
             | HomotopyKind::Intersect { parameters, .. }
             | HomotopyKind::PathVariable { parameters } => (std::slice::from_ref(parameters), 1),
-            HomotopyKind::Toric | HomotopyKind::Slide { .. } => {
+            HomotopyKind::Toric | HomotopyKind::Slide { .. } | HomotopyKind::Sections { .. } => {
                 return Err(misfit("a homotopy on the way ends at another system"));
             }
             HomotopyKind::Parameter { targets, .. } => (targets.as_slice(), targets.len() as u64),

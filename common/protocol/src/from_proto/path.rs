@@ -99,6 +99,23 @@ fn homotopy(m: &v1::Homotopy) -> Result<HomotopyKind, ProtocolError> {
                 level: h.level,
             }
         }
+        Kind::Sections(h) => {
+            let start = values("sections.start", &h.start)?;
+            let target = values("sections.target", &h.target)?;
+            if target.len() != start.len() {
+                return Err(ProtocolError::invalid(
+                    "sections.target",
+                    format!("{} values", target.len()),
+                    format!("{} values, as at the start", start.len()),
+                ));
+            }
+            HomotopyKind::Sections {
+                parameters: values("sections.parameters", &h.parameters)?,
+                direction: values("sections.direction", &h.direction)?,
+                start,
+                target,
+            }
+        }
         Kind::PathVariable(h) => HomotopyKind::PathVariable {
             parameters: values("path_variable.parameters", &h.parameters)?,
         },

@@ -129,6 +129,7 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
         idle_loops: m.idle_loops,
         expected_solutions: m.expected_solutions,
         certify: m.certify,
+        trace_test: m.trace_test,
         sets: match m.sets.is_empty() {
             true => None,
             false => Some(equation_sets("sets", &m.sets)?),

@@ -72,6 +72,17 @@ fn homotopy(homotopy: &HomotopyKind) -> v1::Homotopy {
                 order: order.clone(),
                 level: *level,
             }),
+            HomotopyKind::Sections {
+                parameters,
+                direction,
+                start,
+                target,
+            } => Kind::Sections(v1::Sections {
+                parameters: complexes(parameters),
+                direction: complexes(direction),
+                start: complexes(start),
+                target: complexes(target),
+            }),
             HomotopyKind::PathVariable { parameters } => Kind::PathVariable(v1::PathVariable {
                 parameters: complexes(parameters),
             }),

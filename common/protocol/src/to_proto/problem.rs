@@ -87,6 +87,7 @@ pub fn options(options: &Options) -> v1::Options {
         idle_loops: options.idle_loops,
         expected_solutions: options.expected_solutions,
         certify: options.certify,
+        trace_test: options.trace_test,
         sets: options
             .sets
             .as_ref()

@@ -242,6 +242,7 @@ impl Draw {
             idle_loops: Some(count as u32).filter(|&n| n > 1),
             expected_solutions: Some(length as u64).filter(|&n| n > 0),
             certify: length > 1,
+            trace_test: length == 1,
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
         }
     }
@@ -270,12 +271,18 @@ impl Draw {
         let parameters = vec![self.complex()];
         let (order, level) = (vec![1, 0], 1);
         Stage {
-            homotopy: match self.below(2) {
+            homotopy: match self.below(3) {
                 0 => HomotopyKind::Slide {
                     parameters,
                     order,
                     level,
                     forms: 1 + self.index(3),
+                },
+                1 => HomotopyKind::Sections {
+                    direction: vec![self.complex()],
+                    parameters,
+                    start: vec![self.complex(), self.complex()],
+                    target: vec![self.complex(), self.complex()],
                 },
                 _ => HomotopyKind::Intersect {
                     parameters,

@@ -1,13 +1,14 @@
 //! Build: from the postfix steps of an expression to nodes of a graph.
 //!
 //! Here exact arithmetic is bounded, and what the graph may not hold is
-//! refused at its place: denominators with variables, roots and elementary
+//! refused at its place: denominators that it may not have, roots and elementary
 //! functions of what is not constant, exponents that are no small integers.
 
 use super::fault::{Fault, Problem, Span};
 use super::parse::{Operation, Parsed};
 use super::{Dependence, Expressions, Function, NodeId};
 use crate::formats::limits;
+use crate::transform::clear_denominators::is_monomial;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use rug::Integer;
 use rug::ops::Pow;
@@ -17,6 +18,8 @@ use rug::ops::Pow;
 pub enum Use {
     /// A polynomial in the variables: no variable in a denominator.
     Polynomial,
+    /// A Laurent polynomial: monomials of variables may stand in denominators.
+    Laurent,
     /// A rational map: variables may stand in denominators.
     Rational,
 }
@@ -110,7 +113,12 @@ impl Builder {
     }
 
     fn divide(&mut self, a: NodeId, b: NodeId, at: Span, usage: Use) -> Result<NodeId, Fault> {
-        if usage == Use::Polynomial && self.expressions.dependence(b) == Dependence::Variables {
+        let serves = match usage {
+            Use::Polynomial => self.expressions.dependence(b) != Dependence::Variables,
+            Use::Laurent => is_monomial(&self.expressions, b),
+            Use::Rational => true,
+        };
+        if !serves {
             return Err(Fault::new(at, Problem::DivisionByVariables));
         }
         if self.constant(b).is_some_and(ComplexRational::is_zero) {

@@ -24,6 +24,9 @@ pub use sharing::WriteError;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::{Dependence, Expressions, Node};
 use crate::system::{System, SystemError};
+use crate::transform::clear_denominators::{
+    ZERO_DENOMINATOR, clear_denominators, nonzero_variables,
+};
 use std::fmt;
 
 /// The notation of a problem file.
@@ -131,11 +134,26 @@ pub struct Problem {
 pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     let text = decode(name, content, limits::FILE_BYTES)?;
     let source = Source { name, text };
-    match text.trim_start().chars().next() {
+    let mut problem = match text.trim_start().chars().next() {
         Some('{') => json::read(&source),
         Some('0'..='9') => phcpack::read(&source),
         _ => bertini::read(&source),
+    }?;
+    let system = &problem.system;
+    let nonzero = nonzero_variables(system).into_iter().zip(&system.variables);
+    let names: Vec<&str> = nonzero
+        .filter(|(nonzero, _)| *nonzero)
+        .map(|(_, name)| name.as_str())
+        .collect();
+    if !names.is_empty() {
+        let message = format!(
+            "denominators are multiplied out; where one of {} is 0 there is no solution, and what \
+             the multiplied equations have there is counted as `{ZERO_DENOMINATOR}`",
+            names.join(", ")
+        );
+        warn(&mut problem.warnings, &source, 0, message);
     }
+    Ok(problem)
 }
 
 /// Writes a system, and where the notation has a place for them the settings.
@@ -186,7 +204,9 @@ pub(crate) fn decode<'a>(
 }
 
 /// Checks what every reader promises; `places` are the equations' places in the text.
-pub(crate) fn finish(system: System, places: &[Span], end: Span) -> Result<System, Fault> {
+///
+/// Monomials in denominators of equations are multiplied out (see [`clear_denominators`]).
+pub(crate) fn finish(mut system: System, places: &[Span], end: Span) -> Result<System, Fault> {
     let at = |i: usize| places.get(i).copied().unwrap_or(end);
     let sizes = [
         (limits::VARIABLES, system.variables.len()),
@@ -201,6 +221,7 @@ pub(crate) fn finish(system: System, places: &[Span], end: Span) -> Result<Syste
     if system.variables.is_empty() {
         return Err(Fault::new(end, What::NoVariables));
     }
+    clear_denominators(&mut system);
     for (i, &equation) in system.equations.iter().enumerate() {
         if system.expressions.dependence(equation) != Dependence::Variables {
             return Err(Fault::new(

@@ -7,8 +7,8 @@ use cognate_numeric::rational::ComplexRational;
 /// Most variables of one equation that is looked at: what follows is elimination in exact numbers.
 const MOST_VARIABLES: usize = 12;
 
-/// Linear equations and smooth quadrics of a degree under `below`, no two of them in one variable;
-/// those of lower degree first.
+/// Linear equations and smooth quadrics, no two of them in one variable; those of lower degree
+/// first, then those in fewer variables, which leave more to others.
 ///
 /// The gradient of each vanishes at none of its zeros, and gradients in different variables are
 /// independent. So they cut a smooth set with one dimension less for each of them, wherever it is
@@ -18,32 +18,37 @@ const MOST_VARIABLES: usize = 12;
 ///
 /// None where a group is homogeneous, and none with parameters or coefficients that are not
 /// rational.
-pub(super) fn independent(system: &System, degrees: &Degrees, below: u32) -> Vec<usize> {
+pub(super) fn independent(system: &System, degrees: &Degrees) -> Vec<usize> {
     if system.groups.iter().any(|group| group.homogeneous) {
         return Vec::new();
     }
     let (variables, parameters) = (system.variables.len(), system.parameters.len());
+    let mut candidates: Vec<(u32, Vec<usize>, usize)> = Vec::new();
+    for (i, &equation) in system.equations.iter().enumerate() {
+        let degree = degrees.total[i];
+        if degree > 2 {
+            continue;
+        }
+        let Some(f) = Polynomial::expand(&system.expressions, equation, variables, parameters)
+        else {
+            continue;
+        };
+        let of_parameters = |e: &Vec<u32>| e[variables..].iter().any(|&k| k > 0);
+        let occurs = |&v: &usize| f.terms.keys().any(|e| e[v] > 0);
+        let mine: Vec<usize> = (0..variables).filter(occurs).collect();
+        if f.terms.keys().any(of_parameters)
+            || mine.len() > MOST_VARIABLES
+            || (degree == 2 && !is_regular(quadratic_form(&f, &mine)))
+        {
+            continue;
+        }
+        candidates.push((degree, mine, i));
+    }
+    candidates.sort_by_key(|(degree, mine, i)| (*degree, mine.len(), *i));
     let mut taken = vec![false; variables];
     let mut found = Vec::new();
-    for degree in 1..below.min(3) {
-        for (i, &equation) in system.equations.iter().enumerate() {
-            if degrees.total[i] != degree {
-                continue;
-            }
-            let Some(f) = Polynomial::expand(&system.expressions, equation, variables, parameters)
-            else {
-                continue;
-            };
-            let of_parameters = |e: &Vec<u32>| e[variables..].iter().any(|&k| k > 0);
-            let occurs = |&v: &usize| f.terms.keys().any(|e| e[v] > 0);
-            let mine: Vec<usize> = (0..variables).filter(occurs).collect();
-            if f.terms.keys().any(of_parameters)
-                || mine.len() > MOST_VARIABLES
-                || mine.iter().any(|&v| taken[v])
-                || (degree == 2 && !is_regular(quadratic_form(&f, &mine)))
-            {
-                continue;
-            }
+    for (_, mine, i) in candidates {
+        if mine.iter().all(|&v| !taken[v]) {
             for v in mine {
                 taken[v] = true;
             }
@@ -99,19 +104,19 @@ mod tests {
     use super::*;
     use crate::polynomial::degrees;
 
-    fn kept(text: &str, below: u32) -> Vec<usize> {
+    fn kept(text: &str) -> Vec<usize> {
         let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
         let system = match crate::formats::read("test", text.as_bytes()) {
             Ok(problem) => problem.system,
             Err(error) => panic!("{error}"),
         };
-        independent(&system, &degrees(&system).unwrap(), below)
+        independent(&system, &degrees(&system).unwrap())
     }
 
     #[test]
     fn circles_and_parabolas_are_smooth_and_cones_are_not() {
         let names = "variable_group x, y, z; function f;";
-        let one = |equation: &str| kept(&format!("{names} f = {equation};"), 3).len();
+        let one = |equation: &str| kept(&format!("{names} f = {equation};")).len();
         assert_eq!(one("x^2 + y^2 - 1"), 1);
         assert_eq!(one("x^2 - y"), 1);
         assert_eq!(one("x*y - 1"), 1);
@@ -127,10 +132,15 @@ mod tests {
     fn no_two_have_a_variable_in_common() {
         let system = "variable_group x, y, z; parameter p; function f1, f2, f3, f4; \
                       f1 = x^2 + y^2 - 1; f2 = y^2 + z^2 - 1; f3 = z^2 - 2; f4 = z - p;";
-        assert_eq!(kept(system, 3), [0, 2]);
+        assert_eq!(kept(system), [2, 0]);
         let linear = "variable_group x, y; function f1, f2; f1 = x^2 + y^2 - 1; f2 = x - y;";
-        assert_eq!(kept(linear, 3), [1], "the linear one goes first");
-        assert_eq!(kept(linear, 2), [1]);
-        assert_eq!(kept(linear, 1), [0usize; 0]);
+        assert_eq!(kept(linear), [1], "the linear one goes first");
+        let wide = "variable_group x, y, z, w; function f1, f2, f3; \
+                    f1 = x*y + z*w - 1; f2 = x^2 + y^2 - 1; f3 = z^2 + w^2 - 1;";
+        assert_eq!(
+            kept(wide),
+            [1, 2],
+            "two in two variables rather than one in four"
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! Systems made from systems.
 
+pub mod clear_denominators;
 mod fix_parameters;
 mod homogenize;
 mod independent;

@@ -19,8 +19,9 @@ use std::cmp::Reverse;
 /// The system with `dimension()` equations instead of more; a square one comes back as it is.
 ///
 /// Linear equations and smooth quadrics in variables of their own, such as circles, stay what they
-/// are where that keeps degrees low (see `independent`): twelve cubics and six circles in twelve
-/// unknowns have 2^6 * 3^6 paths from their total degree instead of 3^12.
+/// are (see `independent`), as many of them as make the product of the degrees least: ten cubics, two
+/// quadrics and six circles in twelve unknowns have 2^6 * 3^6 paths from their total degree instead of
+/// 2^2 * 3^10.
 ///
 /// A pure function of its arguments. `degrees` are those of `system`. In a
 /// homogeneous group an equation of lower degree is multiplied by random real
@@ -40,9 +41,19 @@ pub fn randomize(system: &System, degrees: &Degrees, seed: u64) -> System {
     }
     let mut order: Vec<usize> = (0..equations).collect();
     order.sort_by_key(|&i| (Reverse(degrees.total[i]), i));
-    // What would be raised to a higher degree by being combined.
-    let mut whole = independent(system, degrees, degrees.total[order[unknowns - 1]]);
-    whole.truncate(unknowns - 1);
+    let candidates = independent(system, degrees);
+    let most = candidates.len().min(unknowns - 1);
+    let mut best: Option<(Rational, usize)> = None;
+    for count in 0..=most {
+        let whole = &candidates[..count];
+        let others = order.iter().filter(|i| !whole.contains(i));
+        let tracked = whole.iter().chain(others.take(unknowns - count));
+        let product = tracked.fold(Rational::from(1), |p, &i| p * degrees.total[i]);
+        if best.as_ref().is_none_or(|(least, _)| product < *least) {
+            best = Some((product, count));
+        }
+    }
+    let whole = &candidates[..best.map_or(0, |(_, count)| count)];
     order.retain(|i| !whole.contains(i));
     let (kept, rest) = order.split_at(unknowns - whole.len());
     let mut result = System {
@@ -229,6 +240,27 @@ mod tests {
         assert_eq!(square.equation_names, ["f2 and others", "f1"]);
         let again = randomize(&square, &degrees(&square).unwrap(), 2);
         assert_eq!(again, square);
+    }
+
+    /// Two cubics, a quadric and a circle in three unknowns: 3 * 3 * 2 whether the circle stays or
+    /// not; with another circle instead of the quadric 3 * 2 * 2, and its product decides, not
+    /// that the third degree of all is 2 already.
+    #[test]
+    fn the_least_product_of_degrees_decides_what_stays() {
+        let tracked = |last: &str| {
+            let system = read(&format!(
+                "variable_group x, y, z; function f1, f2, f3, f4; f1 = x^3 + y*z - 1; \
+                 f2 = y^3 - x*z + 2; f3 = x^2 + y^2 - 1; f4 = {last};"
+            ));
+            let square = randomize(&system, &degrees(&system).unwrap(), 3);
+            (degrees(&square).unwrap().total, square.equation_names)
+        };
+        let (cubics, names) = tracked("x*z + y*z");
+        assert_eq!(cubics, [3, 3, 2]);
+        assert_eq!(names[2], "f3 and others", "a tie combines");
+        let (quadrics, names) = tracked("z^2 - 2");
+        assert_eq!(quadrics, [3, 2, 2]);
+        assert_eq!(names, ["f1 and others", "f3", "f4"]);
     }
 
     #[test]

@@ -190,4 +190,5 @@ fn the_examples_are_read() {
     assert_eq!(shape("katsura_10"), (11, 11, 1, 11));
     assert_eq!(shape("cyclic_5"), (5, 5, 1, 5));
     assert_eq!(shape("noon_5"), (5, 5, 1, 5));
+    assert_eq!(shape("six_revolute_loop"), (12, 18, 1, 12));
 }

@@ -348,6 +348,15 @@ fn loops_block(lines: &mut Lines, loops: &LoopCounts) {
         ),
     };
     lines.line("paths for them", &count(loops.tracked), &crossings);
+    if let Some(test) = &loops.trace_test {
+        let off = test.deviation.map(|off| format!(", to {off:.0e}"));
+        let off = off.unwrap_or_default();
+        let said = match test.complete {
+            true => format!("complete: the sum of so many points moves on a line{off}"),
+            false => format!("not complete: the sum of so many points should move on a line{off}"),
+        };
+        lines.line("trace test", &count(test.points), &said);
+    }
     if loops.lost > 0 {
         lines.line(
             "lost on loops",

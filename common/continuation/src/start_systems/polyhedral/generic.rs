@@ -29,9 +29,10 @@ pub struct GenericSystem {
 }
 
 impl GenericSystem {
-    /// The supports that serve for all isolated solutions in C^n, with random coefficients.
-    pub fn new(supports: &[Vec<Vec<u32>>], seed: u64) -> Self {
-        let supports = affine_supports(supports);
+    /// The supports that serve for all isolated solutions in C^n, with random coefficients;
+    /// `nonzero`: variables that are 0 at none.
+    pub fn new(supports: &[Vec<Vec<u32>>], nonzero: &[bool], seed: u64) -> Self {
+        let supports = affine_supports(supports, nonzero);
         let angles = supports
             .iter()
             .enumerate()
@@ -385,7 +386,7 @@ mod tests {
             vec![vec![0, 0, 0], vec![2, 4, 1], vec![1, 0, 3]],
             vec![vec![0, 0, 0], vec![0, 3, 2], vec![4, 0, 0], vec![2, 2, 2]],
         ];
-        let start = ToricStart::new(GenericSystem::new(&supports, 5), 5).expect("it is small");
+        let start = ToricStart::new(GenericSystem::new(&supports, &[], 5), 5).expect("it is small");
         assert!(start.count() > 20);
         let coefficients: Vec<Complex64> = start.generic.coefficients().collect();
         let mut all: Vec<Vec<Complex64>> = Vec::new();

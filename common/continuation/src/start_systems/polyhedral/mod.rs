@@ -14,9 +14,9 @@ pub use zero_coordinates::zeros_are_possible;
 ///
 /// Where a solution can have a coordinate 0, the origin joins every support
 /// (Li and Wang, The BKK root count in C^n, 1996); else none can be missed in
-/// the torus, and the supports stay as they are.
-pub fn affine_supports(supports: &[Vec<Vec<u32>>]) -> Vec<Vec<Vec<i64>>> {
-    let zeros = zeros_are_possible(supports);
+/// the torus, and the supports stay as they are. A variable of which `nonzero` says so is not 0.
+pub fn affine_supports(supports: &[Vec<Vec<u32>>], nonzero: &[bool]) -> Vec<Vec<Vec<i64>>> {
+    let zeros = zeros_are_possible(supports, nonzero);
     supports
         .iter()
         .map(|support| {

@@ -6,17 +6,24 @@ const MOST_LOOKS: u64 = 5_000_000;
 /// Whether some coordinates can be 0 at a solution and the others not: no
 /// equation may be left with exactly one term, which would not vanish. Where
 /// the answer is no, every solution in C^n lies in the torus, whatever the
-/// coefficients; where it is yes, there may be none all the same.
-pub fn zeros_are_possible(supports: &[Vec<Vec<u32>>]) -> bool {
+/// coefficients; where it is yes, there may be none all the same. A variable of which `nonzero`
+/// says so is not 0.
+pub fn zeros_are_possible(supports: &[Vec<Vec<u32>>], nonzero: &[bool]) -> bool {
     let n = supports.iter().flatten().map(Vec::len).max().unwrap_or(0);
     let mut looks = MOST_LOOKS;
     let mut zero = Vec::with_capacity(n);
-    search(supports, n, &mut zero, &mut looks)
+    search(supports, nonzero, n, &mut zero, &mut looks)
 }
 
 /// Decides the next variable; true where all are decided, one of them is 0 and
 /// no equation speaks against it.
-fn search(supports: &[Vec<Vec<u32>>], n: usize, zero: &mut Vec<bool>, looks: &mut u64) -> bool {
+fn search(
+    supports: &[Vec<Vec<u32>>],
+    nonzero: &[bool],
+    n: usize,
+    zero: &mut Vec<bool>,
+    looks: &mut u64,
+) -> bool {
     for support in supports {
         let (mut alive, mut open) = (0, 0);
         for term in support {
@@ -44,8 +51,11 @@ fn search(supports: &[Vec<Vec<u32>>], n: usize, zero: &mut Vec<bool>, looks: &mu
         return zero.contains(&true);
     }
     for value in [true, false] {
+        if value && nonzero.get(zero.len()) == Some(&true) {
+            continue;
+        }
         zero.push(value);
-        let found = search(supports, n, zero, looks);
+        let found = search(supports, nonzero, n, zero, looks);
         zero.pop();
         if found {
             return true;
@@ -62,15 +72,16 @@ mod tests {
     fn a_constant_term_decides() {
         // x*y - 1, x + y: no coordinate can be 0.
         let torus = [vec![vec![0, 0], vec![1, 1]], vec![vec![1, 0], vec![0, 1]]];
-        assert!(!zeros_are_possible(&torus));
+        assert!(!zeros_are_possible(&torus, &[]));
         // x*y + x, x + y - 1: (0, 1) is a solution.
         let affine = [
             vec![vec![1, 1], vec![1, 0]],
             vec![vec![0, 0], vec![1, 0], vec![0, 1]],
         ];
-        assert!(zeros_are_possible(&affine));
+        assert!(zeros_are_possible(&affine, &[]));
         // x + y, x^2: the second says x = 0, then the first y = 0.
         let origin = [vec![vec![1, 0], vec![0, 1]], vec![vec![2, 0]]];
-        assert!(zeros_are_possible(&origin));
+        assert!(zeros_are_possible(&origin, &[]));
+        assert!(!zeros_are_possible(&origin, &[true, false]));
     }
 }

@@ -53,12 +53,9 @@ impl Statements {
                 .map(|(name, _, parsed)| (*name, parsed))
                 .collect(),
         };
-        definitions.build(
-            &mut builder,
-            &mut values,
-            Use::Polynomial,
-            &mut |_, fault| fault,
-        )?;
+        definitions.build(&mut builder, &mut values, Use::Laurent, &mut |_, fault| {
+            fault
+        })?;
         for (name, span, _) in &self.definitions {
             let Some(value) = values[*name as usize] else {
                 continue;

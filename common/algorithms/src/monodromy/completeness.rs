@@ -1,0 +1,206 @@
+//! How a trace test ends loops: what it needs is tracked beside them, or by a solve of its own.
+
+use super::counts::{Stop, TraceCounts, TraceForm};
+use super::graph::Known;
+use super::trace::{Curve, MOST_DEVIATION, Pencil, Test, deviation};
+use super::{BASE, LoopStart, MonodromySolve, Phase, edge_seed};
+use cognate_continuation::start_points::StoredPoints;
+use cognate_solutions::symmetry::SymmetryGroup;
+use num_complex::Complex64;
+
+/// Least |lambda| of a point that does not lie at the parameters where a curve begins.
+const NOT_THERE: f64 = 1e-9;
+
+/// What is known of completeness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tested {
+    /// Nothing is missing.
+    Complete,
+    /// Something is to be tracked first.
+    Begun,
+    /// Not that it is complete.
+    No,
+}
+
+impl MonodromySolve {
+    /// Asks whether all is known, when nothing is left to track. `exhausted`: loops would end now.
+    pub(super) fn test_completeness(&mut self, exhausted: bool) -> Tested {
+        let known = self.graph.vertices[BASE].points.len();
+        let said = self.counts.trace_test.as_ref();
+        if self.tested == Some(known) {
+            return match said.is_some_and(|said| said.complete) {
+                true => Tested::Complete,
+                false => Tested::No,
+            };
+        }
+        match self.test.clone() {
+            None => Tested::No,
+            Some(Test::Pencil { moved: None, .. }) if self.counts.idle_loops == 0 => Tested::No,
+            Some(Test::Pencil {
+                pencil,
+                moved: None,
+            }) => {
+                self.move_slices(pencil);
+                Tested::Begun
+            }
+            Some(Test::Pencil {
+                pencil,
+                moved: Some(moved),
+            }) => {
+                let counts = self.trace_of(&pencil, moved);
+                let complete = counts.complete;
+                self.counts.trace_test = Some(counts);
+                self.tested = Some(known);
+                match complete {
+                    true => Tested::Complete,
+                    false => Tested::No,
+                }
+            }
+            Some(Test::Curve(_)) if !exhausted => Tested::No,
+            Some(Test::Curve(curve)) => {
+                self.phase = Phase::Sections(Box::new(self.on_sections(*curve)));
+                Tested::Begun
+            }
+        }
+    }
+
+    /// Two vertices at equal distances, and on a curve the one where it began.
+    fn move_slices(&mut self, pencil: Pencil) {
+        let base = self.graph.vertices[BASE].parameters.clone();
+        let size = |z: &Complex64| z.norm_sqr().sqrt();
+        let scale = base.iter().map(size).fold(0.0, f64::max);
+        let moved = [1.0, 2.0].map(|times| {
+            let steps = base.iter().zip(&pencil.direction);
+            let there = steps.map(|(p, d)| p + d * (times * scale)).collect();
+            self.lead_to(there)
+        });
+        if self.curve.is_some() {
+            self.lead_to(self.start.parameters.clone());
+        }
+        self.test = Some(Test::Pencil {
+            pencil,
+            moved: Some(moved),
+        });
+    }
+
+    /// A vertex with one edge from the base.
+    fn lead_to(&mut self, parameters: Vec<Complex64>) -> usize {
+        let vertex = self.graph.add_vertex(parameters);
+        let seed = edge_seed(self.seed, self.graph.edges.len());
+        self.graph.add_edge(BASE, vertex, seed, true);
+        vertex
+    }
+
+    /// The points that all of the base lead to there, orbit by orbit; `None` where one is lost.
+    fn led_to(&self, vertex: usize) -> Option<Vec<Vec<Complex64>>> {
+        let edges = &self.graph.edges;
+        let edge = edges.iter().position(|edge| edge.to == vertex)?;
+        let reached = self.graph.reached(edge)?;
+        Some(reached.iter().flat_map(|point| self.orbit(point)).collect())
+    }
+
+    /// The sums at the base and at the two places beside it.
+    pub(super) fn trace_of(&self, pencil: &Pencil, moved: [usize; 2]) -> TraceCounts {
+        let base = &self.graph.vertices[BASE].points;
+        let here: Vec<_> = base.iter().flat_map(|point| self.orbit(point)).collect();
+        let ways = moved.map(|vertex| self.led_to(vertex));
+        let back = self.curve.is_none() || self.led_to(moved[1] + 1).is_some();
+        let bent = match &ways {
+            [Some(one), Some(two)] if back => Some(deviation([&here, one, two], pencil)),
+            _ => None,
+        };
+        TraceCounts {
+            form: TraceForm::Slices,
+            points: here.len() as u64,
+            deviation: bent.filter(|bent| bent.is_finite()),
+            complete: bent.is_some_and(|bent| bent <= MOST_DEVIATION),
+        }
+    }
+
+    /// Loops among the sections of the curve, from all that is known at the base.
+    fn on_sections(&self, curve: Curve) -> MonodromySolve {
+        let known = self.arriving_points();
+        let mut coordinates = Vec::new();
+        for k in 0..known.len() {
+            coordinates.extend_from_slice(known.point(k));
+            coordinates.push(Complex64::default());
+        }
+        let points = StoredPoints {
+            dimension: known.dimension + 1,
+            coordinates,
+        };
+        let start = LoopStart {
+            parameters: curve.known.clone(),
+            points: points.as_start(),
+            count: points.len() as u64,
+            found: Some(points.coordinates),
+        };
+        let mut limits = self.limits;
+        limits.count = None;
+        let mut inner = Self::begin(
+            curve.shape.clone(),
+            SymmetryGroup::trivial(),
+            start,
+            limits,
+            self.settings.clone(),
+            self.tolerances.clone(),
+            edge_seed(self.seed, usize::MAX - 1),
+        );
+        inner.max_retries = self.max_retries;
+        inner.first_id = self.first_id + self.stages.len() as u32;
+        inner.test = Some(Test::Pencil {
+            pencil: curve.pencil.clone(),
+            moved: None,
+        });
+        inner.curve = Some(Box::new(curve));
+        inner
+    }
+
+    /// What loops among the sections have shown. Solutions that they found are known from then on.
+    pub(super) fn take_in_sections(&mut self) {
+        let Phase::Sections(inner) = std::mem::replace(&mut self.phase, Phase::Loops(Vec::new()))
+        else {
+            unreachable!("it is asked for in this phase only");
+        };
+        let (counts, of_inner) = (&mut self.counts, inner.counts());
+        counts.tracked += of_inner.tracked;
+        counts.lost += of_inner.lost;
+        counts.crossings_found += of_inner.crossings_found;
+        counts.crossings_resolved += of_inner.crossings_resolved;
+        let found = inner.solutions_found();
+        let new = (self.graph).learn(BASE, &found, &self.group, &self.shape, self.seed);
+        self.counts.solutions = self.count_solutions();
+        let whole = new == 0 && found.len() as u64 == self.counts.solutions;
+        let form = self.test.as_ref().map(Test::form);
+        self.counts.trace_test = of_inner.trace_test.clone().map(|said| TraceCounts {
+            form: form.unwrap_or(said.form),
+            complete: of_inner.stop == Some(Stop::TraceTest) && whole,
+            ..said
+        });
+        self.stages.extend(inner.stages.iter().copied());
+        self.tested = (new == 0).then(|| self.graph.vertices[BASE].points.len());
+    }
+
+    /// Where the points of a curve are that lie at the parameters where it begins, without the
+    /// curve's own coordinate.
+    fn solutions_found(&self) -> Vec<Known> {
+        let Some(Test::Pencil {
+            moved: Some([_, last]),
+            ..
+        }) = self.test
+        else {
+            return Vec::new();
+        };
+        let back = self.graph.edges.iter().position(|edge| edge.to == last + 1);
+        let reached = back.and_then(|edge| self.graph.reached(edge));
+        let there = reached.unwrap_or_default().into_iter().filter(|point| {
+            let lambda = point.values.last().copied().unwrap_or_default();
+            lambda.norm_sqr().sqrt() < NOT_THERE
+        });
+        let without = there.map(|point| Known {
+            values: point.values[..point.values.len() - 1].to_vec(),
+            radius: point.radius,
+        });
+        without.collect()
+    }
+}

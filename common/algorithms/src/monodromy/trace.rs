@@ -1,0 +1,287 @@
+//! Trace test: whether a set of solutions is complete.
+//!
+//! The points of a curve on slices that move in parallel have a sum that moves on a line, and a
+//! part of an irreducible curve's points has not (Sommese, Verschelde, Wampler: Symmetric functions
+//! applied to decomposing solution sets of polynomial systems, 2002). Where the parameters are the
+//! coefficients of linear equations, they are such slices themselves; where they are not, the curve
+//! is the one of [`sections`], whose sections by generic coefficients begin at the solutions that
+//! are known and are completed by loops of their own.
+
+use super::counts::TraceForm;
+use cognate_continuation::homotopies::sections::{section_variables, sections};
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::point_shape::PointShape;
+use cognate_systems::polynomial::{Polynomial, degrees};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// How far the middle of three sums may be off the line, in parts of the sum of moduli. Endpoints
+/// are accurate to about 1e-14; what a missing point does is as large as the bend of its own way,
+/// measured from 1e-7 for one of some thousand on.
+pub const MOST_DEVIATION: f64 = 1e-9;
+
+/// Why there is no trace test.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoTraceTest {
+    /// No common linear forms.
+    #[error(
+        "its variables are in several groups, one of them homogeneous; use affine groups, or one \
+         homogeneous group"
+    )]
+    Groups,
+    /// The line of parameters makes no curve of polynomials.
+    #[error("a parameter stands below a line; give what it makes there as a parameter of its own")]
+    BelowALine,
+}
+
+/// Slices that move in parallel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Pencil {
+    /// How the parameters move.
+    pub direction: Vec<Complex64>,
+    /// Coordinates are taken where this form in some variables is 1; `None` as they are.
+    pub patch: Option<Vec<(usize, Complex64)>>,
+}
+
+/// The curve over a line of parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Curve {
+    /// Where the line begins: the base.
+    pub parameters: Vec<Complex64>,
+    /// Where it leads.
+    pub direction: Vec<Complex64>,
+    /// Of points on the curve.
+    pub shape: PointShape,
+    /// The section that holds the known solutions.
+    pub known: Vec<Complex64>,
+    /// How sections move in parallel.
+    pub pencil: Pencil,
+}
+
+/// What moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Test {
+    /// The parameters, which are those of slices; the vertices they move to, once they do.
+    Pencil {
+        pencil: Pencil,
+        moved: Option<[usize; 2]>,
+    },
+    /// Sections of the curve that the family has over a line.
+    Curve(Box<Curve>),
+}
+
+impl Test {
+    /// Its name in counts.
+    pub fn form(&self) -> TraceForm {
+        match self {
+            Self::Pencil { .. } => TraceForm::Slices,
+            Self::Curve(_) => TraceForm::Sections,
+        }
+    }
+
+    /// The test for solutions at the base; `direction`: random parameters like those.
+    pub fn new(
+        system: &System,
+        base: &[Complex64],
+        direction: Vec<Complex64>,
+        seed: u64,
+    ) -> Result<Self, NoTraceTest> {
+        let mut random = RandomStream::new(seed, Purpose::Loop, 3 << 32);
+        if let Some(constants) = slices(system) {
+            let mut direction = vec![Complex64::default(); base.len()];
+            for p in constants {
+                direction[p] = random.unit();
+            }
+            let (pencil, moved) = (
+                Pencil {
+                    direction,
+                    patch: None,
+                },
+                None,
+            );
+            return Ok(Self::Pencil { pencil, moved });
+        }
+        let (members, constant) = section_variables(system).ok_or(NoTraceTest::Groups)?;
+        let curve = sections(system, base, &direction).ok_or(NoTraceTest::Groups)?;
+        degrees(&curve).map_err(|_| NoTraceTest::BelowALine)?;
+        let length = members.len() + usize::from(constant);
+        let mut known: Vec<Complex64> = (0..length).map(|_| random.unit()).collect();
+        known.resize(2 * length, Complex64::default());
+        let mut moves = vec![Complex64::default(); 2 * length];
+        let patch = match constant {
+            true => {
+                moves[2 * length - 1] = random.unit();
+                None
+            }
+            false => {
+                let form: Vec<_> = members.iter().map(|&v| (v, random.unit())).collect();
+                for (place, (_, c)) in moves[length..].iter_mut().zip(&form) {
+                    *place = *c;
+                }
+                Some(form)
+            }
+        };
+        Ok(Self::Curve(Box::new(Curve {
+            parameters: base.to_vec(),
+            direction,
+            shape: PointShape::of(&curve),
+            known,
+            pencil: Pencil {
+                direction: moves,
+                patch,
+            },
+        })))
+    }
+}
+
+/// The parameters that are the constants of slices, where all parameters of a system are
+/// coefficients of linear equations, each of one only, and there are enough of them for a slice to
+/// lie anywhere.
+fn slices(system: &System) -> Option<Vec<usize>> {
+    let (n, count) = (system.variables.len(), system.parameters.len());
+    if system.groups.iter().any(|group| group.homogeneous) {
+        return None;
+    }
+    let (mut constants, mut own, mut number) = (Vec::new(), Vec::new(), 0);
+    let mut seen = vec![0usize; count];
+    for &equation in &system.equations {
+        let f = Polynomial::expand(&system.expressions, equation, n, count)?;
+        let has_parameter = |e: &&Vec<u32>| e[n..].iter().any(|&k| k > 0);
+        if !f.terms.keys().any(|e| has_parameter(&e)) {
+            continue;
+        }
+        number += 1;
+        let mut coefficients = 0;
+        let mut constant = None;
+        for exponents in f.terms.keys() {
+            let (of_variables, of_parameters) = exponents.split_at(n);
+            if of_variables.iter().sum::<u32>() > 1 {
+                return None;
+            }
+            if of_parameters.iter().all(|&k| k == 0) {
+                continue;
+            }
+            let parameter = of_parameters.iter().position(|&k| k == 1)?;
+            if of_parameters.iter().sum::<u32>() > 1 {
+                return None;
+            }
+            seen[parameter] += 1;
+            coefficients += 1;
+            if of_variables.iter().all(|&k| k == 0) {
+                constant = Some(parameter);
+            }
+        }
+        constants.push(constant?);
+        own.push(coefficients);
+    }
+    // Linear combinations of d slices may have d coefficients that are as they please.
+    let enough = own.iter().all(|&k| k + number > n);
+    (number > 0 && enough && seen.iter().all(|&k| k <= 1)).then_some(constants)
+}
+
+/// How far the sum at the middle of three parallel slices is from the mean of the other two, in
+/// parts of the sums of moduli: the largest of all coordinates.
+pub(crate) fn deviation(places: [&[Vec<Complex64>]; 3], pencil: &Pencil) -> f64 {
+    let n = places[0].first().map_or(0, Vec::len);
+    let (mut bent, mut size) = (vec![Complex64::default(); n], vec![0.0f64; n]);
+    for (points, weight) in places.into_iter().zip([1.0, -2.0, 1.0]) {
+        for point in points {
+            let mut divisor = vec![Complex64::new(1.0, 0.0); n];
+            if let Some(form) = &pencil.patch {
+                let value: Complex64 = form.iter().map(|(v, c)| point[*v] * c).sum();
+                for (v, _) in form {
+                    divisor[*v] = value;
+                }
+            }
+            for (i, (z, divisor)) in point.iter().zip(divisor).enumerate() {
+                let y = z / divisor;
+                bent[i] += y * weight;
+                size[i] += y.norm_sqr().sqrt();
+            }
+        }
+    }
+    let parts = bent.iter().zip(&size).filter(|(_, size)| **size > 0.0);
+    let parts = parts.map(|(bent, size)| bent.norm_sqr().sqrt() / size);
+    // A number that is none is no small one.
+    parts.fold(0.0, |most, part| match part <= most {
+        true => most,
+        false => part,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> System {
+        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
+        match cognate_systems::formats::read("test", text.as_bytes()) {
+            Ok(problem) => problem.system,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    #[test]
+    fn slices_are_seen_by_their_parameters() {
+        let sliced = "variable_group x, y; parameter a, b, c; function f, g; g = x^3 + y^2 - x*y;";
+        let of = |equation: &str| slices(&read(&format!("{sliced} f = {equation};")));
+        assert_eq!(of("a*x + b*y + c"), Some(vec![2]));
+        assert_eq!(
+            of("x + b*y + c"),
+            Some(vec![2]),
+            "up to a factor it lies anywhere"
+        );
+        assert_eq!(of("x + y + c"), None, "always in one direction");
+        assert_eq!(of("a*x + b*y + 1"), None, "its constant does not move");
+        assert_eq!(of("a*x^2 + b*y + c"), None);
+        assert_eq!(of("a*x + a*y + c"), None, "one parameter twice");
+        assert_eq!(of("a*b*x + b*y + c"), None);
+    }
+
+    /// x y = 1 on parallel lines has a sum that moves on a line; one of its two points has not.
+    #[test]
+    fn a_sum_is_straight_and_a_part_is_not() {
+        let pencil = Pencil {
+            direction: Vec::new(),
+            patch: None,
+        };
+        // x + y = c: x is a root of x^2 - c x + 1.
+        let at = |c: f64| {
+            let root = (c * c / 4.0 - 1.0).sqrt();
+            [c / 2.0 - root, c / 2.0 + root]
+                .map(|x| vec![Complex64::new(x, 0.0), Complex64::new(c - x, 0.0)])
+        };
+        let [a, b, c] = [at(3.0), at(4.0), at(5.0)];
+        assert!(deviation([&a, &b, &c], &pencil) < 1e-15);
+        assert!(deviation([&a[..1], &b[..1], &c[..1]], &pencil) > 1e-3);
+        let patch = Some(vec![
+            (0, Complex64::new(0.0, 1.0)),
+            (1, Complex64::new(2.0, 0.0)),
+        ]);
+        let scaled = |points: &[Vec<Complex64>]| -> Vec<Vec<Complex64>> {
+            let scale = Complex64::new(3.0, -1.0);
+            points
+                .iter()
+                .map(|p| p.iter().map(|z| z * scale).collect())
+                .collect()
+        };
+        let patched = Pencil { patch, ..pencil };
+        let one = deviation([&a, &b, &c], &patched);
+        let other = deviation([&scaled(&a), &scaled(&b), &scaled(&c)], &patched);
+        assert!((one - other).abs() < 1e-12, "{one} {other}");
+    }
+
+    #[test]
+    fn what_cannot_be_tested_is_named() {
+        let one = [Complex64::new(1.0, 0.5)];
+        let test = |text: &str| Test::new(&read(text), &one, vec![one[0]], 1);
+        let below = "variable_group x; parameter p; function f; f = x^2 - 1/p;";
+        assert_eq!(test(below), Err(NoTraceTest::BelowALine));
+        let groups = "hom_variable_group x, y; variable_group z; parameter p; function f, g; \
+                      f = x^2 - p*y^2; g = z - p;";
+        assert_eq!(test(groups), Err(NoTraceTest::Groups));
+        let plain = test("variable_group x; parameter p; function f; f = x^3 - p;").unwrap();
+        assert_eq!(plain.form(), TraceForm::Sections);
+    }
+}
