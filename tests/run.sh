@@ -97,10 +97,17 @@ export COGNATE_PROGRAM=$PWD/target/release/cognate
 step "everything"
 cargo test --release --workspace
 
-step "chaos: half a minute of random kills on either ledger"
+step "chaos: two minutes of random kills, on either ledger and with two coordinators"
 # Built above with everything else; `cargo run` of one package would build half of it once more.
-target/release/chaos --seconds 15 --seed 1
-target/release/chaos --seconds 15 --seed 2 --ledger postgres
+target/release/chaos --seconds 40 --seed 1
+target/release/chaos --seconds 40 --seed 2 --ledger postgres
+target/release/chaos --seconds 40 --seed 3 --ledger postgres --coordinators 2
+
+step "partitions: ten workers join and leave in networks whose wires are cut"
+target/release/partitions --seconds 20
+
+step "a large job: 160,000 made-up results through one coordinator"
+target/release/large_job --degree 20 --memory-mib 192
 
 step "load: 60 small jobs by 6 clients beside one of 4096 paths"
 target/release/load

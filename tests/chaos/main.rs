@@ -12,6 +12,7 @@ use cognate_tests::builders::katsura;
 use cognate_tests::client::{Answer, Client, Submission, accepted, has_ended, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::database::Database;
+use cognate_tests::dice::Dice;
 use cognate_tests::processes::{Process, until};
 use std::cell::Cell;
 use std::fmt;
@@ -61,19 +62,6 @@ impl fmt::Display for Fault {
             Self::FreezeCoordinator => "a coordinator stopped for a while",
             Self::KillDatabase => "the database server killed (-9)",
         })
-    }
-}
-
-/// The same faults for the same seed (splitmix64: Steele, Lea, Flood 2014).
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, bound: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % bound
     }
 }
 

@@ -187,10 +187,14 @@ impl Client {
         what: &str,
         holds: impl Fn(&v1::JobProgress) -> bool,
     ) -> v1::JobProgress {
-        self.progress_within(job, what, JOB_PATIENCE, holds)
+        self.progress_for(job, what, JOB_PATIENCE, holds)
     }
 
-    fn progress_within(
+    /// How far a job is once this holds.
+    ///
+    /// # Panics
+    /// When it does not hold within this time.
+    pub fn progress_for(
         &self,
         job: &str,
         what: &str,
@@ -223,7 +227,7 @@ impl Client {
     /// # Panics
     /// When it ends otherwise, or does not end in this time.
     pub fn wait_until_solved_for(&self, job: &str, patience: Duration) {
-        let ended = self.progress_within(job, "the job ends", patience, has_ended);
+        let ended = self.progress_for(job, "the job ends", patience, has_ended);
         assert_eq!(ended.state(), v1::JobState::Solved, "{ended:?}");
     }
 
@@ -256,6 +260,40 @@ impl Client {
             },
             Err(status) => panic!("no answer: {status}"),
         }
+    }
+
+    /// Every solution of a solved job, one at a time.
+    ///
+    /// # Panics
+    /// When the coordinator does not say.
+    pub fn each_solution(&self, job: &str, mut each: impl FnMut(v1::Solution)) {
+        let job = job.to_owned();
+        let call = |mut client: ClientApiClient<Channel>| async move {
+            let request = v1::StreamSolutionsRequest { job };
+            let mut stream = client.stream_solutions(request).await?.into_inner();
+            while let Some(solution) = stream.message().await? {
+                each(solution);
+            }
+            Ok(())
+        };
+        self.call(call).expect("all solutions");
+    }
+
+    /// Every path of a solved job, one at a time.
+    ///
+    /// # Panics
+    /// When the coordinator does not say.
+    pub fn each_path(&self, job: &str, mut each: impl FnMut(v1::ClassifiedPath)) {
+        let job = job.to_owned();
+        let call = |mut client: ClientApiClient<Channel>| async move {
+            let request = v1::StreamPathsRequest { job };
+            let mut stream = client.stream_paths(request).await?.into_inner();
+            while let Some(path) = stream.message().await? {
+                each(path);
+            }
+            Ok(())
+        };
+        self.call(call).expect("all paths");
     }
 
     /// The counts of a solved job.

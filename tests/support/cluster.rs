@@ -2,7 +2,7 @@
 
 use crate::client::Client;
 use crate::processes::{PATIENCE, Process, until};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::Duration;
 use tempfile::TempDir;
@@ -16,6 +16,12 @@ pub struct CoordinatorOptions {
     pub chunk_paths: Option<u64>,
     /// Where the ledger is; else in a file of the test's folder.
     pub ledger: Option<String>,
+    /// The folder of ledger and results; else the test's.
+    pub data: Option<PathBuf>,
+    /// More addresses to listen on, without asking who calls.
+    pub listen: Vec<String>,
+    /// Words before the command (see `namespaces`).
+    pub within: Vec<String>,
     /// So many MiB must be free in /dev/shm for workers to use it.
     pub least_free_mib: Option<u64>,
 }
@@ -51,6 +57,10 @@ pub struct WorkerOptions {
     pub transport: Option<&'static str>,
     /// A second address to ask.
     pub second: Option<String>,
+    /// The address to ask in place of the coordinator's socket.
+    pub coordinator: Option<String>,
+    /// Words before the command (see `namespaces`).
+    pub within: Vec<String>,
 }
 
 impl Default for WorkerOptions {
@@ -61,6 +71,8 @@ impl Default for WorkerOptions {
             lane_width: None,
             transport: None,
             second: None,
+            coordinator: None,
+            within: Vec::new(),
         }
     }
 }
@@ -117,13 +129,21 @@ impl Cluster {
 
     /// Starts one more worker.
     pub fn add_worker(&mut self, options: &WorkerOptions) {
+        let worker = self.start_worker(options);
+        self.workers.push(worker);
+    }
+
+    /// Starts one more worker, which is the caller's to stop.
+    pub fn start_worker(&mut self, options: &WorkerOptions) -> Process {
         self.workers_started += 1;
+        let first = options.coordinator.clone();
+        let first = first.unwrap_or_else(|| self.address());
         let mut arguments = vec![
             "worker".to_owned(),
             "--coordinator".to_owned(),
             match &options.second {
-                Some(second) => format!("{},{second}", self.address()),
-                None => self.address(),
+                Some(second) => format!("{first},{second}"),
+                None => first,
             },
             "--threads".to_owned(),
             options.threads.to_string(),
@@ -135,8 +155,7 @@ impl Cluster {
             arguments.extend(["--transport".to_owned(), transport.to_owned()]);
         }
         let name = format!("worker-{}", self.workers_started);
-        self.workers
-            .push(Process::start(self.folder.path(), &name, &arguments));
+        Process::start_within(&options.within, self.folder.path(), &name, &arguments)
     }
 
     /// `kill -9` for the coordinator.
@@ -214,7 +233,8 @@ fn address(folder: &Path, name: &str) -> String {
 }
 
 fn start_coordinator(folder: &Path, name: &str, options: &CoordinatorOptions) -> Process {
-    let file = || format!("sqlite:{}", folder.join("ledger.db").display());
+    let data = options.data.as_deref().unwrap_or(folder);
+    let file = || format!("sqlite:{}", data.join("ledger.db").display());
     let mut arguments = vec![
         "coordinator".to_owned(),
         "--listen".to_owned(),
@@ -222,10 +242,16 @@ fn start_coordinator(folder: &Path, name: &str, options: &CoordinatorOptions) ->
         "--ledger".to_owned(),
         options.ledger.clone().unwrap_or_else(file),
         "--results".to_owned(),
-        folder.join("results").display().to_string(),
+        data.join("results").display().to_string(),
     ];
+    for address in &options.listen {
+        arguments.extend(["--listen".to_owned(), address.clone()]);
+    }
+    if !options.listen.is_empty() {
+        arguments.push("--insecure".to_owned());
+    }
     let config = folder.join(format!("{name}.toml"));
     std::fs::write(&config, options.config()).expect("the test's folder is writable");
     arguments.extend(["--config".to_owned(), config.display().to_string()]);
-    Process::start(folder, name, &arguments)
+    Process::start_within(&options.within, folder, name, &arguments)
 }

@@ -72,12 +72,33 @@ impl Process {
     /// # Panics
     /// When it cannot be started.
     pub fn start(folder: &Path, name: &str, arguments: &[String]) -> Self {
+        Self::start_within(&[], folder, name, arguments)
+    }
+
+    /// The same behind these words: a command that becomes the one that follows it (`nsenter`).
+    ///
+    /// # Panics
+    /// When it cannot be started.
+    pub fn start_within(
+        within: &[String],
+        folder: &Path,
+        name: &str,
+        arguments: &[String],
+    ) -> Self {
         let log = folder.join(format!("{name}.log"));
         let append = || {
             let file = File::options().create(true).append(true).open(&log);
             Stdio::from(file.expect("the test's folder is writable"))
         };
-        let child = Command::new(cognate())
+        let mut command = match within {
+            [] => Command::new(cognate()),
+            [first, words @ ..] => {
+                let mut command = Command::new(first);
+                command.args(words).arg(cognate());
+                command
+            }
+        };
+        let child = command
             .args(arguments)
             .env("RUST_LOG", "info,cognate_worker=debug")
             .env_remove("COGNATE_COORDINATOR")
@@ -109,6 +130,11 @@ impl Process {
     /// Memory that it holds now, in bytes; 0 where the system does not say (Linux does).
     pub fn memory_bytes(&self) -> u64 {
         memory_bytes(&self.child.id().to_string(), "VmRSS").unwrap_or(0)
+    }
+
+    /// The most memory that it has held so far, likewise.
+    pub fn peak_memory_bytes(&self) -> u64 {
+        memory_bytes(&self.child.id().to_string(), "VmHWM").unwrap_or(0)
     }
 
     /// CPU time that it has used, in seconds; 0 where the system does not say.

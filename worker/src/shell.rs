@@ -23,6 +23,9 @@ use tokio_util::sync::CancellationToken;
 /// A worker without free slots is heard of at least so often.
 const HEARTBEAT: Duration = Duration::from_secs(10);
 
+/// Longest wait for work where there are several coordinators.
+const POLL_OF_SEVERAL: Duration = Duration::from_secs(5);
+
 /// Why a worker did not begin.
 #[derive(Debug, thiserror::Error)]
 pub enum WorkerError {
@@ -93,7 +96,11 @@ fn limits(config: &Config) -> Limits {
     Limits {
         chunks_at_once: config.chunks_at_once,
         unacknowledged: config.unacknowledged,
-        poll: config.poll,
+        // One of several coordinators that stands still takes the call and says nothing.
+        poll: match config.coordinators.len() {
+            1 => config.poll,
+            _ => config.poll.min(POLL_OF_SEVERAL),
+        },
         heartbeat: HEARTBEAT,
         end: config.wall_time.map(Moment),
         wind_up: config.wind_up,

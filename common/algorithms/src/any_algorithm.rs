@@ -15,7 +15,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 7;
+const VERSION: u8 = 8;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -130,6 +130,22 @@ impl AnyAlgorithm {
     pub fn counted_stage(&self) -> StageId {
         self.monodromy()
             .map_or(StageId(0), MonodromySolve::counted_stage)
+    }
+
+    /// The solve whose plain paths need not be held (see `solutions::plain`), where it is such a one.
+    pub fn large(&self) -> Option<&ZeroDimensionalSolve> {
+        match self {
+            Self::ZeroDimensional(solve) if solve.paths().can_leave_out() => Some(solve),
+            _ => None,
+        }
+    }
+
+    /// The same, to tell it about them.
+    pub fn large_mut(&mut self) -> Option<&mut ZeroDimensionalSolve> {
+        match self {
+            Self::ZeroDimensional(solve) if solve.paths().can_leave_out() => Some(solve),
+            _ => None,
+        }
     }
 
     fn get_mut(&mut self) -> &mut dyn PathAlgorithm {

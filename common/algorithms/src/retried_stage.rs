@@ -18,6 +18,7 @@ use cognate_solutions::classification::{Decision, Tolerances, Verdict, classify}
 use cognate_solutions::degenerate::{ASKED, DeclaredSets};
 use cognate_solutions::images::with_images;
 use cognate_solutions::path_crossing::{CrossingBook, coincidences, crossings};
+use cognate_solutions::plain::PlainCounts;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_systems::system::System;
@@ -55,8 +56,10 @@ pub struct RetriedStage {
     max_retries: u16,
     /// Paths for each target; the targets' paths follow each other.
     paths_per_target: u64,
-    /// Last result of every path, by its index.
+    /// Last result of every path, by its index; with `plain` of those that are held, ascending.
     results: Vec<PathResult>,
+    /// Paths that are not held, counted; `None` where all are.
+    plain: Option<PlainCounts>,
     targets: Vec<TargetBook>,
     stages: Vec<StageProgress>,
     /// Paths that the next stage has to track; `None` before the first and after the last.
@@ -101,6 +104,7 @@ impl RetriedStage {
             max_retries: MAX_RETRIES,
             paths_per_target: items / targets,
             results: Vec::new(),
+            plain: None,
             targets: vec![TargetBook::default(); targets as usize],
             stages: Vec::new(),
             wanted: None,
@@ -138,6 +142,7 @@ impl RetriedStage {
             },
             paths_per_target: items / targets,
             results: Vec::new(),
+            plain: None,
             targets: vec![TargetBook::default(); targets as usize],
             stages: Vec::new(),
             wanted: None,
@@ -146,6 +151,56 @@ impl RetriedStage {
             lost,
             ..self.clone()
         }
+    }
+
+    /// False where the ends of paths are compared with more than each other, so that all are held.
+    pub fn can_leave_out(&self) -> bool {
+        self.targets.len() == 1
+            && self.lost == 0
+            && self.first.work == Work::Track
+            && self.first.start_points.exchange().is_none()
+            && self.declared.names().next().is_none()
+    }
+
+    /// These paths are not held (see `plain`); said before the first stage is absorbed, with the results
+    /// of all others, and again whenever some are taken back.
+    ///
+    /// # Panics
+    /// Where ends are compared with more than each other.
+    pub fn leave_out(&mut self, plain: PlainCounts) {
+        assert!(self.can_leave_out(), "here every end is held");
+        self.plain = Some(plain);
+    }
+
+    /// True where not all paths are held.
+    pub fn leaves_out(&self) -> bool {
+        self.plain.is_some()
+    }
+
+    /// Holds these paths, too, which were plain: another may end where they do.
+    pub fn take_back(&mut self, results: Vec<PathResult>, plain: PlainCounts) {
+        self.leave_out(plain);
+        self.results.extend(results);
+        self.results.sort_by_key(|result| result.origin);
+    }
+
+    /// Where the result of a path stands; `None` where it is not held.
+    fn place(&self, path: u64) -> Option<usize> {
+        if self.plain.is_some() {
+            let found = self.results.binary_search_by_key(&path, |r| r.origin.0);
+            return found.ok();
+        }
+        usize::try_from(path)
+            .ok()
+            .filter(|&place| place < self.results.len())
+    }
+
+    /// The results that are held, target by target.
+    fn by_target(&self) -> impl Iterator<Item = &[PathResult]> {
+        let size = self.paths_per_target.max(1) as usize;
+        let one = self.plain.is_some().then_some(&self.results[..]);
+        let each = self.results.chunks(size).filter(move |_| one.is_none());
+        one.into_iter().chain(each)
     }
 
     /// The verdicts on the last results of all paths so far.
@@ -243,15 +298,13 @@ impl RetriedStage {
             .singular_points
             .iter()
             .map(|paths| {
-                let accuracy = |path: &&u64| self.results[**path as usize].accuracy;
                 // What is known of an image is known of its path.
-                let best = paths
-                    .iter()
-                    .filter(|&&path| path < self.results.len() as u64)
-                    .min_by(|a, b| accuracy(a).total_cmp(&accuracy(b)))
+                let held = paths.iter().filter_map(|&path| self.place(path));
+                let result = held
+                    .map(|place| &self.results[place])
+                    .min_by(|a, b| a.accuracy.total_cmp(&b.accuracy))
                     .expect("a point is where a path ends");
-                let result = &self.results[*best as usize];
-                let target = best / self.paths_per_target;
+                let target = result.origin.0 / self.paths_per_target;
                 Candidate {
                     values: self.shape.to_variables(result.endpoint.to_double()),
                     target,
@@ -320,13 +373,15 @@ impl RetriedStage {
         let (attempt, items, work) = (stage.attempt, stage.items, stage.work);
         let mut taken = 0;
         if work == Work::LocalDimension {
-            for (result, paths) in results.zip(&self.singular_points) {
-                taken += 1;
-                for &path in paths {
-                    if let Some(tracked) = self.results.get_mut(path as usize) {
-                        tracked.local_dimension.clone_from(&result.local_dimension);
-                    }
+            for result in results {
+                let point = usize::try_from(taken).unwrap_or(usize::MAX);
+                let paths = self.singular_points.get(point).map_or(&[][..], |p| &p[..]);
+                let places: Vec<usize> = paths.iter().filter_map(|&p| self.place(p)).collect();
+                for place in places {
+                    let known = &mut self.results[place].local_dimension;
+                    known.clone_from(&result.local_dimension);
                 }
+                taken += 1;
             }
             assert_eq!(taken, items, "a stage is absorbed as a whole");
             self.judge();
@@ -335,14 +390,25 @@ impl RetriedStage {
         for result in results {
             let origin = result.origin.0;
             if attempt == 0 {
-                assert_eq!(origin, taken, "results come in item order");
+                let last = self.results.last().map(|r| r.origin.0);
+                let in_order = match self.plain {
+                    None => origin == taken,
+                    Some(_) => last.is_none_or(|last| last < origin),
+                };
+                assert!(in_order, "results come in item order");
                 self.results.push(result);
             } else {
-                let place = usize::try_from(origin).expect("an index of a path that is in memory");
-                self.targets[place / self.paths_per_target as usize].retracked += 1;
+                let place = self
+                    .place(origin)
+                    .expect("an index of a path that is in memory");
+                let of_target = usize::try_from(origin).unwrap_or(usize::MAX);
+                self.targets[of_target / self.paths_per_target as usize].retracked += 1;
                 self.results[place] = result;
             }
             taken += 1;
+        }
+        if attempt == 0 {
+            taken += self.plain.as_ref().map_or(0, PlainCounts::total);
         }
         assert_eq!(taken, items, "a stage is absorbed as a whole");
         let suspects = self.judge();
@@ -358,9 +424,8 @@ impl RetriedStage {
     /// The paths that end at one singular finite point, for each such point; with an exchange for
     /// one of each two points, images among the paths.
     fn find_singular_points(&self) -> Vec<Vec<u64>> {
-        let size = self.paths_per_target.max(1) as usize;
         let mut points = Vec::new();
-        for (target, tracked) in self.results.chunks(size).enumerate() {
+        for (target, tracked) in self.by_target().enumerate() {
             let results = &*self.with_images(tracked);
             let decide = |result| classify(result, &self.shape, &self.tolerances);
             let decisions: Vec<Decision> = results.iter().map(decide).collect();
@@ -415,8 +480,8 @@ impl RetriedStage {
     /// Brings all verdicts up to date; returns the paths to track again, ascending.
     fn judge(&mut self) -> Vec<u64> {
         let mut suspects = Vec::new();
-        let size = self.paths_per_target.max(1) as usize;
-        for (target, tracked) in self.results.chunks(size).enumerate() {
+        let mut targets = std::mem::take(&mut self.targets);
+        for (tracked, book) in self.by_target().zip(&mut targets) {
             let exchange = self.first.start_points.exchange();
             let paths = self.paths_per_target;
             let results = &*with_images(tracked, paths, exchange, &self.shape);
@@ -431,7 +496,6 @@ impl RetriedStage {
                 &self.tolerances,
                 self.first.seed,
             );
-            let book = &mut self.targets[target];
             book.crossings.update(
                 meetings
                     .iter()
@@ -439,6 +503,10 @@ impl RetriedStage {
                     .collect(),
             );
             book.verdicts = VerdictCounts::default();
+            if let Some(plain) = &self.plain {
+                book.verdicts.finite = plain.finite;
+                book.verdicts.at_infinity = plain.at_infinity;
+            }
             for (result, decision) in tracked.iter().zip(&decisions) {
                 match decision.verdict {
                     Verdict::Finite => book.verdicts.finite += 1,
@@ -464,6 +532,7 @@ impl RetriedStage {
             };
             suspects.extend(book.crossings.paths().map(of_path));
         }
+        self.targets = targets;
         suspects.sort_unstable();
         suspects.dedup();
         suspects
@@ -533,7 +602,8 @@ impl RetriedStage {
         }
     }
 
-    /// What was found for one target, at which the parameters have these values.
+    /// What was found for one target, at which the parameters have these values. Solutions at which
+    /// paths end that are not held are counted, and not in the list.
     pub fn solution_set(
         &self,
         target: usize,
@@ -542,11 +612,15 @@ impl RetriedStage {
         complete_start: bool,
     ) -> SolutionSet {
         let size = self.paths_per_target as usize;
+        let history = self.history(target, complete_start);
+        if let Some(plain) = &self.plain {
+            let held = self.set_of(system, parameters, &self.results, &history);
+            return held.with_plain(plain);
+        }
         let results = self
             .results
             .get(target * size..(target + 1) * size)
             .unwrap_or(&[]);
-        let history = self.history(target, complete_start);
         self.set_of(system, parameters, &self.with_images(results), &history)
     }
 

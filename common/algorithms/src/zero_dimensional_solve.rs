@@ -7,6 +7,7 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::Tolerances;
+use cognate_solutions::plain::Sieve;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -64,6 +65,22 @@ impl ZeroDimensionalSolve {
     /// The paths and what is known about them.
     pub fn paths(&self) -> &RetriedStage {
         &self.paths
+    }
+
+    /// The same, to say which are not held.
+    pub fn paths_mut(&mut self) -> &mut RetriedStage {
+        &mut self.paths
+    }
+
+    /// What tells its plain paths from others.
+    pub fn sieve(&self, system: &System) -> Sieve {
+        let tolerances = self.paths.tolerances();
+        Sieve::new(
+            system,
+            &self.parameters,
+            tolerances,
+            self.paths.first().seed,
+        )
     }
 }
 

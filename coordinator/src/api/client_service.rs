@@ -2,7 +2,7 @@
 
 use super::error::ApiError;
 use super::{Answers, Context, guarded};
-use crate::coordinator::{ClassifiedPath, CoordinatorError};
+use crate::coordinator::{Answered, ClassifiedPath, CoordinatorError};
 use crate::intake;
 use crate::jobs::planning::Planned;
 use crate::jobs::progress::JobProgress;
@@ -15,8 +15,10 @@ use cognate_protocol::error::{ProtocolError, within_limit};
 use cognate_protocol::limits::{self, OBJECT_BYTES};
 use cognate_protocol::v1::client_api_server::ClientApi;
 use cognate_protocol::{PROTOCOL_VERSION, from_proto, to_proto, v1};
+use futures::future::ready;
 use futures::{StreamExt, stream};
 use std::sync::Arc;
+use tokio::sync::mpsc::Receiver;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Request, Response, Status, Streaming};
 
@@ -144,6 +146,23 @@ fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::Wor
     }
 }
 
+/// One message at a time of what comes a chunk at a time.
+fn flattened<T: Send + 'static>(
+    answers: Receiver<Result<Vec<Answered>, CoordinatorError>>,
+    message: fn(Answered) -> Option<Result<T, Status>>,
+) -> Answers<T> {
+    let messages = ReceiverStream::new(answers).flat_map(move |some| match some {
+        Ok(some) => stream::iter(some)
+            .filter_map(move |a| ready(message(a)))
+            .left_stream(),
+        Err(error) => {
+            let status = Status::from(ApiError::from(error));
+            stream::once(ready(Err(status))).right_stream()
+        }
+    });
+    Box::pin(messages)
+}
+
 /// Puts an object's pieces together, up to the limit.
 async fn gather(mut pieces: Streaming<v1::ObjectPiece>) -> Result<Bytes, Status> {
     let mut bytes = BytesMut::new();
@@ -230,6 +249,14 @@ impl ClientApi for ClientService {
         request: Request<v1::StreamSolutionsRequest>,
     ) -> Result<Response<Self::StreamSolutionsStream>, Status> {
         let job = job(&request.into_inner().job)?;
+        let large = self.context.coordinator.answers(job).await;
+        if let Some(answers) = large.map_err(ApiError::from)? {
+            let message = |(_, solution): Answered| {
+                let solution = solution?;
+                Some(Ok(to_proto::solution::solution(&solution, 0)))
+            };
+            return Ok(Response::new(flattened(answers, message)));
+        }
         let sets = self.context.coordinator.solutions(job).await;
         let sets = sets.map_err(ApiError::from)?;
         // One at a time: a message takes more memory than what it is made of.
@@ -251,6 +278,11 @@ impl ClientApi for ClientService {
         request: Request<v1::StreamPathsRequest>,
     ) -> Result<Response<Self::StreamPathsStream>, Status> {
         let job = job(&request.into_inner().job)?;
+        let large = self.context.coordinator.answers(job).await;
+        if let Some(answers) = large.map_err(ApiError::from)? {
+            let message = |(path, _): Answered| Some(Ok(classified(&path)));
+            return Ok(Response::new(flattened(answers, message)));
+        }
         let coordinator = self.context.coordinator.clone();
         let paths = guarded(async move { Ok(coordinator.paths(job).await?) }).await?;
         let paths = paths.into_iter().map(|path| Ok(classified(&path)));

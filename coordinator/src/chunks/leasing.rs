@@ -27,6 +27,9 @@ pub struct Policy {
     /// So many of a hundred chunks are accepted only once two workers found the same. Default 0;
     /// each costs the work of all of them that much again.
     pub audit_percent: u32,
+    /// Of a stage of more paths than these only the ends are held in memory that matter to others (see
+    /// `solutions::plain`). Default 100,000, which take about 100 MB.
+    pub held_paths: u64,
     /// How large chunks are.
     pub sizing: Sizing,
 }
@@ -41,6 +44,7 @@ impl Default for Policy {
             split_into: 8,
             in_flight_limit: 20_000,
             audit_percent: 0,
+            held_paths: 100_000,
             sizing: Sizing::default(),
         }
     }

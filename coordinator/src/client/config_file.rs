@@ -68,6 +68,7 @@ tables! {
         split_into: u64,
         in_flight_limit: u32,
         audit_percent: u32,
+        held_paths: u64,
     }
     /// The fields of `Sizing`.
     ChunksTable {
@@ -140,6 +141,7 @@ impl ConfigFile {
                     policy.in_flight_limit,
                 )?,
                 audit_percent: r.audit_percent.unwrap_or(policy.audit_percent).min(100),
+                held_paths: r.held_paths.unwrap_or(policy.held_paths),
                 sizing: Sizing {
                     longest_ms: number("longest_ms", c.longest_ms, sizing.longest_ms)?,
                     shared_ms: number("shared_ms", c.shared_ms, sizing.shared_ms)?,

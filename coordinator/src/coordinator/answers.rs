@@ -80,7 +80,7 @@ impl Coordinator {
         let (sender, receiver) = mpsc::channel(4);
         let coordinator = Arc::clone(self);
         tokio::spawn(async move {
-            let mut changes = coordinator.changes();
+            let mut changes = coordinator.changes.of(job);
             let mut last: Option<JobProgress> = None;
             loop {
                 changes.mark_unchanged();
@@ -131,7 +131,7 @@ impl Coordinator {
         Ok(self.ledger.workers(limit).await?)
     }
 
-    async fn solved(&self, job: JobId) -> Result<JobRow, CoordinatorError> {
+    pub(super) async fn solved(&self, job: JobId) -> Result<JobRow, CoordinatorError> {
         let row = job_row(&*self.ledger, job).await?;
         if row.state == JobState::Solved {
             return Ok(row);
@@ -161,8 +161,14 @@ impl Coordinator {
     }
 
     /// The solution sets of a solved job, one for each target.
-    pub async fn solutions(&self, job: JobId) -> Result<Arc<Vec<SolutionSet>>, CoordinatorError> {
+    pub async fn solutions(
+        self: &Arc<Self>,
+        job: JobId,
+    ) -> Result<Arc<Vec<SolutionSet>>, CoordinatorError> {
         let row = self.solved(job).await?;
+        if let Some(set) = self.whole(job).await? {
+            return Ok(Arc::new(vec![set]));
+        }
         let digest = row.solutions.ok_or(CoordinatorError::NoResult {
             job,
             state: row.state,
@@ -177,8 +183,14 @@ impl Coordinator {
     }
 
     /// All paths of a solved job, by their indices.
-    pub async fn paths(&self, job: JobId) -> Result<Vec<ClassifiedPath>, CoordinatorError> {
+    pub async fn paths(
+        self: &Arc<Self>,
+        job: JobId,
+    ) -> Result<Vec<ClassifiedPath>, CoordinatorError> {
         let row = self.solved(job).await?;
+        if let Some(answers) = self.all_answers(job).await? {
+            return Ok(answers.into_iter().map(|(path, _)| path).collect());
+        }
         let sets = self.solutions(job).await?;
         let system = self.problem(row.asked.problem).await?;
         let mut results = Vec::new();

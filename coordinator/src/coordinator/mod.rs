@@ -4,18 +4,24 @@
 //! client and any worker, and drives the jobs that no other drives.
 
 mod answers;
+mod changes;
 mod error;
+mod large_answer;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_limits;
 mod work;
 
 pub use answers::{ClassifiedPath, Explanation};
 pub use error::CoordinatorError;
+pub use large_answer::Answered;
 pub use work::{Pull, Report};
 
+use self::changes::Changes;
 use crate::chunks::leasing::Policy;
 use crate::jobs::planning::{Planned, STATE, plan_job};
 use crate::ledger::identity::{CoordinatorId, JobId, RequestId, Tenant, WorkerId};
@@ -33,7 +39,7 @@ use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
-use tokio::sync::{Notify, watch};
+use tokio::sync::Notify;
 
 /// Systems, stages and solutions that are kept decoded.
 const KEPT: usize = 64;
@@ -70,8 +76,8 @@ pub struct Coordinator {
     policy: Policy,
     /// Something may be leased that could not be before.
     work: Notify,
-    /// Counts everything that clients may see of jobs.
-    changes: watch::Sender<u64>,
+    /// Who watches which job.
+    changes: Changes,
     /// Jobs that this coordinator drives.
     drives: Mutex<HashMap<JobId, Arc<Notify>>>,
     /// A job may want a steward.
@@ -98,7 +104,7 @@ impl Coordinator {
             who,
             policy,
             work: Notify::new(),
-            changes: watch::Sender::new(0),
+            changes: Changes::default(),
             drives: Mutex::default(),
             unattended: Notify::new(),
             seen: Mutex::default(),
@@ -192,7 +198,7 @@ impl Coordinator {
                 paths = planned.paths, "a job is submitted");
         }
         self.unattended.notify_one();
-        self.changed();
+        self.changed(submitted.job);
         Ok(Accepted {
             job: submitted.job,
             is_new: submitted.is_new,
@@ -205,7 +211,7 @@ impl Coordinator {
         let cancelled = self.ledger.cancel(job, reason).await?;
         tracing::info!(%job, reason, ?cancelled, "a job is cancelled");
         self.wake_steward(job);
-        self.changed();
+        self.changed(job);
         Ok(match cancelled {
             Cancelled::Now => JobState::Cancelled,
             Cancelled::HadEnded(state) => state,
@@ -249,7 +255,10 @@ impl Coordinator {
         self.stage_of(digest).await
     }
 
-    async fn stage_of(&self, definition: Digest) -> Result<Arc<Stage>, CoordinatorError> {
+    pub(super) async fn stage_of(
+        &self,
+        definition: Digest,
+    ) -> Result<Arc<Stage>, CoordinatorError> {
         if let Some(stage) = self.stages.get(&definition) {
             return Ok(stage);
         }
@@ -258,13 +267,9 @@ impl Coordinator {
         Ok(stage)
     }
 
-    /// Grows with everything that clients may see of jobs.
-    pub fn changes(&self) -> watch::Receiver<u64> {
-        self.changes.subscribe()
-    }
-
-    fn changed(&self) {
-        self.changes.send_modify(|count| *count += 1);
+    /// Clients may see something else of this job now.
+    fn changed(&self, job: JobId) {
+        self.changes.happened(job);
     }
 
     fn wake_steward(&self, job: JobId) {

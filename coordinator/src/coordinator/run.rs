@@ -3,6 +3,7 @@
 use super::{Coordinator, CoordinatorError};
 use crate::jobs::drive::{Drive, DriveError, Driven, Tools};
 use crate::ledger::LedgerError;
+use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobEnd;
 use futures::FutureExt;
@@ -52,6 +53,8 @@ impl Coordinator {
         // So much longer than it should be between two looks, and workers may have waited, too.
         let held_up = every + grace / 4;
         let mut pause = grace;
+        let mut seen = None;
+        self.clock_has_jumped(&mut seen, held_up).await;
         loop {
             let begin = Instant::now();
             tokio::select! {
@@ -60,6 +63,11 @@ impl Coordinator {
             }
             if begin.elapsed() > pause + held_up {
                 tracing::warn!("this coordinator stood still: nobody's silence counts for a lease");
+                pause = grace;
+                continue;
+            }
+            if self.clock_has_jumped(&mut seen, held_up).await {
+                tracing::warn!("the ledger's clock was set: nobody's silence counts for a lease");
                 pause = grace;
                 continue;
             }
@@ -75,6 +83,26 @@ impl Coordinator {
         }
     }
 
+    /// Whether the ledger's clock has gone further since it was `seen` than time has, by more than this:
+    /// somebody has set a database server's clock.
+    async fn clock_has_jumped(
+        &self,
+        seen: &mut Option<(Instant, LedgerTime)>,
+        allowed: Duration,
+    ) -> bool {
+        let before = Instant::now();
+        // Where the ledger does not answer, nothing expires either.
+        let Ok(now) = self.ledger.now().await else {
+            *seen = None;
+            return false;
+        };
+        let last = seen.replace((before, now));
+        last.is_some_and(|(then, said)| {
+            let passed = Duration::from_millis(now.since_ms(said));
+            passed > then.elapsed() + allowed
+        })
+    }
+
     /// Takes back the leases that have expired by now.
     pub async fn expire(&self) -> Result<(), CoordinatorError> {
         let expired = self.ledger.expire().await?;
@@ -82,10 +110,10 @@ impl Coordinator {
             tracing::warn!(lease = %gone.lease, worker = %gone.worker,
                 suspicions = gone.suspicions, "a worker fell silent: its chunk goes to another");
             self.wake_steward(gone.lease.chunk.job);
+            self.changed(gone.lease.chunk.job);
         }
         if !expired.is_empty() {
             self.work.notify_waiters();
-            self.changed();
         }
         Ok(())
     }
@@ -157,7 +185,7 @@ impl Coordinator {
             let end = JobEnd::Failed { reason };
             self.ledger.finish(job, epoch, end).await?;
         }
-        self.changed();
+        self.changed(job);
         Ok(())
     }
 
@@ -184,10 +212,10 @@ impl Coordinator {
             match drive.step(&tools).await? {
                 Driven::Went => {
                     self.work.notify_waiters();
-                    self.changed();
+                    self.changed(job);
                 }
                 Driven::Ended => {
-                    self.changed();
+                    self.changed(job);
                     return Ok(());
                 }
                 Driven::Waits => {

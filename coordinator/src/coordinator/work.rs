@@ -58,7 +58,9 @@ impl Coordinator {
             woken.as_mut().enable();
             let leases = self.ledger.lease(request.clone()).await?;
             if !leases.is_empty() {
-                self.changed();
+                for lease in &leases {
+                    self.changed(lease.lease.chunk.job);
+                }
                 return Ok(leases);
             }
             if Instant::now() >= deadline {
@@ -172,11 +174,11 @@ impl Coordinator {
             Completion::Witnessed => {
                 tracing::debug!(%lease, "a chunk is done again on another worker, to compare");
                 self.work.notify_waiters();
-                self.changed();
+                self.changed(lease.chunk.job);
             }
             Completion::Accepted => {
                 tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
-                self.changed();
+                self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
                 if is_audited(lease.chunk, self.policy.audit_percent) {
                     // Whoever was outvoted has lost chunks.
@@ -206,9 +208,9 @@ impl Coordinator {
             }
             self.ledger.give_back(*lease, why.clone()).await?;
             self.wake_steward(lease.chunk.job);
+            self.changed(lease.chunk.job);
         }
         self.work.notify_waiters();
-        self.changed();
         Ok(())
     }
 }

@@ -4,6 +4,7 @@
 //! may have happened, and doing it again is harmless. A drive that is fenced
 //! has another steward by now, and is dropped.
 
+use super::large_stage::{self, LargeStage};
 use super::planning::{Planned, STATE, first_chunks};
 use super::steward::{Steward, Wanted, next_to_absorb};
 use crate::chunks::expiry::{Sentence, killed_its_worker, sentence};
@@ -13,18 +14,12 @@ use crate::ledger::identity::{CoordinatorId, Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::{Store, StoreError};
-use crate::results::summary::{self, Summary};
+use crate::results::summary::{self, LargeAnswer, Summary};
 use cognate_algorithms::Opening;
-use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use futures::{StreamExt, TryStreamExt};
 use std::sync::Arc;
 
 const HERE: &str = "the steward is back before the step ends";
-/// Result objects that are read at once.
-const READ_AHEAD: usize = 8;
-/// Chunk rows that are read at once.
-const PAGE: u32 = 1000;
 
 /// What a drive works with.
 pub struct Tools<'a> {
@@ -91,6 +86,8 @@ pub struct Drive {
     steward: Option<Steward>,
     /// Nothing was opened yet, or the algorithm is done and the job must be ended.
     pending: Option<Wanted>,
+    /// What is remembered of a first stage that is too large to be held.
+    large: LargeStage,
 }
 
 impl Drive {
@@ -145,6 +142,7 @@ impl Drive {
             planned,
             steward: Some(steward),
             pending,
+            large: LargeStage::default(),
         })
     }
 
@@ -218,7 +216,19 @@ impl Drive {
             return self.judge_suspects(tools).await;
         };
         let (stage, items) = (stage.stage, stage.items);
-        let results = self.results(tools, stage).await?;
+        let steward = self.steward();
+        let is_large = steward.leaves_out()
+            || (items > tools.policy.held_paths
+                && steward.can_leave_out()
+                && stage == steward.first_stage());
+        if is_large {
+            tracing::info!(job = %self.job, stage = stage.0, items, "absorbing a stage of a large job");
+            let (large, steward) = (&mut self.large, &mut self.steward);
+            let wanted = large.absorb(tools, self.job, steward, (stage, items));
+            let wanted = wanted.await?;
+            return self.carry_out(tools, &[stage], &wanted).await;
+        }
+        let results = large_stage::all(tools, self.job, stage).await?;
         if results.len() as u64 != items {
             // A worker was outvoted in between, and what it did is done again.
             return Err(LedgerError::Fenced(self.job).into());
@@ -285,7 +295,7 @@ impl Drive {
 
     async fn finish(&mut self, tools: &Tools<'_>) -> Result<(), DriveError> {
         let Tools { ledger, store, .. } = tools;
-        let sets = self.at_work(|steward| steward.solution_sets()).await;
+        let mut sets = self.at_work(|steward| steward.solution_sets()).await;
         let row = ledger.job(self.job).await?;
         let row = row.ok_or(LedgerError::UnknownJob(self.job))?;
         let stages = ledger.stages(self.job).await?;
@@ -293,42 +303,23 @@ impl Drive {
         let now = ledger.now().await?;
         let mut summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
         summary.monodromy = self.steward().monodromy();
-        let solutions = store.put_record(&summary::SOLUTIONS, sets).await?;
+        let solutions = match sets.pop() {
+            Some(set) if self.steward().leaves_out() => {
+                let held = self.steward().held_paths();
+                store
+                    .put_record(&summary::LARGE, LargeAnswer { held, set })
+                    .await?
+            }
+            last => {
+                sets.extend(last);
+                store.put_record(&summary::SOLUTIONS, sets).await?
+            }
+        };
         let summary = store.put(summary.to_json().into()).await?;
         let end = JobEnd::Solved { solutions, summary };
         ledger.finish(self.job, self.epoch, end).await?;
         tracing::info!(job = %self.job, "the job is solved");
         Ok(())
-    }
-
-    /// All results of a complete stage, in the order of its items.
-    async fn results(
-        &self,
-        tools: &Tools<'_>,
-        stage: StageId,
-    ) -> Result<Vec<PathResult>, DriveError> {
-        let mut results = Vec::new();
-        let mut from = 0;
-        loop {
-            let rows = tools
-                .ledger
-                .finished_chunks(self.job, stage, from, PAGE)
-                .await?;
-            let Some(last) = rows.last() else {
-                return Ok(results);
-            };
-            from = last.items.last;
-            let objects = rows.into_iter().filter_map(|row| match row.state {
-                ChunkState::Accepted { result, .. } | ChunkState::Failed { result } => Some(result),
-                _ => None,
-            });
-            let mut read = futures::stream::iter(objects)
-                .map(|object| async move { tools.store.results(&object).await })
-                .buffered(READ_AHEAD);
-            while let Some(chunk) = read.try_next().await? {
-                results.extend(chunk);
-            }
-        }
     }
 
     /// Splits the chunks that no worker survives, down to the path at fault.

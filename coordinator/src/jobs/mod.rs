@@ -7,6 +7,7 @@
 //! [`JobState`](crate::ledger::rows::JobState) in the ledger.
 
 pub mod drive;
+pub mod large_stage;
 pub mod planning;
 pub mod progress;
 pub mod steward;

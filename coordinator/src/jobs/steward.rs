@@ -8,10 +8,13 @@ use crate::ledger::rows::StageRow;
 use crate::results::summary::MonodromyBlock;
 use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::StageId;
+use cognate_continuation::work::{StageId, Work};
+use cognate_solutions::plain::{Crowd, PlainCounts, Sieve};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use std::sync::Arc;
+
+const LARGE: &str = "only a job that can leave out paths is asked about them";
 
 /// A job in the hands of its steward.
 #[derive(Clone, Debug)]
@@ -73,6 +76,65 @@ impl Steward {
     ) -> Wanted {
         self.algorithm.absorb(stage, &mut results.into_iter());
         self.ask()
+    }
+
+    /// The stage whose paths are those of the job, where they need not all be held.
+    pub fn first_stage(&self) -> StageId {
+        let large = self.algorithm.large();
+        large.map_or(StageId(0), |solve| solve.paths().first().id)
+    }
+
+    /// True where plain paths need not be held (see `solutions::plain`).
+    pub fn can_leave_out(&self) -> bool {
+        self.algorithm.large().is_some() && Sieve::suits(&self.system)
+    }
+
+    /// True where they are not.
+    pub fn leaves_out(&self) -> bool {
+        let large = self.algorithm.large();
+        large.is_some_and(|solve| solve.paths().leaves_out())
+    }
+
+    /// True for stages that track paths.
+    pub fn tracks(&self, stage: StageId) -> bool {
+        let stages = self.algorithm.progress().stages;
+        (stages.iter()).any(|other| other.id == stage && other.work == Work::Track)
+    }
+
+    /// Nobody yet, with room for so many paths.
+    ///
+    /// # Panics
+    /// Where all paths are held.
+    pub fn crowd(&self, paths: u64) -> Crowd {
+        let solve = self.algorithm.large().expect(LARGE);
+        Crowd::new(solve.sieve(&self.system), paths)
+    }
+
+    /// The paths that are held, ascending.
+    ///
+    /// # Panics
+    /// Where all paths are held.
+    pub fn held_paths(&self) -> Vec<u64> {
+        let solve = self.algorithm.large().expect(LARGE);
+        solve.paths().results().iter().map(|r| r.origin.0).collect()
+    }
+
+    /// Says which paths of the first stage are not held, before the others are absorbed.
+    ///
+    /// # Panics
+    /// Where all paths are held.
+    pub fn leave_out(&mut self, plain: PlainCounts) {
+        let solve = self.algorithm.large_mut().expect(LARGE);
+        solve.paths_mut().leave_out(plain);
+    }
+
+    /// Holds these paths, too.
+    ///
+    /// # Panics
+    /// Where all paths are held.
+    pub fn take_back(&mut self, results: Vec<PathResult>, plain: PlainCounts) {
+        let solve = self.algorithm.large_mut().expect(LARGE);
+        solve.paths_mut().take_back(results, plain);
     }
 
     /// The state, from which [`Self::restore`] goes on.

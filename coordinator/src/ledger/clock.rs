@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicI64, Ordering};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// Milliseconds since 1970 by the ledger's clock.
 #[derive(
@@ -27,19 +27,53 @@ impl LedgerTime {
 pub trait Clock: Send + Sync {
     /// Now. Never earlier than before.
     fn now(&self) -> LedgerTime;
+    /// Something happened at this time: from now on the clock does not say less. Clocks that are set by
+    /// hand go by whoever sets them.
+    fn is_at_least(&self, _seen: LedgerTime) {}
 }
 
-/// The machine's clock, held back where it would run backwards.
-#[derive(Debug, Default)]
+/// The machine's clock as it was at the start, and from then on the time that has passed: whoever sets
+/// the machine's clock forward or back ends no lease and prolongs none.
+#[derive(Debug)]
 pub struct SystemClock {
-    latest: AtomicI64,
+    begin: LedgerTime,
+    began: Instant,
+    /// What a ledger says that has seen a later time: the clock was set back between two starts.
+    at_least: AtomicI64,
+}
+
+impl Default for SystemClock {
+    fn default() -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        Self::from(LedgerTime(since.map_or(0, milliseconds)))
+    }
+}
+
+impl SystemClock {
+    /// A clock that says this now.
+    fn from(begin: LedgerTime) -> Self {
+        Self {
+            begin,
+            began: Instant::now(),
+            at_least: AtomicI64::new(begin.0),
+        }
+    }
+}
+
+fn milliseconds(duration: Duration) -> i64 {
+    i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
 }
 
 impl Clock for SystemClock {
     fn now(&self) -> LedgerTime {
-        let since = SystemTime::now().duration_since(UNIX_EPOCH);
-        let ms = since.map_or(0, |d| i64::try_from(d.as_millis()).unwrap_or(i64::MAX));
-        LedgerTime(self.latest.fetch_max(ms, Ordering::Relaxed).max(ms))
+        let begin = self.at_least.load(Ordering::Relaxed).max(self.begin.0);
+        LedgerTime(begin.saturating_add(milliseconds(self.began.elapsed())))
+    }
+
+    fn is_at_least(&self, seen: LedgerTime) {
+        let passed = milliseconds(self.began.elapsed());
+        let begin = seen.0.saturating_sub(passed);
+        self.at_least.fetch_max(begin, Ordering::Relaxed);
     }
 }
 
@@ -60,5 +94,33 @@ impl ManualClock {
 impl Clock for ManualClock {
     fn now(&self) -> LedgerTime {
         LedgerTime(self.now.load(Ordering::Relaxed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_that_was_set_back_goes_on_from_what_was_seen() {
+        let hour = 3_600_000;
+        let clock = SystemClock::default();
+        let now = clock.now();
+        let wall = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .map(milliseconds);
+        assert!(
+            (now.0 - wall.unwrap()).abs() < 60_000,
+            "milliseconds since 1970"
+        );
+        // A ledger that was written before the machine's clock was set back by an hour.
+        let seen = now.after_ms(hour);
+        clock.is_at_least(seen);
+        assert!(clock.now() >= seen && clock.now() < seen.after_ms(60_000));
+        clock.is_at_least(now);
+        assert!(clock.now() >= seen, "never earlier than before");
+        let before = clock.now();
+        std::thread::sleep(Duration::from_millis(5));
+        assert!(clock.now() > before, "and it goes on");
     }
 }

@@ -188,6 +188,26 @@ impl Store {
         self.put(bytes.await.into()).await
     }
 
+    /// Whether a record is of this kind.
+    pub async fn is_of_kind(
+        &self,
+        kind: &'static RecordKind,
+        digest: Digest,
+    ) -> Result<bool, StoreError> {
+        let address = object_address(digest);
+        match self
+            .objects
+            .get_range(&address, 0..kind.0.len() as u64)
+            .await
+        {
+            Ok(head) => Ok(head[..] == kind.0[..]),
+            Err(object_store::Error::NotFound { .. }) => {
+                Err(StoreError::Missing(address.to_string()))
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
     /// Reads what [`Self::put_record`] kept.
     pub async fn record<T: DeserializeOwned + Send + 'static>(
         &self,

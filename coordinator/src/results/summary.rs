@@ -17,6 +17,18 @@ use std::collections::BTreeMap;
 /// Solution sets as objects.
 pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL02");
 
+/// Answers of large jobs as objects.
+pub const LARGE: RecordKind = RecordKind(b"CGNLRG01");
+
+/// The answer of a job of which not all paths are held (see `solutions::plain`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LargeAnswer {
+    /// The paths that are held, ascending. The ends of the others are read from their results.
+    pub held: Vec<u64>,
+    /// The counts of all paths, and the solutions of those that are held.
+    pub set: SolutionSet,
+}
+
 /// A finished job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {

@@ -19,14 +19,17 @@ use cognate_protocol::v1::worker_api_client::WorkerApiClient;
 use cognate_protocol::{PROTOCOL_VERSION, digest, from_proto, to_proto, v1};
 use cognate_systems::system::System;
 use std::future::Future;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
+use tokio::sync::watch;
 use tonic::{Code, Status};
 
 type Client = WorkerApiClient<Way>;
 
 /// A call that should be answered at once is given up after this.
 const ANSWER: Duration = Duration::from_secs(20);
+/// A renewal that one of several coordinators does not answer is made to the next after this, long before
+/// a lease ends: one that stands still takes the call and says nothing.
+const RENEWAL_ANSWER: Duration = Duration::from_secs(2);
 /// A report may be large and is durable before it is answered.
 const REPORT_ANSWER: Duration = Duration::from_secs(120);
 
@@ -34,8 +37,8 @@ const REPORT_ANSWER: Duration = Duration::from_secs(120);
 pub struct Grpc {
     clients: Vec<Client>,
     ways: Vec<Way>,
-    /// The client that answered last.
-    current: AtomicUsize,
+    /// The client that answered last; whoever waits for another hears of the change.
+    current: watch::Sender<usize>,
     identity: v1::WorkerIdentity,
     machine: v1::Machine,
 }
@@ -64,7 +67,7 @@ impl Grpc {
         Ok(Self {
             clients,
             ways,
-            current: AtomicUsize::new(0),
+            current: watch::Sender::new(0),
             identity: v1::WorkerIdentity {
                 worker: announcement.worker.clone(),
                 session: announcement.session.clone(),
@@ -86,7 +89,15 @@ impl Grpc {
         Some(self.identity.clone())
     }
 
-    /// Makes a call to the coordinator that answered last; after a failure the next one is asked.
+    /// Ends once calls go to another coordinator than to this one.
+    async fn moved_on(&self, from: usize) {
+        let mut current = self.current.subscribe();
+        // An error: the transport is gone, and whoever waits with it.
+        let _ = current.wait_for(|&now| now != from).await;
+    }
+
+    /// Makes a call to the coordinator that answered last; after a failure the next one is asked, and
+    /// calls that still wait are made there, too.
     async fn call<T, F>(
         &self,
         patience: Duration,
@@ -95,23 +106,29 @@ impl Grpc {
     where
         F: Future<Output = Result<T, Status>> + Send,
     {
-        let current = self.current.load(Ordering::Relaxed);
+        let current = *self.current.borrow();
         let client = self.clients[current % self.clients.len()].clone();
-        let error = match tokio::time::timeout(patience, call(client)).await {
+        let answered = tokio::select! {
+            answered = tokio::time::timeout(patience, call(client)) => answered,
+            () = self.moved_on(current) => {
+                let why = "another call had no answer from this coordinator";
+                return Err(TransportError::Unavailable(why.to_owned()));
+            }
+        };
+        let error = match answered {
             Ok(Ok(answer)) => return Ok(answer),
             Ok(Err(status)) => explain(&status),
             Err(_) => {
                 TransportError::Unavailable(format!("no answer within {} s", patience.as_secs()))
             }
         };
-        if matches!(error, TransportError::Unavailable(_)) {
+        if matches!(error, TransportError::Unavailable(_)) && self.clients.len() > 1 {
             // Of several calls that fail at once, one moves on.
-            let _ = self.current.compare_exchange(
-                current,
-                current.wrapping_add(1),
-                Ordering::Relaxed,
-                Ordering::Relaxed,
-            );
+            self.current.send_if_modified(|now| {
+                let moves = *now == current;
+                *now = if moves { current.wrapping_add(1) } else { *now };
+                moves
+            });
         }
         Err(error)
     }
@@ -210,7 +227,7 @@ impl Transport for Grpc {
         wait: Duration,
     ) -> Result<Pulled, TransportError> {
         // The heartbeat is also the time to look for a better way.
-        let way = &self.ways[self.current.load(Ordering::Relaxed) % self.ways.len()];
+        let way = &self.ways[*self.current.borrow() % self.ways.len()];
         way.look_for_shared_memory().await;
         let mut machine = self.machine.clone();
         if way.by_shared_memory() {
@@ -241,8 +258,12 @@ impl Transport for Grpc {
             identity: self.identity(),
             leases: leases.iter().map(lease_id_to_proto).collect(),
         };
+        let patience = match self.clients.len() {
+            1 => ANSWER,
+            _ => RENEWAL_ANSWER,
+        };
         let call = |mut client: Client| async move { client.renew(request).await };
-        let renewals = self.call(ANSWER, call).await?.into_inner().renewals;
+        let renewals = self.call(patience, call).await?.into_inner().renewals;
         if renewals.len() != leases.len() {
             let (found, asked) = (renewals.len(), leases.len());
             let text = format!("{found} renewals for {asked} leases");

@@ -52,7 +52,10 @@ impl SqlLedger {
             tracing::warn!(path = %path.display(), kind, "the ledger is on a network file system: \
                 SQLite's locks and syncs cannot be relied on there, put it on a local disk");
         }
-        Self::open(Engine::sqlite(path, clock)).await
+        let ledger = Self::open(Engine::sqlite(path, Arc::clone(&clock))).await?;
+        // The clock may have been set back since this was written; a lease lasts no longer for that.
+        clock.is_at_least(ledger.latest().await?);
+        Ok(ledger)
     }
 
     /// Opens the ledger in the database of this URL (`postgres://user@host/database`), or makes it
@@ -70,6 +73,19 @@ impl SqlLedger {
             writer: Writer::start(engine, connection),
             readers,
         })
+    }
+
+    /// The latest time at which something happened here.
+    async fn latest(&self) -> Result<LedgerTime, LedgerError> {
+        let rows = query(
+            "SELECT MAX(COALESCE((SELECT MAX(last_seen) FROM workers), 0),
+                        COALESCE((SELECT MAX(submitted) FROM jobs), 0),
+                        COALESCE((SELECT MAX(started) FROM jobs), 0),
+                        COALESCE((SELECT MAX(ended) FROM jobs), 0)) AS latest",
+        );
+        let row = rows.read_optional(&self.readers).await?;
+        let latest = row.map_or(Ok(0), |row| row.try_get::<i64>("latest"))?;
+        Ok(LedgerTime(latest))
     }
 
     /// Writes what is under way and closes the connections.

@@ -126,6 +126,38 @@ async fn what_was_acknowledged_is_there_after_reopening() {
 }
 
 #[tokio::test]
+async fn a_lease_ends_in_time_though_the_clock_was_set_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ledger");
+    // An hour from now by whoever wrote the file.
+    let ahead = Arc::new(ManualClock::default());
+    ahead.advance_ms(u64::try_from(SystemClock::default().now().0).unwrap() + 3_600_000);
+    let ledger = SqlLedger::sqlite(&path, ahead.clone()).await.unwrap();
+    let job = ledger
+        .submit(request("r"), new_job("t", 1))
+        .await
+        .unwrap()
+        .job;
+    let epoch = ledger.steward(job, &coordinator("c"), 1).await.unwrap();
+    let open = Advance {
+        open: vec![stage(0, 10, 10)],
+        ..Advance::default()
+    };
+    ledger.advance(job, epoch.unwrap(), open).await.unwrap();
+    ledger.seen(seen("w", 1)).await.unwrap();
+    let wanted = LeaseRequest {
+        duration_ms: 200,
+        ..wants("w", "1", 1)
+    };
+    assert_eq!(ledger.lease(wanted).await.unwrap().len(), 1);
+    ledger.close().await;
+    let again = reopen(&path).await.unwrap();
+    assert!(again.now().await.unwrap() >= ahead.now());
+    tokio::time::sleep(std::time::Duration::from_millis(400)).await;
+    assert_eq!(again.expire().await.unwrap().len(), 1, "not an hour later");
+}
+
+#[tokio::test]
 async fn later_and_foreign_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ledger");

@@ -1,0 +1,426 @@
+//! Plain paths: ends that are understood without any other, so that a large solve need not hold them.
+//!
+//! A path is plain when it ends clearly at infinity, or at a regular point with no other regular end near
+//! it. Of its end a key is kept, 24 bytes; the end itself is read again from where results are stored when
+//! it is asked for. All others are held, and treated as in a solve that holds everything. As nearly all
+//! paths of a good solve are plain, memory grows with the number of paths by their keys only.
+
+use crate::classification::{Tolerances, Verdict, classify};
+use crate::involution::Involution;
+use crate::path_crossing::radius;
+use crate::point_shape::PointShape;
+use crate::real::is_real;
+use crate::solution::{NamedValues, Solution};
+use crate::solution_set::SolutionSet;
+use crate::unique_points::projection::Projection;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Plain paths, counted. What is counted can be taken away again.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlainCounts {
+    /// At a finite regular point.
+    pub finite: u64,
+    /// At infinity.
+    pub at_infinity: u64,
+    /// Of these: not at a regular point, so that something of positive dimension may be there.
+    pub not_regular: u64,
+    /// At a real point; 0 where that is not asked.
+    pub real: u64,
+    /// By the highest precision that they used, in bits.
+    pub by_precision: BTreeMap<u32, u64>,
+}
+
+impl PlainCounts {
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.finite + self.at_infinity
+    }
+}
+
+/// What a path is by its own end alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// To be held, whatever else there is.
+    Special,
+    /// At infinity, and no other end matters to it.
+    Away,
+    /// At a regular point: plain where no other is near.
+    Regular(Verdict),
+}
+
+/// Tells plain paths from others, by the rules of `classification` and `path_crossing`.
+#[derive(Clone, Debug)]
+pub struct Sieve {
+    shape: PointShape,
+    tolerances: Tolerances,
+    projection: Projection,
+    involution: Option<Involution>,
+    variables: Vec<String>,
+}
+
+impl Sieve {
+    /// For ends of this system's paths, where its parameters have these values.
+    pub fn new(
+        system: &System,
+        parameters: &[Complex64],
+        tolerances: &Tolerances,
+        seed: u64,
+    ) -> Self {
+        let shape = PointShape::of(system);
+        Self {
+            projection: Projection::new(&shape, seed),
+            tolerances: tolerances.clone(),
+            involution: Involution::of(system, parameters).ok(),
+            variables: system.variables.clone(),
+            shape,
+        }
+    }
+
+    /// False for systems whose solutions are compared with each other beyond being equal, or counted in
+    /// named sets: there every end is held.
+    pub fn suits(system: &System) -> bool {
+        system.degenerate.is_empty() && system.symmetry.is_empty()
+    }
+
+    fn kind(&self, result: &PathResult) -> Kind {
+        let decision = classify(result, &self.shape, &self.tolerances);
+        match (decision.verdict, result.outcome) {
+            _ if decision.by_precision_limit => Kind::Special,
+            (_, PathOutcome::Regular) if result.winding_number.is_some_and(|w| w > 1) => {
+                Kind::Special
+            }
+            (verdict @ (Verdict::Finite | Verdict::AtInfinity), PathOutcome::Regular) => {
+                Kind::Regular(verdict)
+            }
+            (Verdict::AtInfinity, _) => Kind::Away,
+            _ => Kind::Special,
+        }
+    }
+
+    /// Where the number of a point may lie, for ends that another may coincide with.
+    fn key(&self, result: &PathResult) -> Option<Key> {
+        let verdict = classify(result, &self.shape, &self.tolerances).verdict;
+        if result.outcome != PathOutcome::Regular || verdict == Verdict::Failed {
+            return None;
+        }
+        let point = result.endpoint.to_double();
+        let value = self.projection.value(&self.shape, point);
+        let margin =
+            self.projection.slope() * radius(result, &self.tolerances) + self.projection.rounding();
+        Some(Key {
+            from: value - margin,
+            to: value + margin,
+            path: result.origin.0,
+        })
+    }
+
+    fn is_real(&self, result: &PathResult) -> Option<bool> {
+        let involution = self.involution.as_ref()?;
+        let point = result.endpoint.to_double();
+        let radius = radius(result, &self.tolerances);
+        Some(is_real(point, radius, &self.shape, involution))
+    }
+
+    /// What becomes of a plain path, and the solution that it ends at where it is finite: the same that a
+    /// `SolutionSet` would have. Meant for plain paths only.
+    pub fn answer(&self, result: &PathResult) -> (Verdict, Option<Solution>) {
+        let verdict = classify(result, &self.shape, &self.tolerances).verdict;
+        if verdict != Verdict::Finite {
+            return (verdict, None);
+        }
+        let values = self.shape.to_variables(result.endpoint.to_double());
+        let winding = result.winding_number.unwrap_or(1).max(1);
+        let solution = Solution {
+            variables: NamedValues(self.variables.iter().cloned().zip(values).collect()),
+            multiplicity: 1,
+            cycles: vec![winding],
+            real: self.is_real(result),
+            singular: false,
+            residual: result.residual,
+            condition: result.condition,
+            accuracy: result.accuracy,
+            precision_bits: result.precision_bits,
+            class: None,
+            paths: vec![result.origin.0],
+            certificate: None,
+        };
+        (verdict, Some(solution))
+    }
+
+    /// The shape of the points.
+    pub fn shape(&self) -> &PointShape {
+        &self.shape
+    }
+}
+
+/// Where the number of an end may lie (see `unique_points`), and whose it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    from: f64,
+    to: f64,
+    path: u64,
+}
+
+/// All paths of a large stage: counts and keys of those that are plain, the names of the others.
+#[derive(Clone, Debug)]
+pub struct Crowd {
+    sieve: Sieve,
+    counts: PlainCounts,
+    /// Sorted once all are seen.
+    keys: Vec<Key>,
+    widest: f64,
+    special: Vec<u64>,
+}
+
+impl Crowd {
+    /// Nobody yet; room for the keys of so many paths.
+    pub fn new(sieve: Sieve, paths: u64) -> Self {
+        Self {
+            sieve,
+            counts: PlainCounts::default(),
+            // A vector that grows by doubling would hold three times as much for a moment.
+            keys: Vec::with_capacity(usize::try_from(paths).unwrap_or(0)),
+            widest: 0.0,
+            special: Vec::new(),
+        }
+    }
+
+    /// By what paths are told apart.
+    pub fn sieve(&self) -> &Sieve {
+        &self.sieve
+    }
+
+    /// The plain paths, counted. Those that are near each other are counted too, until they are taken back.
+    pub fn counts(&self) -> &PlainCounts {
+        &self.counts
+    }
+
+    /// One more path. All of a stage come in the order of their indices, then [`Self::settle`].
+    pub fn see(&mut self, result: &PathResult) {
+        if self.sieve.kind(result) == Kind::Special {
+            self.special.push(result.origin.0);
+        } else {
+            self.count(result, |count| *count += 1);
+        }
+        if let Some(key) = self.sieve.key(result) {
+            self.widest = self.widest.max(key.to - key.from);
+            self.keys.push(key);
+        }
+    }
+
+    fn count(&mut self, result: &PathResult, change: impl Fn(&mut u64)) {
+        let counts = &mut self.counts;
+        match self.sieve.kind(result) {
+            Kind::Special => return,
+            Kind::Away => {
+                change(&mut counts.at_infinity);
+                change(&mut counts.not_regular);
+            }
+            Kind::Regular(Verdict::Finite) => {
+                change(&mut counts.finite);
+                if self.sieve.is_real(result) == Some(true) {
+                    change(&mut counts.real);
+                }
+            }
+            Kind::Regular(_) => change(&mut counts.at_infinity),
+        }
+        let of_bits = counts
+            .by_precision
+            .entry(result.precision_bits)
+            .or_default();
+        change(of_bits);
+        if *of_bits == 0 {
+            counts.by_precision.remove(&result.precision_bits);
+        }
+    }
+
+    /// Once all are seen: the paths that must be held, ascending. Each is to be given to [`Self::take_back`]
+    /// with its result before anything else is asked.
+    pub fn settle(&mut self) -> Vec<u64> {
+        self.keys
+            .sort_unstable_by(|a, b| a.from.total_cmp(&b.from).then(a.path.cmp(&b.path)));
+        let mut held = std::mem::take(&mut self.special);
+        let mut first = 0;
+        while first < self.keys.len() {
+            // A chain of intervals of which each meets one before it.
+            let (mut end, mut reach) = (first + 1, self.keys[first].to);
+            while end < self.keys.len() && self.keys[end].from <= reach {
+                reach = reach.max(self.keys[end].to);
+                end += 1;
+            }
+            if end - first > 1 {
+                held.extend(self.keys[first..end].iter().map(|key| key.path));
+            }
+            first = end;
+        }
+        held.sort_unstable();
+        held.dedup();
+        held
+    }
+
+    /// These paths, ascending, are held from now on, and so neither counted here nor found by
+    /// [`Self::near`].
+    pub fn take_back(&mut self, results: &[PathResult]) {
+        for result in results {
+            self.count(result, |count| *count -= 1);
+        }
+        self.forget(|path| results.binary_search_by_key(&path, |r| r.origin.0).is_ok());
+    }
+
+    /// Drops the keys of these paths: they are held, and were counted out before.
+    pub fn forget(&mut self, held: impl Fn(u64) -> bool) {
+        self.keys.retain(|key| !held(key.path));
+    }
+
+    /// The plain paths, ascending, whose ends may be at the ends of these others.
+    pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
+        let mut found = Vec::new();
+        for key in others.iter().filter_map(|result| self.sieve.key(result)) {
+            let first = (self.keys).partition_point(|old| old.from < key.from - self.widest);
+            let reached = self.keys[first..].iter();
+            let reached = reached.take_while(|old| old.from <= key.to);
+            found.extend(reached.filter(|old| old.to >= key.from).map(|old| old.path));
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+}
+
+impl SolutionSet {
+    /// The set of all paths, from the set of those that are held: the solutions of the others are
+    /// counted, and not in the list.
+    #[must_use]
+    pub fn with_plain(mut self, plain: &PlainCounts) -> Self {
+        let paths = &mut self.paths;
+        paths.total += plain.total();
+        paths.finite += plain.finite;
+        paths.at_infinity += plain.at_infinity;
+        for (&bits, &count) in &plain.by_precision {
+            *paths.by_precision.entry(bits).or_default() += count;
+            paths.highest_precision_bits = paths.highest_precision_bits.max(bits);
+        }
+        assert_eq!(paths.sum(), paths.total, "every path is in one class");
+        let counts = &mut self.counts;
+        counts.distinct += plain.finite;
+        counts.nonsingular += plain.finite;
+        counts.with_multiplicity += plain.finite;
+        counts.real = counts.real.map(|real| real + plain.real);
+        if plain.not_regular > 0 {
+            counts.positive_dimensional = counts.positive_dimensional.filter(|&there| there);
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solution_set::History;
+    use crate::test_results::{failed, regular, singular};
+    use cognate_numeric::random::{Purpose, RandomStream};
+    use cognate_systems::system::VariableGroup;
+
+    /// x^7 = x in one variable.
+    fn system() -> System {
+        let mut system = System {
+            variables: vec!["x".into()],
+            groups: vec![VariableGroup {
+                variables: vec![0],
+                homogeneous: false,
+            }],
+            equation_names: vec!["f".into()],
+            ..System::default()
+        };
+        let e = &mut system.expressions;
+        let x = e.variable(0);
+        let power = e.power(x, 7);
+        system.equations = vec![e.subtract(power, x)];
+        system
+    }
+
+    /// Ends of all kinds, many of them near each other.
+    fn ends(count: u64) -> Vec<PathResult> {
+        let mut random = RandomStream::new(3, Purpose::Test, 9);
+        let mut place = |k: u64| match k % 11 {
+            0 => (0.25, 0.0),
+            1 => (f64::from(u32::try_from(k).unwrap()) / 1e4, 0.0),
+            _ => {
+                let z = random.disc();
+                (z.re, z.im)
+            }
+        };
+        (0..count)
+            .map(|k| match k % 23 {
+                3 => failed(k),
+                5 => singular(k, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0]),
+                7 => singular(k, &[(1e-15, 0.0), (1.0, 0.0)], 1, &[1]),
+                9 => regular(k, &[(1e-17, 0.0), (1.0, 0.0)]),
+                _ => regular(k, &[(1.0, 0.0), place(k)]),
+            })
+            .collect()
+    }
+
+    fn whole(results: &[PathResult], history: &History) -> SolutionSet {
+        SolutionSet::new(&system(), &[], results, history, &Tolerances::default(), 5)
+    }
+
+    fn crowd(results: &[PathResult]) -> (Crowd, Vec<PathResult>) {
+        let sieve = Sieve::new(&system(), &[], &Tolerances::default(), 5);
+        let mut crowd = Crowd::new(sieve, results.len() as u64);
+        results.iter().for_each(|result| crowd.see(result));
+        let held = crowd.settle();
+        let held: Vec<PathResult> = held.iter().map(|&k| results[k as usize].clone()).collect();
+        crowd.take_back(&held);
+        (crowd, held)
+    }
+
+    #[test]
+    fn what_is_held_and_what_is_counted_make_up_the_whole() {
+        for count in [0, 1, 40, 700] {
+            let results = ends(count);
+            for complete_start in [false, true] {
+                let history = History {
+                    complete_start,
+                    ..History::default()
+                };
+                let expected = whole(&results, &history);
+                let (crowd, held) = crowd(&results);
+                assert_eq!(crowd.counts().total() + held.len() as u64, count);
+                assert!(count < 700 || crowd.counts().finite > 300, "most are plain");
+                let mut found = whole(&held, &history).with_plain(crowd.counts());
+                // The solutions of the others are made of their results.
+                let is_held = |r: &&PathResult| held.iter().any(|h| h.origin == r.origin);
+                let others = results.iter().filter(|r| !is_held(r));
+                found
+                    .solutions
+                    .extend(others.filter_map(|r| crowd.sieve().answer(r).1));
+                found.solutions.sort_by_key(|solution| solution.paths[0]);
+                assert_eq!(found, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_plain_end_is_found_when_another_comes_there_later() {
+        let results = ends(700);
+        let (mut crowd, held) = crowd(&results);
+        let plain = results
+            .iter()
+            .find(|r| !held.iter().any(|h| h.origin == r.origin));
+        let plain = plain.expect("most are plain");
+        let mut late = plain.clone();
+        late.origin = held[0].origin;
+        assert_eq!(crowd.near(&[late.clone()]), [plain.origin.0]);
+        assert_eq!(crowd.near(&[held[0].clone()]), [] as [u64; 0]);
+        let before = crowd.counts().total();
+        crowd.take_back(std::slice::from_ref(plain));
+        assert_eq!(crowd.counts().total(), before - 1);
+        assert_eq!(crowd.near(&[late]), [] as [u64; 0]);
+    }
+}

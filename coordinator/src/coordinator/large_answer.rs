@@ -1,0 +1,253 @@
+//! The answer of a large job: what is not held is read again from its results, a chunk at a time.
+
+use super::answers::ClassifiedPath;
+use super::{Coordinator, CoordinatorError, job_row};
+use crate::jobs::large_stage::{page, read};
+use crate::jobs::planning::STATE;
+use crate::ledger::identity::JobId;
+use crate::ledger::rows::JobRow;
+use crate::results::summary::{LARGE, LargeAnswer};
+use cognate_algorithms::AnyAlgorithm;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::{StageId, Work};
+use cognate_solutions::classification::{Tolerances, Verdict, classify};
+use cognate_solutions::plain::Sieve;
+use cognate_solutions::solution::Solution;
+use cognate_solutions::solution_set::SolutionSet;
+use futures::StreamExt;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+use tokio::sync::mpsc;
+
+/// A path, and the solution that is named for it: that of which it is the first path.
+pub type Answered = (ClassifiedPath, Option<Solution>);
+
+/// Chunks of answers that wait for a client.
+const AHEAD: usize = 1;
+
+impl Coordinator {
+    /// A solved job's answer, where it is large.
+    pub(super) async fn large(
+        &self,
+        row: &JobRow,
+    ) -> Result<Option<LargeAnswer>, CoordinatorError> {
+        match row.solutions {
+            Some(digest) if self.store.is_of_kind(&LARGE, digest).await? => {
+                Ok(Some(self.store.record(&LARGE, digest).await?))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// All paths of a large job by their indices, each with its solution if it is the first to end there;
+    /// a chunk at a time, as fast as they are taken. `None` where the job is not large.
+    pub async fn answers(
+        self: &Arc<Self>,
+        job: JobId,
+    ) -> Result<Option<mpsc::Receiver<Result<Vec<Answered>, CoordinatorError>>>, CoordinatorError>
+    {
+        let row = self.solved(job).await?;
+        let Some(answer) = self.large(&row).await? else {
+            return Ok(None);
+        };
+        let (sender, receiver) = mpsc::channel(AHEAD);
+        let coordinator = Arc::clone(self);
+        tokio::spawn(async move {
+            if let Err(error) = coordinator.tell(&row, answer, &sender).await {
+                // Whoever asked may have gone.
+                let _ = sender.send(Err(error)).await;
+            }
+        });
+        Ok(Some(receiver))
+    }
+
+    /// All of them at once.
+    pub(super) async fn all_answers(
+        self: &Arc<Self>,
+        job: JobId,
+    ) -> Result<Option<Vec<Answered>>, CoordinatorError> {
+        let Some(mut receiver) = self.answers(job).await? else {
+            return Ok(None);
+        };
+        let mut all = Vec::new();
+        while let Some(some) = receiver.recv().await {
+            all.extend(some?);
+        }
+        Ok(Some(all))
+    }
+
+    async fn tell(
+        &self,
+        row: &JobRow,
+        answer: LargeAnswer,
+        listener: &mpsc::Sender<Result<Vec<Answered>, CoordinatorError>>,
+    ) -> Result<(), CoordinatorError> {
+        let job = row.job;
+        let system = self.problem(row.asked.problem).await?;
+        let unreadable = |what: String| {
+            CoordinatorError::Problem(format!("the state of job {job} cannot be read: {what}"))
+        };
+        let state = row
+            .snapshot
+            .ok_or_else(|| unreadable("there is none".into()))?;
+        let state: Vec<u8> = self.store.record(&STATE, state).await?;
+        let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
+        let solve = algorithm
+            .large()
+            .ok_or_else(|| unreadable("it is of another kind".into()))?;
+        let first = solve.paths().first().id;
+        let mut teller = Teller {
+            sieve: solve.sieve(&system),
+            again: self.tracked_again(job, first).await?,
+            held: Held::new(answer),
+            number: 0,
+        };
+        let mut from = 0;
+        loop {
+            let objects = page(&*self.ledger, job, first, from).await?;
+            let Some(last) = objects.last() else {
+                return Ok(());
+            };
+            from = last.items.last;
+            let mut chunks = std::pin::pin!(read(&self.store, objects));
+            while let Some(results) = chunks.next().await {
+                let results = results?;
+                let telling = tokio::task::spawn_blocking(move || {
+                    let told = results.into_iter().map(|r| teller.tell(r)).collect();
+                    (teller, told)
+                });
+                let told;
+                (teller, told) = match telling.await {
+                    Ok(done) => done,
+                    Err(error) => std::panic::resume_unwind(error.into_panic()),
+                };
+                if listener.send(Ok(told)).await.is_err() {
+                    return Ok(());
+                }
+            }
+        }
+    }
+
+    /// The last results of paths that were tracked more than once.
+    async fn tracked_again(
+        &self,
+        job: JobId,
+        first: StageId,
+    ) -> Result<HashMap<u64, PathResult>, CoordinatorError> {
+        let mut again = HashMap::new();
+        let stages = self.ledger.stages(job).await?.into_iter();
+        for stage in stages.filter(|stage| stage.stage > first) {
+            if self.stage_of(stage.definition).await?.work != Work::Track {
+                continue; // its items are no paths
+            }
+            let mut from = 0;
+            loop {
+                let objects = page(&*self.ledger, job, stage.stage, from).await?;
+                let Some(last) = objects.last() else { break };
+                from = last.items.last;
+                let mut chunks = std::pin::pin!(read(&self.store, objects));
+                while let Some(results) = chunks.next().await {
+                    again.extend(results?.into_iter().map(|r| (r.origin.0, r)));
+                }
+            }
+        }
+        Ok(again)
+    }
+
+    /// The solution set of a large job with all its solutions.
+    pub(super) async fn whole(
+        self: &Arc<Self>,
+        job: JobId,
+    ) -> Result<Option<SolutionSet>, CoordinatorError> {
+        let row = job_row(&*self.ledger, job).await?;
+        let Some(answer) = self.large(&row).await? else {
+            return Ok(None);
+        };
+        let answers = self.all_answers(job).await?.unwrap_or_default();
+        Ok(Some(SolutionSet {
+            solutions: answers.into_iter().filter_map(|(_, s)| s).collect(),
+            ..answer.set
+        }))
+    }
+}
+
+/// What is known of the paths that are held.
+struct Held {
+    paths: Vec<u64>,
+    solutions: Vec<Solution>,
+    /// Of each solution the number among all.
+    numbers: Vec<Option<u64>>,
+    /// The solution of each path.
+    solution_of: HashMap<u64, usize>,
+    failed: HashSet<u64>,
+    on_sets: HashSet<u64>,
+}
+
+impl Held {
+    fn new(answer: LargeAnswer) -> Self {
+        let set = answer.set;
+        let ends = |(k, solution): (usize, &Solution)| -> Vec<(u64, usize)> {
+            solution.paths.iter().map(|&path| (path, k)).collect()
+        };
+        Self {
+            paths: answer.held,
+            solution_of: set.solutions.iter().enumerate().flat_map(ends).collect(),
+            numbers: vec![None; set.solutions.len()],
+            failed: set.failed.iter().map(|f| f.path).collect(),
+            on_sets: set.on_positive_dimensional_sets.iter().copied().collect(),
+            solutions: set.solutions,
+        }
+    }
+}
+
+/// Tells path after path, in the order of their indices.
+struct Teller {
+    sieve: Sieve,
+    again: HashMap<u64, PathResult>,
+    held: Held,
+    /// How many solutions were named.
+    number: u64,
+}
+
+impl Teller {
+    fn next_number(&mut self) -> u64 {
+        self.number += 1;
+        self.number - 1
+    }
+
+    fn tell(&mut self, result: PathResult) -> Answered {
+        let path = result.origin.0;
+        if self.held.paths.binary_search(&path).is_err() {
+            let (verdict, solution) = self.sieve.answer(&result);
+            let number = solution.is_some().then(|| self.next_number());
+            let path = ClassifiedPath {
+                verdict,
+                solution: number,
+                result,
+            };
+            return (path, solution);
+        }
+        let result = self.again.remove(&path).unwrap_or(result);
+        let verdict = if self.held.failed.contains(&path) {
+            Verdict::Failed
+        } else if self.held.on_sets.contains(&path) {
+            Verdict::PositiveDimensional
+        } else {
+            classify(&result, self.sieve.shape(), &Tolerances::default()).verdict
+        };
+        let at = self.held.solution_of.get(&path).copied();
+        let mut begun = None;
+        if let Some(at) = at
+            && self.held.numbers[at].is_none()
+        {
+            self.held.numbers[at] = Some(self.next_number());
+            begun = Some(self.held.solutions[at].clone());
+        }
+        let path = ClassifiedPath {
+            verdict,
+            solution: at.and_then(|at| self.held.numbers[at]),
+            result,
+        };
+        (path, begun)
+    }
+}

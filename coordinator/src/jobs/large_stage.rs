@@ -1,0 +1,245 @@
+//! LargeStage: a stage of more paths than are held in memory, absorbed from the objects of its results.
+//!
+//! Twice all results are read, a chunk at a time: once to tell plain paths from others (see
+//! `solutions::plain`), once to fetch the others, which the algorithm gets. When it tracks some again, the
+//! plain paths that may end where those do now are fetched, too.
+
+use super::drive::{DriveError, Tools};
+use super::steward::{Steward, Wanted};
+use crate::ledger::LedgerError;
+use crate::ledger::identity::JobId;
+use crate::ledger::rows::{ChunkRow, ChunkState, ResultObject};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::StageId;
+use cognate_solutions::plain::Crowd;
+use futures::{Stream, StreamExt};
+
+/// Result objects that are read at once.
+const READ_AHEAD: usize = 8;
+/// Chunk rows that are read at once.
+const PAGE: u32 = 1000;
+
+/// Where the results of a finished chunk are.
+pub fn object_of(row: ChunkRow) -> Option<ResultObject> {
+    match row.state {
+        ChunkState::Accepted { result, .. } | ChunkState::Failed { result } => Some(result),
+        _ => None,
+    }
+}
+
+/// The objects of a stage's results from item `from` on, in order, a page of them; empty at the end.
+pub async fn page(
+    ledger: &dyn crate::ledger::Ledger,
+    job: JobId,
+    stage: StageId,
+    from: u64,
+) -> Result<Vec<ResultObject>, LedgerError> {
+    let rows = ledger.finished_chunks(job, stage, from, PAGE).await?;
+    Ok(rows.into_iter().filter_map(object_of).collect())
+}
+
+/// The results of these objects, in their order; some are read ahead.
+pub fn read<'a>(
+    store: &'a crate::results::store::Store,
+    objects: Vec<ResultObject>,
+) -> impl Stream<Item = Result<Vec<PathResult>, crate::results::store::StoreError>> + 'a {
+    futures::stream::iter(objects)
+        .map(move |object| async move { store.results(&object).await })
+        .buffered(READ_AHEAD)
+}
+
+/// All results of a complete stage, in the order of its items.
+pub async fn all(
+    tools: &Tools<'_>,
+    job: JobId,
+    stage: StageId,
+) -> Result<Vec<PathResult>, DriveError> {
+    let mut results = Vec::new();
+    let mut from = 0;
+    loop {
+        let objects = page(tools.ledger, job, stage, from).await?;
+        let Some(last) = objects.last() else {
+            return Ok(results);
+        };
+        from = last.items.last;
+        let mut chunks = std::pin::pin!(read(tools.store, objects));
+        while let Some(chunk) = chunks.next().await {
+            results.extend(chunk?);
+        }
+    }
+}
+
+/// Those of a stage's results whose paths are named, ascending.
+async fn fetch(
+    tools: &Tools<'_>,
+    job: JobId,
+    stage: StageId,
+    paths: &[u64],
+) -> Result<Vec<PathResult>, DriveError> {
+    let mut found = Vec::with_capacity(paths.len());
+    let mut from = 0;
+    let mut wanted = paths;
+    while let Some(&next) = wanted.first() {
+        let objects = page(tools.ledger, job, stage, from).await?;
+        let Some(last) = objects.last() else { break };
+        from = last.items.last;
+        // Items of a first stage are its paths.
+        let touched = objects
+            .into_iter()
+            .filter(|object| {
+                let at = paths.partition_point(|&path| path < object.items.first);
+                object.items.last > next && paths.get(at).is_some_and(|&p| p < object.items.last)
+            })
+            .collect();
+        let mut chunks = std::pin::pin!(read(tools.store, touched));
+        while let Some(results) = chunks.next().await {
+            for result in results? {
+                if wanted.first() == Some(&result.origin.0) {
+                    wanted = &wanted[1..];
+                    found.push(result);
+                }
+            }
+        }
+    }
+    if found.len() == paths.len() {
+        Ok(found)
+    } else {
+        // A worker was outvoted in between, and what it did is done again.
+        Err(LedgerError::Fenced(job).into())
+    }
+}
+
+/// All paths of a stage, seen one by one.
+async fn see_all(
+    tools: &Tools<'_>,
+    job: JobId,
+    stage: StageId,
+    mut crowd: Crowd,
+) -> Result<(Crowd, u64), DriveError> {
+    let (mut from, mut seen) = (0, 0);
+    loop {
+        let objects = page(tools.ledger, job, stage, from).await?;
+        let Some(last) = objects.last() else {
+            return Ok((crowd, seen));
+        };
+        from = last.items.last;
+        let mut chunks = std::pin::pin!(read(tools.store, objects));
+        while let Some(results) = chunks.next().await {
+            let results = results?;
+            seen += results.len() as u64;
+            crowd = elsewhere(move || {
+                results.iter().for_each(|result| crowd.see(result));
+                crowd
+            })
+            .await;
+        }
+    }
+}
+
+/// Work that holds nobody up.
+async fn elsewhere<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+    match tokio::task::spawn_blocking(work).await {
+        Ok(value) => value,
+        Err(error) => std::panic::resume_unwind(error.into_panic()),
+    }
+}
+
+/// What is remembered of a large first stage from one absorption to the next.
+#[derive(Default)]
+pub struct LargeStage {
+    crowd: Option<Crowd>,
+}
+
+impl LargeStage {
+    /// Absorbs a complete stage of a job whose first stage is large; what the algorithm wants then.
+    pub async fn absorb(
+        &mut self,
+        tools: &Tools<'_>,
+        job: JobId,
+        steward: &mut Option<Steward>,
+        (stage, items): (StageId, u64),
+    ) -> Result<Wanted, DriveError> {
+        const HERE: &str = "the steward is back before the step ends";
+        let first = steward.as_ref().expect(HERE).first_stage();
+        if stage == first {
+            let crowd = steward.as_ref().expect(HERE).crowd(items);
+            let (mut crowd, seen) = see_all(tools, job, stage, crowd).await?;
+            if seen != items {
+                return Err(LedgerError::Fenced(job).into());
+            }
+            let (settled, held) = elsewhere(move || {
+                let held = crowd.settle();
+                (crowd, held)
+            })
+            .await;
+            crowd = settled;
+            let held = fetch(tools, job, stage, &held).await?;
+            tracing::info!(%job, paths = items, held = held.len(), "most paths need not be held");
+            crowd.take_back(&held);
+            let mut taken = steward.take().expect(HERE);
+            let plain = crowd.counts().clone();
+            let (back, wanted) = elsewhere(move || {
+                taken.leave_out(plain);
+                let wanted = taken.absorb(stage, held);
+                (taken, wanted)
+            })
+            .await;
+            *steward = Some(back);
+            self.crowd = Some(crowd);
+            return Ok(wanted);
+        }
+        let results = all(tools, job, stage).await?;
+        if results.len() as u64 != items {
+            return Err(LedgerError::Fenced(job).into());
+        }
+        let tracked = steward.as_ref().expect(HERE).tracks(stage);
+        let mut crowd = match self.crowd.take() {
+            Some(crowd) => crowd,
+            // Another coordinator began: what it remembered is in the objects.
+            None => {
+                self.recall(tools, job, steward.as_ref().expect(HERE))
+                    .await?
+            }
+        };
+        // Other stages say more of ends that are held.
+        let near = if tracked {
+            crowd.near(&results)
+        } else {
+            Vec::new()
+        };
+        let near = fetch(tools, job, first, &near).await?;
+        crowd.take_back(&near);
+        let mut taken = steward.take().expect(HERE);
+        let plain = crowd.counts().clone();
+        let (back, wanted) = elsewhere(move || {
+            taken.take_back(near, plain);
+            let wanted = taken.absorb(stage, results);
+            (taken, wanted)
+        })
+        .await;
+        *steward = Some(back);
+        self.crowd = Some(crowd);
+        Ok(wanted)
+    }
+
+    /// The crowd as it was when the algorithm's state was kept.
+    async fn recall(
+        &self,
+        tools: &Tools<'_>,
+        job: JobId,
+        steward: &Steward,
+    ) -> Result<Crowd, DriveError> {
+        let first = steward.first_stage();
+        let held = steward.held_paths();
+        let (crowd, _) = see_all(tools, job, first, steward.crowd(0)).await?;
+        let mut crowd = elsewhere(move || {
+            let mut crowd = crowd;
+            crowd.settle();
+            crowd
+        })
+        .await;
+        let results = fetch(tools, job, first, &held).await?;
+        crowd.take_back(&results);
+        Ok(crowd)
+    }
+}

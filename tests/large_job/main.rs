@@ -1,0 +1,288 @@
+//! A large job: millions of made-up path results through a real coordinator, whose memory is measured.
+//!
+//! `target/release/large_job [--degree 20] [--memory-mib 0]`: four equations of this degree, so degree^4
+//! paths (57: 10,556,001). Nobody tracks them: threads of this program pull chunks and report made-up
+//! ends. Two paths of a hundred go to infinity, one of 10,000 fails and one of 50,000 ends where the one
+//! before does, until they are tracked again; every count is checked at the end, and every solution and
+//! every path is asked for. With `--memory-mib` the coordinator may take no more. What it gave:
+//! `large_job/report.md`.
+
+use cognate_protocol::v1::worker_api_client::WorkerApiClient;
+use cognate_protocol::{from_proto, v1};
+use cognate_tests::arguments::{number, options, or_exit};
+use cognate_tests::client::{Client, Submission, total};
+use cognate_tests::cluster::{Cluster, CoordinatorOptions};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use tonic::transport::Channel;
+
+type Calls = WorkerApiClient<Channel>;
+
+/// Paths of a chunk.
+const CHUNK: u64 = 10_000;
+/// Threads that make results up.
+const WORKERS: usize = 2;
+const VARIABLES: u64 = 4;
+/// The job takes no longer.
+const PATIENCE: Duration = Duration::from_secs(4 * 3600);
+
+/// What becomes of a path.
+fn is_at_infinity(path: u64) -> bool {
+    path % 100 >= 98
+}
+
+fn fails_at_first(path: u64) -> bool {
+    path % 10_000 == 5
+}
+
+fn meets_at_first(path: u64) -> bool {
+    path % 50_000 == 40_011
+}
+
+/// A number in 0..1 by a seed (SplitMix64).
+fn uniform(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (z ^ (z >> 31)) as f64 / u64::MAX as f64
+}
+
+/// Somewhere, the same for the same path: homogenising coordinate first.
+fn point(path: u64) -> Vec<f64> {
+    let mut state = path.wrapping_mul(0x2545_f491_4f6c_dd1d);
+    let coordinate = |_| 2.0 * uniform(&mut state) - 1.0;
+    let mut point: Vec<f64> = (0..2 * (VARIABLES + 1)).map(coordinate).collect();
+    point[0] = 1.0;
+    point[1] = 0.0;
+    point
+}
+
+fn result(path: u64, attempt: u32) -> v1::PathResult {
+    let outcome = if is_at_infinity(path) {
+        v1::PathOutcome::Diverging
+    } else if fails_at_first(path) && attempt == 0 {
+        v1::PathOutcome::StepTooSmall
+    } else {
+        v1::PathOutcome::Regular
+    };
+    let place = if meets_at_first(path) && attempt == 0 {
+        path - 1
+    } else {
+        path
+    };
+    v1::PathResult {
+        origin: path,
+        attempt,
+        outcome: outcome.into(),
+        endpoint: point(place),
+        t: Some(v1::Complex { re: 0.0, im: 0.0 }),
+        residual: 1e-16,
+        condition: 10.0 + (path % 97) as f64,
+        accuracy: 1e-15,
+        precision_bits: 53,
+        counts: Some(v1::Counts {
+            steps: 40 + (path % 13) as u32,
+            evaluations: 130 + (path % 31) as u32,
+            ..v1::Counts::default()
+        }),
+        ..v1::PathResult::default()
+    }
+}
+
+/// Pulls, makes up and reports until there is nothing more to do.
+fn work(address: &str, name: &str, done: &AtomicBool) {
+    let client = Client::connect(address).expect("the coordinator answers");
+    let info = |mut client: v1::client_api_client::ClientApiClient<Channel>| async move {
+        client.get_server_info(v1::GetServerInfoRequest {}).await
+    };
+    let info = client
+        .call(info)
+        .expect("the coordinator answers")
+        .into_inner();
+    let identity = || {
+        Some(v1::WorkerIdentity {
+            worker: name.to_owned(),
+            session: format!("{name}-1"),
+        })
+    };
+    let mut sequence = 0;
+    while !done.load(Ordering::Relaxed) {
+        sequence += 1;
+        let request = v1::PullRequest {
+            identity: identity(),
+            sequence,
+            free_slots: 1,
+            wait_ms: 500,
+            machine: Some(v1::Machine {
+                version: "made up".to_owned(),
+                protocol_version: info.protocol_version,
+                numerics_revision: info.numerics_revision,
+                instruction_set: "none".to_owned(),
+                lane_width: 1,
+                threads: 1,
+                host: "here".to_owned(),
+                transport: "grpc".to_owned(),
+            }),
+        };
+        let pulled = client.call_as_worker(|mut c: Calls| async move { c.pull(request).await });
+        for lease in pulled.expect("an answer").into_inner().leases {
+            let id = lease.id.clone().expect("a lease has an id");
+            let request = v1::GetStageRequest {
+                job: id.job,
+                stage: id.stage,
+            };
+            let get = |mut c: Calls| async move { c.get_stage(request).await };
+            let stage = client.call_as_worker(get).expect("a stage").into_inner();
+            let stage = from_proto::path::stage(&stage).expect("a stage");
+            let attempt = u32::from(stage.attempt);
+            let items = lease.first..lease.first + lease.count;
+            let report = v1::ReportRequest {
+                identity: identity(),
+                chunks: vec![v1::ChunkReport {
+                    lease: lease.id,
+                    results: items.map(|k| result(stage.origin(k), attempt)).collect(),
+                    cpu_nanoseconds: 1_000_000_000,
+                    wall_nanoseconds: 1_000_000_000,
+                }],
+            };
+            let report = |mut c: Calls| async move { c.report(report).await };
+            let verdicts = client
+                .call_as_worker(report)
+                .expect("an answer")
+                .into_inner();
+            let verdict = verdicts.verdicts[0].verdict();
+            assert_eq!(verdict, v1::Verdict::Accepted, "{:?}", verdicts.verdicts);
+        }
+    }
+}
+
+/// So many of all paths.
+fn count(paths: u64, of: impl Fn(u64) -> bool) -> u64 {
+    (0..paths).filter(|&path| of(path)).count() as u64
+}
+
+struct Phase {
+    what: &'static str,
+    seconds: f64,
+    peak_mib: u64,
+}
+
+fn main() -> ExitCode {
+    let (mut degree, mut memory_mib) = (20u64, 0u64);
+    let read = |degree: &mut u64, memory_mib: &mut u64| -> Result<(), String> {
+        for (word, value) in options()? {
+            match word.as_str() {
+                "--degree" => *degree = number(&word, &value)?,
+                "--memory-mib" => *memory_mib = number(&word, &value)?,
+                _ => return Err(format!("{word}: expected --degree N or --memory-mib N")),
+            }
+        }
+        Ok(())
+    };
+    or_exit(read(&mut degree, &mut memory_mib));
+    let cluster = Cluster::start(CoordinatorOptions {
+        chunk_paths: Some(CHUNK),
+        ..CoordinatorOptions::default()
+    });
+    let mut problem = Submission::of(format!(
+        "variable_group a, b, c, d; function f, g, h, k;
+         f = a^{degree} + b - 2; g = b^{degree} + c - 3; h = c^{degree} + d - 5; k = d^{degree} + a - 7;"
+    ));
+    problem.options.start = v1::StartKind::TotalDegree.into();
+    let client = cluster.client();
+    let mut phases = Vec::new();
+    let mut began = Instant::now();
+    let mut phase = |what, began: &mut Instant| {
+        let seconds = began.elapsed().as_secs_f64();
+        let peak_mib = cluster.coordinator.peak_memory_bytes() >> 20;
+        println!("{what}: {seconds:.1} s, {peak_mib} MiB at most so far");
+        phases.push(Phase {
+            what,
+            seconds,
+            peak_mib,
+        });
+        *began = Instant::now();
+    };
+    phase("started", &mut began);
+    let job = client.submit(&problem);
+    let done = AtomicBool::new(false);
+    let paths = std::thread::scope(|scope| {
+        for worker in 0..WORKERS {
+            let (address, done) = (cluster.address(), &done);
+            scope.spawn(move || work(&address, &format!("made-up-{worker}"), done));
+        }
+        let first = |p: &v1::JobProgress| p.stages.first().is_some_and(|s| s.accepted == s.total);
+        let reported = client.progress_for(&job, "all is reported", PATIENCE, first);
+        phase("reported", &mut began);
+        let next = |p: &v1::JobProgress| p.stages.len() > 1;
+        client.progress_for(&job, "the first stage is absorbed", PATIENCE, next);
+        phase("absorbed", &mut began);
+        client.wait_until_solved_for(&job, PATIENCE);
+        phase("solved", &mut began);
+        done.store(true, Ordering::Relaxed);
+        total(&reported)
+    });
+    let counts = client.counts(&job);
+    let infinite = count(paths, is_at_infinity);
+    let again = count(paths, fails_at_first) + 2 * count(paths, meets_at_first);
+    let expected = [
+        ("paths", counts.paths_total, paths),
+        ("at infinity", counts.paths_at_infinity, infinite),
+        ("finite", counts.paths_finite, paths - infinite),
+        ("failed", counts.paths_failed, 0),
+        ("tracked again", counts.paths_retracked, again),
+        ("solutions", counts.solutions_distinct, paths - infinite),
+    ];
+    let mut good = true;
+    for (what, found, expected) in expected {
+        if found != expected {
+            println!("NOT RIGHT: {found} {what}, not {expected}");
+            good = false;
+        }
+    }
+    let (mut solutions, mut next) = (0, 0);
+    client.each_solution(&job, |solution| {
+        solutions += 1;
+        // By their first paths, each at its place.
+        good &= solution.paths.first().is_some_and(|&path| path >= next);
+        next = solution.paths.first().map_or(0, |path| path + 1);
+    });
+    phase("solutions streamed", &mut began);
+    let (mut answered, mut numbered) = (0, 0);
+    client.each_path(&job, |path| {
+        let end = path.result.unwrap_or_default();
+        good &= end.origin == answered && end.endpoint == point(answered);
+        good &= path.solution == (!is_at_infinity(answered)).then_some(numbered);
+        numbered += u64::from(path.solution.is_some());
+        answered += 1;
+    });
+    phase("paths streamed", &mut began);
+    if solutions != paths - infinite || answered != paths {
+        println!("NOT RIGHT: {solutions} solutions and {answered} paths streamed");
+        good = false;
+    }
+    let most = phases.iter().map(|p| p.peak_mib).max().unwrap_or(0);
+    println!("\n| paths | phase | s | coordinator's memory at most, MiB |\n|---|---|---|---|");
+    for Phase {
+        what,
+        seconds,
+        peak_mib,
+    } in &phases
+    {
+        println!("| {paths} | {what} | {seconds:.1} | {peak_mib} |");
+    }
+    if memory_mib > 0 && most > memory_mib {
+        println!("NOT AS PROMISED: {most} MiB, not {memory_mib}");
+        good = false;
+    }
+    cluster.stop();
+    if good {
+        println!("all counts, solutions and paths are right");
+        ExitCode::SUCCESS
+    } else {
+        println!("NOT RIGHT");
+        ExitCode::FAILURE
+    }
+}
