@@ -6,7 +6,7 @@ use cognate_coordinator::client::commands::{info, jobs, workers};
 use cognate_coordinator::client::output::text::Look;
 use cognate_coordinator::client::output::{summary, table};
 use cognate_protocol::v1;
-use cognate_solutions::solution::{NamedValues, Solution};
+use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::path::PathBuf;
 
@@ -73,19 +73,18 @@ const UNSETTLED: &str = r#"{
 fn real_row(seed: u32) -> Solution {
     let value = |v: u32| f64::from((seed * 37 + v * 101) % 199) / 99.0 - 1.0;
     Solution {
-        variables: NamedValues(
-            ["x0", "x1", "x2", "x3", "y0", "y1", "y2", "y3"]
-                .iter()
-                .zip(0..)
-                .map(|(name, v)| (name.to_string(), Complex64::new(value(v), 1e-16)))
-                .collect(),
-        ),
+        variables: ["x0", "x1", "x2", "x3", "y0", "y1", "y2", "y3"]
+            .iter()
+            .zip(0..)
+            .map(|(name, v)| (name.to_string(), Complex64::new(value(v), 1e-16)))
+            .collect(),
         multiplicity: 1,
         cycles: vec![1],
         precision_bits: 53,
         class: None,
         paths: vec![u64::from(seed)],
         certificate: None,
+        deflations: None,
         real: Some(true),
         singular: false,
         residual: 1e-16,
@@ -109,7 +108,7 @@ fn an_answer_with_open_questions() {
     row.real = None;
     row.singular = true;
     row.multiplicity = 4;
-    row.variables.0[1].1.im = -0.5;
+    row.variables.0[1].value.im = -0.5;
     row.condition = f64::INFINITY;
     check_widths("unsettled", |look| {
         table::summary(

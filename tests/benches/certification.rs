@@ -45,7 +45,7 @@ fn main() {
             .solutions
             .iter()
             .filter(|solution| !solution.singular)
-            .map(|solution| solution.variables.0.iter().map(|(_, z)| *z).collect())
+            .map(|solution| solution.variables.values().collect())
             .collect();
         let mut krawczyk = Krawczyk::new(&system, &[]);
         let mut bits: BTreeMap<u32, usize> = BTreeMap::new();

@@ -60,6 +60,7 @@ fn result(path: usize, point: &[Complex64]) -> PathResult {
         asked: None,
         certification: None,
         local_dimension: None,
+        sharpening: None,
     }
 }
 

@@ -45,9 +45,7 @@ fn solved(
 /// The regular solutions of a set, coordinates in the order of the variables.
 fn points(set: &SolutionSet) -> Vec<Vec<Complex64>> {
     let regular = set.solutions.iter().filter(|s| !s.singular);
-    regular
-        .map(|s| s.variables.0.iter().map(|(_, z)| *z).collect())
-        .collect()
+    regular.map(|s| s.variables.values().collect()).collect()
 }
 
 /// One of each orbit of the family's symmetry; all where it has none.

@@ -209,7 +209,7 @@ fn whole(planned: &mut Plan, solutions: Option<&String>) -> Result<(), Failure> 
             for solution in &set.solutions {
                 let variables = solution.variables.0.iter();
                 let variables: serde_json::Map<_, _> = variables
-                    .map(|(name, z)| (name.clone(), serde_json::json!([z.re, z.im])))
+                    .map(|v| (v.name.clone(), serde_json::json!([v.value.re, v.value.im])))
                     .collect();
                 let line =
                     serde_json::json!({"variables": variables, "singular": solution.singular});

@@ -3,6 +3,7 @@
 use crate::check::SEEDS;
 use crate::parameter_homotopies::solve_from;
 use cognate_algorithms::PlanOptions;
+use cognate_continuation::tracker::settings::Settings;
 use cognate_tests::close_paths::ClosePaths;
 
 #[test]
@@ -24,7 +25,7 @@ fn paths_beside_a_branch_point_keep_their_sheets() {
                 "distance 1e-{exponent}, seed {seed}: {paths:?}"
             );
             for solution in &sets[0].solutions {
-                let values: Vec<_> = solution.variables.0.iter().map(|(_, z)| *z).collect();
+                let values: Vec<_> = solution.variables.values().collect();
                 let path = usize::try_from(solution.paths[0]).expect("there are four");
                 let error = close.error(path, &values);
                 assert!(
@@ -39,4 +40,35 @@ fn paths_beside_a_branch_point_keep_their_sheets() {
     }
     assert!(bits.is_sorted(), "more digits the closer: {bits:?}");
     assert!(bits[0] == 53 && bits[11] > 53, "{bits:?}");
+}
+
+/// Robust mode, with predictions that may else be off by a third of the point.
+#[test]
+fn robust_steps_keep_their_sheets() {
+    for exponent in [3, 6, 9, 12] {
+        let close = ClosePaths::at(exponent);
+        for seed in SEEDS {
+            let coarse = Settings {
+                predictor_tolerance: 0.3,
+                max_step: 0.25,
+                ..Settings::default()
+            };
+            let options = PlanOptions {
+                seed,
+                settings: coarse.robust(),
+                max_retries: 0,
+                ..PlanOptions::default()
+            };
+            let sets = solve_from(&close.system, close.starts.concat(), options);
+            assert_eq!(sets[0].paths.finite, 4, "1e-{exponent}, seed {seed}");
+            for solution in &sets[0].solutions {
+                let values: Vec<_> = solution.variables.values().collect();
+                let path = usize::try_from(solution.paths[0]).expect("there are four");
+                assert!(
+                    close.error(path, &values) < 1e-8,
+                    "1e-{exponent}, seed {seed}"
+                );
+            }
+        }
+    }
 }

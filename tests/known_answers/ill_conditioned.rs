@@ -44,7 +44,7 @@ fn chandra_6_has_32_solutions_one_of_them_far_away() {
                 .fold(0.0, f64::max)
         };
         let sizes = sets[0].solutions.iter().map(|solution| {
-            let values: Vec<_> = solution.variables.0.iter().map(|(_, z)| *z).collect();
+            let values: Vec<_> = solution.variables.values().collect();
             largest(&values)
         });
         let far = sizes.fold(0.0, f64::max);
@@ -82,7 +82,7 @@ fn wilkinson_12_has_its_roots() {
     let mut roots: Vec<f64> = sets[0]
         .solutions
         .iter()
-        .map(|s| s.variables.0[0].1.re)
+        .map(|s| s.variables.0[0].value.re)
         .collect();
     roots.sort_by(f64::total_cmp);
     for (root, expected) in roots.iter().zip(1..=12) {

@@ -17,3 +17,4 @@ mod parameter_homotopies;
 mod polyhedral;
 mod singular_endpoints;
 mod start_costs;
+mod twenty_variables;

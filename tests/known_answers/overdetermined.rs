@@ -27,7 +27,7 @@ fn system_35_has_exactly_3_solutions() {
         assert!(wrong.is_empty(), "seed {seed}:{wrong}");
         let mut found: Vec<[i64; 2]> = Vec::new();
         for solution in &sets[0].solutions {
-            let values: Vec<_> = solution.variables.0.iter().map(|v| v.1).collect();
+            let values: Vec<_> = solution.variables.values().collect();
             let near = [values[0].re.round(), values[1].re.round()];
             let error = (values[0] - near[0]).norm_sqr() + (values[1] - near[1]).norm_sqr();
             assert!(error < 1e-24, "seed {seed}: {values:?}");

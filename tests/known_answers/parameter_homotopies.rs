@@ -72,7 +72,7 @@ fn many_targets_are_solved_from_one_start() {
             let wrong = complaints(set, &answer);
             assert!(wrong.is_empty(), "p = {target}, seed {seed}:{wrong}");
             for solution in &set.solutions {
-                let x = solution.variables.0[0].1;
+                let x = solution.variables.0[0].value;
                 let error = (x * x - target).norm_sqr().sqrt() / target.norm_sqr().sqrt();
                 assert!(error < 1e-12, "p = {target}, seed {seed}: x = {x}");
             }

@@ -127,3 +127,37 @@ fn a_solution_beside_infinity_is_told_from_it() {
         );
     }
 }
+
+/// Deflation brings every multiple root to its digits, fewer times than its multiplicity.
+#[test]
+fn multiple_roots_get_their_digits_by_deflation() {
+    let deflating = PlanOptions {
+        digits: 40,
+        deflate: true,
+        ..PlanOptions::default()
+    };
+    let written_roots = [
+        written("variable_group x; function f; f = (x - 3/2)^3*(x + 2);"),
+        griewank_osborne().system,
+        caprasse().system,
+    ];
+    let deflations = [2, 2, 1];
+    for (system, most) in written_roots.iter().zip(deflations) {
+        let (_, sets) = solve(system, &deflating, &|_| None);
+        let set = &sets[0];
+        let counts = set
+            .counts
+            .sharpened
+            .as_ref()
+            .expect("counts of what was asked");
+        assert_eq!(counts.solutions, set.counts.distinct, "{:?}", set.warnings);
+        assert_eq!(counts.by_deflation, set.counts.singular);
+        for solution in &set.solutions {
+            let deflated = solution.deflations.expect("it was sharpened");
+            assert_eq!(deflated > 0, solution.singular);
+            assert!(deflated <= most, "{deflated} of {most}");
+            assert!(solution.accuracy < 1e-39);
+            assert!(solution.variables.0.iter().all(|v| v.digits.is_some()));
+        }
+    }
+}

@@ -5,6 +5,7 @@ mod bad_input;
 mod body_guidance;
 mod certificates;
 mod coordinator_restarted;
+mod digits;
 mod full_disk;
 mod lease_expired;
 mod monodromy;

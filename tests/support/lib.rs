@@ -12,5 +12,6 @@ pub mod families;
 pub mod measures;
 pub mod namespaces;
 pub mod processes;
+pub mod six_revolute;
 pub mod subjects;
 pub mod systems;

@@ -279,6 +279,7 @@ pub(crate) mod tests {
             asked: None,
             certification: None,
             local_dimension: None,
+            sharpening: None,
         }
     }
 

@@ -150,7 +150,7 @@ impl ChunkTracker for PreparedWork {
             Self::Track(stage) if stage.homotopy().dimension() <= SIXTEEN_LANES_UP_TO => 16,
             Self::Track(_) => 8,
             // One point after the other.
-            Self::Certify(_) | Self::LocalDimension(_) => 1,
+            Self::Certify(_) | Self::LocalDimension(_) | Self::Sharpen(_) => 1,
         }
     }
 }

@@ -1,11 +1,13 @@
 //! AnyAlgorithm: one type for every algorithm, which can be written down and read back.
 
-use crate::certified_solve::{Certifiable, CertifiedSolve};
+use crate::certified_solve::CertifiedSolve;
+use crate::closing_stage::FiniteEndpoints;
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::RegenerationSolve;
+use crate::sharpened_solve::SharpenedSolve;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
@@ -28,6 +30,8 @@ pub enum AnyAlgorithm {
     Monodromy(Box<MonodromySolve>),
     /// Any of them, and the proof of what it found.
     Certified(Box<CertifiedSolve>),
+    /// Any of them, and its solutions with more digits.
+    Sharpened(Box<SharpenedSolve>),
     /// All isolated solutions of one system, from mixed cells.
     Polyhedral(Box<PolyhedralSolve>),
     /// All regular solutions of one system, equation by equation.
@@ -77,6 +81,9 @@ impl AnyAlgorithm {
             Self::Certified(solve) => {
                 Self::Certified(Box::new(solve.with_max_retries(max_retries)))
             }
+            Self::Sharpened(solve) => {
+                Self::Sharpened(Box::new(solve.with_max_retries(max_retries)))
+            }
             Self::Polyhedral(solve) => {
                 Self::Polyhedral(Box::new(solve.with_max_retries(max_retries)))
             }
@@ -92,6 +99,7 @@ impl AnyAlgorithm {
             Self::Parameter(solve) => solve,
             Self::Monodromy(solve) => &**solve,
             Self::Certified(solve) => &**solve,
+            Self::Sharpened(solve) => &**solve,
             Self::Polyhedral(solve) => &**solve,
             Self::Regeneration(solve) => &**solve,
         }
@@ -102,6 +110,7 @@ impl AnyAlgorithm {
         match self {
             Self::Monodromy(solve) => Some(&**solve),
             Self::Certified(solve) => solve.solve().monodromy(),
+            Self::Sharpened(solve) => solve.solve().monodromy(),
             Self::ZeroDimensional(_)
             | Self::Parameter(_)
             | Self::Polyhedral(_)
@@ -121,6 +130,7 @@ impl AnyAlgorithm {
             Self::Polyhedral(solve) => Some(solve.results()),
             Self::Regeneration(solve) => Some(solve.results()),
             Self::Certified(solve) => solve.solve().renumbered_results(),
+            Self::Sharpened(solve) => solve.solve().renumbered_results(),
             Self::ZeroDimensional(solve) => solve.paths().results_with_images(),
             Self::Parameter(_) | Self::Monodromy(_) => None,
         }
@@ -154,6 +164,7 @@ impl AnyAlgorithm {
             Self::Parameter(solve) => solve,
             Self::Monodromy(solve) => &mut **solve,
             Self::Certified(solve) => &mut **solve,
+            Self::Sharpened(solve) => &mut **solve,
             Self::Polyhedral(solve) => &mut **solve,
             Self::Regeneration(solve) => &mut **solve,
         }
@@ -176,7 +187,7 @@ impl PathAlgorithm for AnyAlgorithm {
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
         self.get().solution_sets(system)
     }
-    fn certifiable(&self) -> Option<Certifiable> {
-        self.get().certifiable()
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
+        self.get().finite_endpoints()
     }
 }

@@ -5,63 +5,21 @@
 //! the solution sets are made (`cognate_solutions::certificates`).
 
 use crate::any_algorithm::AnyAlgorithm;
-use crate::{Next, Opening, PathAlgorithm, Progress, StageProgress};
-use cognate_continuation::certification::parameters_at_targets;
-use cognate_continuation::homotopies::HomotopyKind;
+use crate::closing_stage::{ClosingStage, FiniteEndpoints};
+use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::start_points::{StartPoints, StoredPoints};
-use cognate_continuation::tracker::settings::Settings;
-use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_continuation::points_at_targets::parameters_at_targets;
+use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::certificates::{Attempt, certify};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
-use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
-use std::sync::Arc;
-
-/// What a finished solve offers to be certified.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Certifiable {
-    /// A homotopy that ends at the parameters of each target.
-    pub homotopy: HomotopyKind,
-    /// Its seed, from which combinations of equations are made where there are too many.
-    pub seed: u64,
-    /// The settings that its paths were tracked with.
-    pub settings: Settings,
-    /// Its finite nonsingular endpoints, target by target.
-    pub points: Vec<CertifiablePoint>,
-}
-
-/// One endpoint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CertifiablePoint {
-    /// At which target.
-    pub target: u64,
-    /// Which path ended there, as the solution sets name it.
-    pub path: u64,
-    /// Values of the variables.
-    pub values: Vec<Complex64>,
-}
 
 /// A solve with its certificates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CertifiedSolve {
     solve: AnyAlgorithm,
-    certification: Option<Certifying>,
-}
-
-/// The stage that certifies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Certifying {
-    homotopy: HomotopyKind,
-    seed: u64,
-    /// `None` where there was nothing to certify.
-    stage: Option<StageProgress>,
-    /// Target and path of each item.
-    items: Vec<(u64, u64)>,
-    /// What was found, item by item; empty until the stage is absorbed.
-    found: Vec<Attempt>,
+    certification: Option<ClosingStage<Attempt>>,
 }
 
 impl CertifiedSolve {
@@ -87,84 +45,22 @@ impl CertifiedSolve {
 
     /// The last stage, now that the solve is done.
     fn open(&mut self) -> Next {
-        let Some(certifiable) = self.solve.certifiable() else {
+        let Some(mut endpoints) = self.solve.finite_endpoints() else {
             return Next::Done;
         };
-        let Certifiable {
-            homotopy,
-            seed,
-            settings,
-            points,
-        } = certifiable;
-        let items: Vec<(u64, u64)> = points.iter().map(|p| (p.target, p.path)).collect();
-        let mut certifying = Certifying {
-            homotopy: homotopy.clone(),
-            seed,
-            stage: None,
-            items,
-            found: Vec::new(),
-        };
-        let Some(first) = points.first() else {
-            self.certification = Some(certifying);
-            return Next::Done;
-        };
-        let dimension = first.values.len();
-        let stored = Arc::new(StoredPoints {
-            dimension,
-            coordinates: points.iter().flat_map(|p| p.values.clone()).collect(),
-        });
-        let all = stored.as_start();
-        let count = points.len() as u64;
-        let start_points = if points.iter().all(|p| p.target == 0) && !several(&homotopy) {
-            all
-        } else {
-            // Item i of target t is point i there: its index among all targets and points.
-            StartPoints::Selected {
-                base: Box::new(all),
-                indices: (0..)
-                    .zip(&points)
-                    .map(|(i, p)| p.target * count + i)
-                    .collect(),
-            }
-        };
+        let points = std::mem::take(&mut endpoints.regular);
         let before = self.solve.progress().stages;
-        let id = before.iter().map(|stage| stage.id.0 + 1).max().unwrap_or(0);
-        let stage = Stage {
-            id: StageId(id),
-            work: Work::Certify,
-            homotopy,
-            start_points,
-            settings,
-            seed,
-            attempt: 0,
-        };
-        certifying.stage = Some(StageProgress {
-            id: stage.id,
-            work: stage.work,
-            attempt: 0,
-            items: count,
-            absorbed: false,
-        });
-        self.certification = Some(certifying);
-        Next::Open(Box::new(Opening {
-            stage,
-            objects: vec![stored],
-        }))
+        let (stage, opening) = ClosingStage::open(endpoints, points, Work::Certify, &before);
+        self.certification = Some(stage);
+        opening.map_or(Next::Done, Next::Open)
     }
-}
-
-/// Whether a homotopy has several targets.
-fn several(homotopy: &HomotopyKind) -> bool {
-    matches!(homotopy, HomotopyKind::Parameter { targets, .. } if targets.len() > 1)
 }
 
 impl PathAlgorithm for CertifiedSolve {
     fn next(&mut self) -> Next {
         match &self.certification {
-            Some(Certifying {
-                stage: Some(stage), ..
-            }) if !stage.absorbed => Next::Wait,
-            Some(_) => Next::Done,
+            Some(stage) if stage.is_done() => Next::Done,
+            Some(_) => Next::Wait,
             None => match self.solve.next() {
                 Next::Done => self.open(),
                 other => other,
@@ -173,33 +69,24 @@ impl PathAlgorithm for CertifiedSolve {
     }
 
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
-        let Some(certifying) = &mut self.certification else {
-            return self.solve.absorb(stage, results);
-        };
-        let own = certifying
-            .stage
-            .as_mut()
-            .filter(|own| own.id == stage && !own.absorbed)
-            .expect("only an open stage is absorbed");
-        own.absorbed = true;
-        certifying.found = results.map(|result| result.certification).collect();
-        assert_eq!(
-            certifying.found.len(),
-            certifying.items.len(),
-            "a stage is absorbed as a whole"
-        );
+        match &mut self.certification {
+            Some(own) => own.absorb(stage, results, |result| result.certification),
+            None => self.solve.absorb(stage, results),
+        }
     }
 
     fn progress(&self) -> Progress {
         let mut progress = self.solve.progress();
-        if let Some(stage) = self.certification.as_ref().and_then(|c| c.stage) {
+        let Some(own) = &self.certification else {
+            progress.done = false;
+            return progress;
+        };
+        if let Some(stage) = own.progress() {
             progress.stages.push(stage);
             progress.done = stage.absorbed;
             if !stage.absorbed {
                 progress.description = format!("certifying {} solutions", stage.items);
             }
-        } else if self.certification.is_none() {
-            progress.done = false;
         }
         progress
     }
@@ -210,28 +97,35 @@ impl PathAlgorithm for CertifiedSolve {
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
         let mut sets = self.solve.solution_sets(system);
-        let Some(certifying) = &self.certification else {
+        let Some(own) = &self.certification else {
             return sets;
         };
-        let mut attempts: HashMap<(u64, u64), &Attempt> = HashMap::new();
-        attempts.extend(certifying.items.iter().copied().zip(&certifying.found));
-        let targets = parameters_at_targets(&certifying.homotopy, system);
+        let attempts = own.facts();
+        let targets = parameters_at_targets(own.homotopy(), system);
         for ((target, set), parameters) in (0u64..).zip(&mut sets).zip(&targets) {
             let attempt = |path: u64| attempts.get(&(target, path)).map(|&found| found.clone());
-            certify(set, system, parameters, &attempt, certifying.seed);
+            certify(set, system, parameters, &attempt, own.seed());
         }
         sets
+    }
+
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
+        self.solve.finite_endpoints()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Opening;
     use crate::plan::GivenStart;
     use crate::run_locally::{drive, run_locally};
     use crate::{PlanOptions, plan};
     use cognate_continuation::prepared_work::PreparedWork;
+    use cognate_continuation::start_points::StoredPoints;
     use cognate_systems::named::katsura;
+    use num_complex::Complex64;
+    use std::sync::Arc;
 
     fn certified(set: &SolutionSet) -> (Option<u64>, Option<u64>, u64) {
         let counts = &set.counts;

@@ -9,6 +9,7 @@
 
 pub mod any_algorithm;
 pub mod certified_solve;
+pub mod closing_stage;
 pub mod monodromy;
 pub mod opening;
 pub mod parameter_solve;
@@ -20,12 +21,14 @@ pub mod regeneration_solve;
 pub mod retried_stage;
 pub mod run_locally;
 mod set_structures;
+pub mod sharpened_solve;
 pub mod start_costs;
 pub mod start_pair;
 pub mod zero_dimensional_solve;
 
 pub use any_algorithm::{AnyAlgorithm, RestoreError};
-pub use certified_solve::{Certifiable, CertifiablePoint, CertifiedSolve};
+pub use certified_solve::CertifiedSolve;
+pub use closing_stage::{FiniteEndpoint, FiniteEndpoints};
 pub use opening::Opening;
 pub use plan::{Plan, PlanOptions, plan};
 pub use plan_error::PlanError;
@@ -61,8 +64,8 @@ pub trait PathAlgorithm: Send {
     /// What was found, one set for each target; meant for when `next` has said `Done`.
     /// `system` is the one that was planned for.
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
-    /// What can be certified of it when it is done; `None` where it does not say.
-    fn certifiable(&self) -> Option<Certifiable> {
+    /// Its finite endpoints when it is done; `None` where it does not say.
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         None
     }
 }

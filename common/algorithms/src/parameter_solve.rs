@@ -2,7 +2,7 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::retried_stage::RetriedStage;
-use crate::{Certifiable, Next, Opening, PathAlgorithm, Progress};
+use crate::{FiniteEndpoints, Next, Opening, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
@@ -178,8 +178,8 @@ impl PathAlgorithm for ParameterSolve {
         AnyAlgorithm::Parameter(self.clone()).to_bytes()
     }
 
-    fn certifiable(&self) -> Option<Certifiable> {
-        Some(self.paths.certifiable())
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
+        Some(self.paths.finite_endpoints())
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

@@ -9,6 +9,7 @@ use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::{Levels, RegenerationSolve};
 use crate::retried_stage::MAX_RETRIES;
 use crate::set_structures::set_names;
+use crate::sharpened_solve::SharpenedSolve;
 use crate::start_costs::{
     HALVED, SETS_ARE_GIVEN, StartKind, Starts, check_equations, checked_degrees, mixed_volume,
 };
@@ -22,6 +23,7 @@ use cognate_continuation::start_systems::slices;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Tolerances;
+use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -90,6 +92,10 @@ pub struct PlanOptions {
     pub loops: LoopLimits,
     /// Whether the solutions are certified.
     pub certify: bool,
+    /// Decimal digits of the solutions.
+    pub digits: u32,
+    /// Whether isolated singular solutions are brought to their digits by deflation.
+    pub deflate: bool,
     /// Sets of variables for a linear-product start, for each equation as many as its degree;
     /// without them they are guessed. With them [`StartChoice::Auto`] is that start.
     pub sets: Option<SetStructure>,
@@ -108,6 +114,8 @@ impl Default for PlanOptions {
             max_retries: MAX_RETRIES,
             loops: LoopLimits::default(),
             certify: false,
+            digits: DIGITS_OF_DOUBLES,
+            deflate: false,
             sets: None,
         }
     }
@@ -152,6 +160,10 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         (true, _) => Err(PlanError::NothingToDeform),
         (false, choice) => plan_start_system(system, choice, options),
     }?;
+    if options.digits > DIGITS_OF_DOUBLES || options.deflate {
+        let solve = SharpenedSolve::new(plan.algorithm, options.digits, options.deflate);
+        plan.algorithm = AnyAlgorithm::Sharpened(Box::new(solve));
+    }
     if options.certify {
         plan.algorithm = AnyAlgorithm::Certified(Box::new(CertifiedSolve::new(plan.algorithm)));
     }

@@ -7,7 +7,7 @@
 //! counts add up to the mixed volume.
 
 use crate::any_algorithm::AnyAlgorithm;
-use crate::certified_solve::Certifiable;
+use crate::closing_stage::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::VerdictCounts;
 use crate::retried_stage::RetriedStage;
@@ -188,15 +188,18 @@ impl PathAlgorithm for PolyhedralSolve {
         AnyAlgorithm::Polyhedral(Box::new(self.clone())).to_bytes()
     }
 
-    fn certifiable(&self) -> Option<Certifiable> {
-        let mut certifiable = self.target.as_ref()?.certifiable();
-        certifiable.homotopy = HomotopyKind::StraightLine {
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
+        let mut finite_endpoints = self.target.as_ref()?.finite_endpoints();
+        finite_endpoints.homotopy = HomotopyKind::StraightLine {
             parameters: self.parameters.clone(),
         };
-        for point in &mut certifiable.points {
+        let FiniteEndpoints {
+            regular, singular, ..
+        } = &mut finite_endpoints;
+        for point in regular.iter_mut().chain(singular) {
             point.path = self.arrived[point.path as usize];
         }
-        Some(certifiable)
+        Some(finite_endpoints)
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

@@ -8,7 +8,7 @@
 //! failed in the end. (Hauenstein, Sommese, Wampler 2011.)
 
 use crate::any_algorithm::AnyAlgorithm;
-use crate::certified_solve::Certifiable;
+use crate::closing_stage::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::{StageProgress, VerdictCounts};
 use crate::retried_stage::RetriedStage;
@@ -286,15 +286,16 @@ impl PathAlgorithm for RegenerationSolve {
         AnyAlgorithm::Regeneration(Box::new(self.clone())).to_bytes()
     }
 
-    fn certifiable(&self) -> Option<Certifiable> {
-        let mut certifiable = self.stage.certifiable();
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
+        let mut finite_endpoints = self.stage.finite_endpoints();
         if !self.reached_the_system() {
-            certifiable.points.clear();
+            finite_endpoints.regular.clear();
+            finite_endpoints.singular.clear();
         }
-        certifiable.homotopy = HomotopyKind::StraightLine {
+        finite_endpoints.homotopy = HomotopyKind::StraightLine {
             parameters: self.levels.parameters.clone(),
         };
-        Some(certifiable)
+        Some(finite_endpoints)
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

@@ -6,7 +6,7 @@
 //! settings; the verdict uses the last.
 
 use crate::progress::{Progress, StageProgress, VerdictCounts};
-use crate::{Certifiable, CertifiablePoint, Next, Opening};
+use crate::{FiniteEndpoint, FiniteEndpoints, Next, Opening};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{self, Candidate};
@@ -17,7 +17,7 @@ use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Decision, Tolerances, Verdict, classify};
 use cognate_solutions::degenerate::{ASKED, DeclaredSets};
 use cognate_solutions::images::with_images;
-use cognate_solutions::path_crossing::{CrossingBook, coincidences, crossings};
+use cognate_solutions::path_crossing::{CrossingBook, broken_cycles, coincidences, crossings};
 use cognate_solutions::plain::PlainCounts;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
@@ -298,12 +298,7 @@ impl RetriedStage {
             .singular_points
             .iter()
             .map(|paths| {
-                // What is known of an image is known of its path.
-                let held = paths.iter().filter_map(|&path| self.place(path));
-                let result = held
-                    .map(|place| &self.results[place])
-                    .min_by(|a, b| a.accuracy.total_cmp(&b.accuracy))
-                    .expect("a point is where a path ends");
+                let result = self.most_accurate(paths);
                 let target = result.origin.0 / self.paths_per_target;
                 Candidate {
                     values: self.shape.to_variables(result.endpoint.to_double()),
@@ -324,6 +319,15 @@ impl RetriedStage {
         }
     }
 
+    /// Of the paths that end at one point the one that knows it best.
+    fn most_accurate(&self, paths: &[u64]) -> &PathResult {
+        // What is known of an image is known of its path.
+        let held = paths.iter().filter_map(|&path| self.place(path));
+        held.map(|place| &self.results[place])
+            .min_by(|a, b| a.accuracy.total_cmp(&b.accuracy))
+            .expect("a point is where a path ends")
+    }
+
     /// What is known of a singular point at which this many paths end.
     fn question(&self, accuracy: f64, target: u64, paths: u64) -> Question {
         let book = &self.targets[target as usize];
@@ -334,10 +338,7 @@ impl RetriedStage {
         };
         let lost = self.lost + failed + book.crossings.paths().count() as u64;
         // Other homotopies may leave out paths, and then fewer than the multiplicity end there.
-        let complete = matches!(
-            self.first.homotopy,
-            HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. }
-        );
+        let complete = self.first.homotopy.takes_all_paths();
         Question {
             accuracy,
             bound: if complete { paths + lost } else { u64::MAX },
@@ -347,13 +348,24 @@ impl RetriedStage {
 
     fn repetition(&self, indices: Vec<u64>) -> Stage {
         let attempt = self.stages.len() as u16;
+        let tighter = self.first.settings.tightened(attempt);
+        // Paths that met, or do not fit into their cycles, may have jumped; one that failed lacks steps
+        // or digits, of which looking around takes more.
+        let failed = |path: &u64| {
+            let outcome = self.place(*path).map(|place| self.results[place].outcome);
+            matches!(outcome, Some(PathOutcome::Failed(_)))
+        };
+        let settings = match indices.iter().any(failed) {
+            true => tighter,
+            false => tighter.robust(),
+        };
         Stage {
             id: StageId(self.first.id.0 + u32::from(attempt)),
             start_points: StartPoints::Selected {
                 base: Box::new(self.first.start_points.clone()),
                 indices,
             },
-            settings: self.first.settings.tightened(attempt),
+            settings,
             attempt,
             ..self.first.clone()
         }
@@ -531,6 +543,16 @@ impl RetriedStage {
                 }
             };
             suspects.extend(book.crossings.paths().map(of_path));
+            // Where a path failed it may be what a cycle lacks, and where paths are left out too.
+            if book.verdicts.failed == 0 && self.first.homotopy.takes_all_paths() {
+                let singular = |place: usize| decisions[place].verdict == Verdict::Singular;
+                let (shape, tolerances) = (&self.shape, &self.tolerances);
+                let points = coincidences(results, shape, tolerances, self.first.seed, singular);
+                for members in points {
+                    let broken = broken_cycles(results, &members).into_iter();
+                    suspects.extend(broken.map(|place| of_path(results[place].origin.0)));
+                }
+            }
         }
         self.targets = targets;
         suspects.sort_unstable();
@@ -578,27 +600,35 @@ impl RetriedStage {
         }
     }
 
-    /// The finite nonsingular endpoints of all targets.
-    pub fn certifiable(&self) -> Certifiable {
+    /// The finite endpoints of all targets.
+    pub fn finite_endpoints(&self) -> FiniteEndpoints {
         let size = self.paths_per_target.max(1) as usize;
-        let mut points = Vec::new();
+        let endpoint = |target, result: &PathResult| FiniteEndpoint {
+            target,
+            path: result.origin.0,
+            values: self.shape.to_variables(result.endpoint.to_double()),
+        };
+        let mut regular = Vec::new();
         for (target, results) in (0u64..).zip(self.results.chunks(size)) {
             for result in &*self.with_images(results) {
                 let decision = classify(result, &self.shape, &self.tolerances);
                 if decision.verdict == Verdict::Finite {
-                    points.push(CertifiablePoint {
-                        target,
-                        path: result.origin.0,
-                        values: self.shape.to_variables(result.endpoint.to_double()),
-                    });
+                    regular.push(endpoint(target, result));
                 }
             }
         }
-        Certifiable {
+        let singular = self.singular_points.iter().filter_map(|paths| {
+            let result = self.most_accurate(paths);
+            let verdict = classify(result, &self.shape, &self.tolerances).verdict;
+            let target = result.origin.0 / self.paths_per_target;
+            (verdict == Verdict::Singular).then(|| endpoint(target, result))
+        });
+        FiniteEndpoints {
             homotopy: self.first.homotopy.clone(),
             seed: self.first.seed,
             settings: self.first.settings.clone(),
-            points,
+            regular,
+            singular: singular.collect(),
         }
     }
 
@@ -746,6 +776,35 @@ mod tests {
         assert_eq!((paths.finite, paths.failed, paths.retracked), (4, 0, 4));
         assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 1));
         assert!(sets[0].settled());
+    }
+
+    #[test]
+    fn a_turn_that_is_no_permutation_is_made_again() {
+        // Paths 0 and 1 exchange places in a turn, but path 1 says that it needs three.
+        let (stages, sets) = run(&mut solve(), |path, attempt| match (path, attempt) {
+            (1, 0) => Fate::Turns(0.5, 3),
+            (0 | 1, _) => Fate::Turns(0.5, 2),
+            _ => Fate::At(0.1 * path as f64),
+        });
+        let again = stages.iter().filter(|stage| stage.attempt == 1);
+        let again: Vec<_> = again.map(|stage| stage.start_points.clone()).collect();
+        let [StartPoints::Selected { indices, .. }] = again.as_slice() else {
+            panic!("{again:?}");
+        };
+        assert_eq!(indices, &[0, 1]);
+        let settings = &stages[1].settings;
+        assert_eq!(settings, &stages[0].settings.tightened(1).robust());
+        let paths = &sets[0].paths;
+        assert_eq!((paths.finite, paths.singular, paths.retracked), (2, 2, 2));
+        let singular = sets[0].solutions.iter().find(|s| s.singular).unwrap();
+        assert_eq!(singular.cycles, [2]);
+        // One that never fits is named.
+        let (_, sets) = run(&mut solve(), |path, _| match path {
+            0 => Fate::Turns(0.5, 2),
+            _ => Fate::At(0.1 * path as f64),
+        });
+        let named = |warning: &String| warning.contains("winding numbers do not fit");
+        assert!(sets[0].warnings.iter().any(named), "{:?}", sets[0].warnings);
     }
 
     #[test]

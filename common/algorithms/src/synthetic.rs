@@ -46,6 +46,8 @@ pub fn first_stage(homotopy: HomotopyKind) -> Stage {
 pub enum Fate {
     /// Ends regularly at this x.
     At(f64),
+    /// Ends singularly at this x, after so many turns.
+    Turns(f64, u32),
     /// Fails in a way that tracking again may help.
     Fails,
     /// Fails in a way that nothing helps.
@@ -60,6 +62,7 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
             let origin = stage.origin(item);
             let (outcome, x) = match fate(origin, stage.attempt) {
                 Fate::At(x) => (PathOutcome::Regular, x),
+                Fate::Turns(x, _) => (PathOutcome::Singular, x),
                 Fate::Fails => (PathOutcome::Failed(Failure::StepTooSmall), 0.1),
                 Fate::Hopeless => (PathOutcome::Failed(Failure::KilledItsWorker), 0.1),
             };
@@ -73,13 +76,17 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                 residual: 1e-16,
                 condition: 3.0,
                 accuracy: 1e-15,
-                winding_number: None,
+                winding_number: match fate(origin, stage.attempt) {
+                    Fate::Turns(_, turns) => Some(turns),
+                    Fate::At(_) | Fate::Fails | Fate::Hopeless => None,
+                },
                 infinity_turns: Vec::new(),
                 precision_bits: 53,
                 counts: Counts::default(),
                 asked: None,
                 certification: None,
                 local_dimension: None,
+                sharpening: None,
             }
         })
         .collect()

@@ -2,7 +2,7 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::retried_stage::RetriedStage;
-use crate::{Certifiable, Next, PathAlgorithm, Progress};
+use crate::{FiniteEndpoints, Next, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
@@ -101,8 +101,8 @@ impl PathAlgorithm for ZeroDimensionalSolve {
         AnyAlgorithm::ZeroDimensional(self.clone()).to_bytes()
     }
 
-    fn certifiable(&self) -> Option<Certifiable> {
-        Some(self.paths.certifiable())
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
+        Some(self.paths.finite_endpoints())
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
@@ -137,9 +137,7 @@ mod tests {
     }
 
     fn values(set: &SolutionSet) -> Vec<Vec<Complex64>> {
-        let of = |s: &cognate_solutions::solution::Solution| {
-            s.variables.0.iter().map(|(_, z)| *z).collect()
-        };
+        let of = |s: &cognate_solutions::solution::Solution| s.variables.values().collect();
         set.solutions.iter().map(of).collect()
     }
 

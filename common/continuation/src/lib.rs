@@ -5,7 +5,8 @@
 //! [`start_points`] the beginning; [`predictor`], [`step_control`] and [`tracker`]
 //! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left;
 //! [`asked_system`] holds it against all equations that are asked, [`local_dimension`] says
-//! whether it is isolated, [`certification`] proves what is there.
+//! whether it is isolated, [`sharpening`] brings it to more digits, [`certification`] proves what is
+//! there; these look at the [`points_at_targets`] of a stage.
 //! `examples/two_conics.rs` is a whole solve in thirty lines.
 #![forbid(unsafe_code)]
 
@@ -16,9 +17,11 @@ pub mod endgames;
 pub mod homotopies;
 pub mod local_dimension;
 pub mod path_result;
+pub mod points_at_targets;
 pub mod predictor;
 pub mod prepared_work;
 mod refine;
+pub mod sharpening;
 pub mod stage;
 pub mod start_points;
 pub mod start_systems;

@@ -5,6 +5,7 @@
 //! classes) is `solutions`' business.
 
 use crate::certification::Certification;
+use crate::sharpening::Sharpening;
 use crate::tracker::outcome::PathOutcome;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -114,4 +115,6 @@ pub struct PathResult {
     pub certification: Option<Certification>,
     /// Whether the endpoint is isolated; `None` where it was not asked.
     pub local_dimension: Option<LocalDimension>,
+    /// The point with more digits, in a stage that sharpens.
+    pub sharpening: Option<Sharpening>,
 }

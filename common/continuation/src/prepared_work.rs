@@ -3,6 +3,7 @@
 use crate::certification::CertificationStage;
 use crate::local_dimension::prepared::PreparedLocalDimension;
 use crate::path_result::PathResult;
+use crate::sharpening::SharpeningStage;
 use crate::stage::{PrepareError, PreparedStage};
 use crate::start_points::{Digest, StoredPoints};
 use crate::work::{Stage, Work};
@@ -19,6 +20,8 @@ pub enum PreparedWork {
     Certify(Box<CertificationStage>),
     /// Endpoints of which it is asked whether they are isolated.
     LocalDimension(Box<PreparedLocalDimension>),
+    /// Points to sharpen.
+    Sharpen(Box<SharpeningStage>),
 }
 
 impl PreparedWork {
@@ -38,6 +41,9 @@ impl PreparedWork {
                 let prepared = PreparedLocalDimension::new(system, stage, objects)?;
                 Self::LocalDimension(Box::new(prepared))
             }
+            Work::Sharpen { digits } => Self::Sharpen(Box::new(SharpeningStage::new(
+                system, stage, digits, objects,
+            )?)),
         })
     }
 
@@ -47,6 +53,7 @@ impl PreparedWork {
             Self::Track(stage) => stage.items(),
             Self::Certify(stage) => stage.items(),
             Self::LocalDimension(stage) => stage.items(),
+            Self::Sharpen(stage) => stage.items(),
         }
     }
 
@@ -57,6 +64,7 @@ impl PreparedWork {
             Self::Track(stage) => stage.track(items, width),
             Self::Certify(stage) => stage.run(items),
             Self::LocalDimension(stage) => stage.run(items),
+            Self::Sharpen(stage) => stage.run(items),
         }
     }
 }

@@ -21,6 +21,11 @@ pub enum Work {
     /// Find out whether the endpoints that are the start points are isolated (see
     /// `local_dimension`); they lie at the end of the homotopy.
     LocalDimension,
+    /// Bring each point to this many decimal digits as a solution, by deflation where it is multiple.
+    Sharpen {
+        /// From 1 to [`crate::sharpening::MOST_DIGITS`].
+        digits: u32,
+    },
 }
 
 /// One kind of work over the start points of one homotopy.

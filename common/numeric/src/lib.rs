@@ -19,6 +19,7 @@
 //! assert_eq!(square::<MultiplePrecision>(200), 4.0);
 //! ```
 
+pub mod decimal_text;
 pub mod exact_text;
 pub mod lanes;
 pub mod linear_algebra;
@@ -32,4 +33,4 @@ pub mod scalar;
 ///
 /// It grows with every change after which a path's result differs in any bit;
 /// jobs and workers name it, and a worker of another revision gets no chunk.
-pub const NUMERICS_REVISION: u32 = 10;
+pub const NUMERICS_REVISION: u32 = 11;

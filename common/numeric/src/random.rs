@@ -27,6 +27,8 @@ pub enum Purpose {
     Loop = 7,
     /// Combinations of the equations of an overdetermined system.
     Randomization = 12,
+    /// Multipliers of deflated systems.
+    Deflation = 13,
     /// Liftings of supports.
     Lifting = 20,
 }

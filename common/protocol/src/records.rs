@@ -11,6 +11,7 @@ use cognate_continuation::certification::{Certificate, Certification, Uncertifie
 use cognate_continuation::path_result::{
     AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
 };
+use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_numeric::exact_text::{exact_text, read_exact};
@@ -25,6 +26,8 @@ mod tag {
     pub const CERTIFIED: u8 = 2;
     pub const UNCERTIFIED: u8 = 3;
     pub const LOCAL_DIMENSION: u8 = 4;
+    pub const SHARPENED: u8 = 5;
+    pub const UNSHARPENED: u8 = 6;
 }
 
 /// Bytes that hold no records.
@@ -135,6 +138,7 @@ impl Writer {
             asked,
             certification,
             local_dimension,
+            sharpening,
         } = result;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -209,10 +213,43 @@ impl Writer {
             self.u64(*bound);
             self.f64(*margin);
         }
+        match sharpening {
+            None => {}
+            Some(Sharpening::Sharpened(found)) => {
+                let Sharpened {
+                    values,
+                    accuracy,
+                    deflations,
+                    precision_bits,
+                } = &**found;
+                self.0.push(tag::SHARPENED);
+                self.exact_parts(values);
+                self.f64(*accuracy);
+                self.u32(*deflations);
+                self.u32(*precision_bits);
+            }
+            Some(Sharpening::Unsharpened(reason)) => {
+                self.0.push(tag::UNSHARPENED);
+                self.0.push(match reason {
+                    Unsharpened::DamagedPoint => 1,
+                    Unsharpened::NotRegular => 2,
+                    Unsharpened::NewtonLeaves => 3,
+                });
+            }
+        }
     }
 }
 
 impl Writer {
+    fn exact_parts(&mut self, values: &[ComplexRational]) {
+        self.length(values.len());
+        for part in values.iter().flat_map(|z| [&z.re, &z.im]) {
+            let text = exact_text(part).expect("numbers of points and boxes are dyadic");
+            self.length(text.len());
+            self.0.extend_from_slice(text.as_bytes());
+        }
+    }
+
     fn certificate(&mut self, certificate: &Certificate) {
         let Certificate {
             centre,
@@ -222,12 +259,7 @@ impl Writer {
             precision_bits,
         } = certificate;
         self.0.push(tag::CERTIFIED);
-        self.length(centre.len());
-        for part in centre.iter().flat_map(|z| [&z.re, &z.im]) {
-            let text = exact_text(part).expect("the numbers of a certificate are dyadic");
-            self.length(text.len());
-            self.0.extend_from_slice(text.as_bytes());
-        }
+        self.exact_parts(centre);
         for numbers in [radius, error] {
             self.length(numbers.len());
             numbers.iter().for_each(|&x| self.f64(x));
@@ -294,12 +326,16 @@ impl<'a> Reader<'a> {
             .ok_or_else(|| self.damaged("no exact number"))
     }
 
-    fn certificate(&mut self) -> Result<Certificate, DamagedRecords> {
+    fn exact_parts(&mut self) -> Result<Vec<ComplexRational>, DamagedRecords> {
         // Each coordinate has two numbers, each a length and at least `0x0p0`.
         let count = self.length(18)?;
-        let centre = (0..count)
+        (0..count)
             .map(|_| Ok(ComplexRational::new(self.exact()?, self.exact()?)))
-            .collect::<Result<_, _>>()?;
+            .collect()
+    }
+
+    fn certificate(&mut self) -> Result<Certificate, DamagedRecords> {
+        let centre = self.exact_parts()?;
         let mut numbers = || -> Result<Vec<f64>, DamagedRecords> {
             let count = self.length(8)?;
             (0..count).map(|_| self.f64()).collect()
@@ -369,6 +405,7 @@ impl<'a> Reader<'a> {
             asked: None,
             certification: None,
             local_dimension: None,
+            sharpening: None,
         };
         let mut last = 0;
         while self.at < end {
@@ -408,6 +445,27 @@ impl<'a> Reader<'a> {
                         bound: self.u64()?,
                         margin: self.f64()?,
                     });
+                }
+                tag::SHARPENED => {
+                    let found = Sharpened {
+                        values: self.exact_parts()?,
+                        accuracy: self.f64()?,
+                        deflations: self.u32()?,
+                        precision_bits: self.u32()?,
+                    };
+                    if !found.is_sound() {
+                        return Err(self.damaged("an accuracy that is none"));
+                    }
+                    result.sharpening = Some(Sharpening::Sharpened(Box::new(found)));
+                }
+                tag::UNSHARPENED => {
+                    let reason = match self.array::<1>()?[0] {
+                        1 => Unsharpened::DamagedPoint,
+                        2 => Unsharpened::NotRegular,
+                        3 => Unsharpened::NewtonLeaves,
+                        _ => return Err(self.damaged("a reason that this version does not know")),
+                    };
+                    result.sharpening = Some(Sharpening::Unsharpened(reason));
                 }
                 _ => return Err(self.damaged("a fact that this version does not know")),
             }

@@ -59,6 +59,10 @@ pub struct Options {
     pub certify: bool,
     /// For [`StartKind::Monodromy`]: whether a trace test decides that it has all solutions.
     pub trace_test: bool,
+    /// Decimal digits of the solutions; `None`: those of the precision.
+    pub digits: Option<u32>,
+    /// Whether isolated singular solutions are brought to their digits by deflation.
+    pub deflate: bool,
     /// For [`StartKind::LinearProduct`]: the variables of each factor of each equation.
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
 }
@@ -165,6 +169,7 @@ settings_choice! {
     tolerance: f64, 1e-300..=1e-2;
     predictor_tolerance: f64, 1e-300..=1.0;
     max_step: f64, 1e-12..=1.0;
+    reach: f64, 0.0..=1.0;
     min_step: f64, 1e-300..=1e-2;
     max_steps: u32, 1..=1_000_000_000;
     endgame_boundary: f64, 1e-300..=1.0;

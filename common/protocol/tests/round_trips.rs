@@ -3,6 +3,7 @@
 mod support;
 
 use cognate_continuation::path_result::{Coordinates, PathResult};
+use cognate_continuation::work::{Stage, Work};
 use cognate_protocol::submission::{Source, Submission};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use num_complex::Complex64;
@@ -44,7 +45,8 @@ proptest! {
     #[test]
     fn stages_come_back(seed: u64) {
         let mut draw = Draw::new(seed);
-        for stage in [draw.stage(), draw.later_stage()] {
+        let sharpening = Stage { work: Work::Sharpen { digits: 50 }, ..draw.stage() };
+        for stage in [draw.stage(), draw.later_stage(), sharpening] {
             let message: v1::Stage = sent(&to_proto::path::stage(&stage));
             prop_assert_eq!(from_proto::path::stage(&message).unwrap(), stage);
         }
@@ -53,7 +55,8 @@ proptest! {
     #[test]
     fn results_come_back_by_both_ways(seed: u64) {
         let mut draw = Draw::new(seed);
-        let results: Vec<PathResult> = (0..draw.below(5)).map(|_| draw.path_result()).collect();
+        let mut results: Vec<PathResult> = (0..draw.below(5)).map(|_| draw.path_result()).collect();
+        results.push(draw.sharpened_result());
         for result in &results {
             let message: v1::PathResult = sent(&to_proto::path::path_result(result));
             let back = from_proto::path::path_result(&message).unwrap();
@@ -96,9 +99,20 @@ fn signs_of_zero_and_kinds_of_nan_are_kept_or_made_one() {
 
 #[test]
 fn solutions_come_back() {
-    use cognate_solutions::solution::{NamedValues, Solution};
+    use cognate_solutions::solution::{NamedValue, NamedValues, Solution};
     let solution = Solution {
-        variables: NamedValues(vec![("x".to_owned(), Complex64::new(0.1, -0.0))]),
+        variables: NamedValues(vec![
+            NamedValue {
+                name: "x".to_owned(),
+                value: Complex64::new(0.1, -0.0),
+                digits: None,
+            },
+            NamedValue {
+                name: "y".to_owned(),
+                value: Complex64::new(2.0, 0.0),
+                digits: Some(["2.00000000000000000000".into(), "1.5e-21".into()]),
+            },
+        ]),
         multiplicity: 3,
         cycles: vec![1, 2],
         real: Some(false),
@@ -110,6 +124,7 @@ fn solutions_come_back() {
         class: Some(0),
         paths: vec![3, 4, 17],
         certificate: None,
+        deflations: Some(2),
     };
     let message: v1::Solution = sent(&to_proto::solution::solution(&solution, 0));
     assert_eq!(from_proto::solution::solution(&message).unwrap(), solution);

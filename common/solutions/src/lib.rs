@@ -5,7 +5,8 @@
 //! [`unique_points`] finds the endpoints that are one point; [`path_crossing`]
 //! names the paths that must be tracked again; [`real`] decides whether a
 //! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
-//! that add up; [`plain`] does the same without holding every end; [`certificates`] adds what was proved. Nothing here tracks a path: everything can be decided again
+//! that add up; [`plain`] does the same without holding every end; [`sharpened`] gives solutions more
+//! digits, [`certificates`] adds what was proved. Nothing here tracks a path: everything can be decided again
 //! from stored results, with other tolerances.
 #![forbid(unsafe_code)]
 
@@ -19,6 +20,7 @@ pub mod path_crossing;
 pub mod plain;
 pub mod point_shape;
 pub mod real;
+pub mod sharpened;
 pub mod solution;
 pub mod solution_set;
 pub mod summary;

@@ -62,6 +62,19 @@ pub fn crossings(
     all
 }
 
+/// Of the paths that end at one singular point, by their places, those of cycles that are not
+/// whole: a turn around t = 0 permutes the paths, and one with winding number w takes w of them in
+/// turn, which all end there.
+pub fn broken_cycles(results: &[PathResult], members: &[usize]) -> Vec<usize> {
+    let winding = |place: usize| results[place].winding_number.unwrap_or(1).max(1);
+    let whole = |w: u32| {
+        let turning = members.iter().filter(|&&place| winding(place) == w);
+        turning.count().is_multiple_of(w as usize)
+    };
+    let broken = members.iter().filter(|&&place| !whole(winding(place)));
+    broken.copied().collect()
+}
+
 /// Which crossings were seen in a solve, and which are left.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CrossingBook {
@@ -128,6 +141,16 @@ mod tests {
             .collect();
         let found = crossings(&results, &decisions, &shape, &tolerances, 1);
         assert_eq!(found, [vec![0, 2], vec![5, 6]]);
+    }
+
+    #[test]
+    fn cycles_are_whole_or_named() {
+        let at = |path, winding| singular(path, &[(1.0, 0.0), (0.5, 0.0)], winding, &[0]);
+        let results = [at(0, 2), at(1, 3), at(2, 2), at(3, 1), at(4, 3), at(5, 2)];
+        let named = |members: &[usize]| broken_cycles(&results, members);
+        assert!(named(&[0, 2, 3]).is_empty());
+        assert_eq!(named(&[0, 1, 2, 3, 4]), [1, 4], "one of three is missing");
+        assert_eq!(named(&[0, 1, 2, 5]), [0, 1, 2, 5]);
     }
 
     #[test]

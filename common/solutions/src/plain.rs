@@ -10,7 +10,7 @@ use crate::involution::Involution;
 use crate::path_crossing::radius;
 use crate::point_shape::PointShape;
 use crate::real::is_real;
-use crate::solution::{NamedValues, Solution};
+use crate::solution::Solution;
 use crate::solution_set::SolutionSet;
 use crate::unique_points::projection::Projection;
 use cognate_continuation::path_result::PathResult;
@@ -136,7 +136,7 @@ impl Sieve {
         let values = self.shape.to_variables(result.endpoint.to_double());
         let winding = result.winding_number.unwrap_or(1).max(1);
         let solution = Solution {
-            variables: NamedValues(self.variables.iter().cloned().zip(values).collect()),
+            variables: self.variables.iter().cloned().zip(values).collect(),
             multiplicity: 1,
             cycles: vec![winding],
             real: self.is_real(result),
@@ -148,6 +148,7 @@ impl Sieve {
             class: None,
             paths: vec![result.origin.0],
             certificate: None,
+            deflations: None,
         };
         (verdict, Some(solution))
     }

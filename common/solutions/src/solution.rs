@@ -4,13 +4,43 @@
 
 use crate::certificates::SolutionCertificate;
 use num_complex::Complex64;
-use serde::de::{MapAccess, Visitor};
+use serde::de::{Error, MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
 
 /// Names and values of variables, in the system's order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct NamedValues(pub Vec<(String, Complex64)>);
+pub struct NamedValues(pub Vec<NamedValue>);
+
+/// The value of one variable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedValue {
+    /// The variable.
+    pub name: String,
+    /// Its value.
+    pub value: Complex64,
+    /// Real and imaginary part with all digits, where there are more than a double holds.
+    pub digits: Option<[String; 2]>,
+}
+
+impl NamedValues {
+    /// The values without their names.
+    pub fn values(&self) -> impl ExactSizeIterator<Item = Complex64> + '_ {
+        self.0.iter().map(|variable| variable.value)
+    }
+}
+
+impl FromIterator<(String, Complex64)> for NamedValues {
+    fn from_iter<I: IntoIterator<Item = (String, Complex64)>>(pairs: I) -> Self {
+        let named = |(name, value)| NamedValue {
+            name,
+            value,
+            digits: None,
+        };
+        Self(pairs.into_iter().map(named).collect())
+    }
+}
 
 /// One isolated finite solution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,16 +72,42 @@ pub struct Solution {
     pub paths: Vec<u64>,
     /// What was proved of it, where that was asked for.
     pub certificate: Option<SolutionCertificate>,
+    /// How often the equations were deflated until it was a regular solution; `None` where it was not
+    /// sharpened.
+    #[serde(default)]
+    pub deflations: Option<u32>,
 }
 
+// As JSON an object, in which a number with more digits than a double is a string.
 impl Serialize for NamedValues {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if !serializer.is_human_readable() {
+            return self.0.serialize(serializer);
+        }
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, z) in &self.0 {
-            map.serialize_entry(name, &[z.re, z.im])?;
+        for NamedValue {
+            name,
+            value,
+            digits,
+        } in &self.0
+        {
+            match digits {
+                Some(digits) => map.serialize_entry(name, digits)?,
+                None => map.serialize_entry(name, &[value.re, value.im])?,
+            }
         }
         map.end()
     }
+}
+
+/// A number of a line: a double, or all its digits.
+fn double(number: &Value) -> Option<f64> {
+    let value = match number {
+        Value::Number(number) => number.as_f64(),
+        Value::String(digits) => digits.parse().ok(),
+        _ => None,
+    };
+    value.filter(|value| value.is_finite())
 }
 
 impl<'de> Deserialize<'de> for NamedValues {
@@ -64,13 +120,30 @@ impl<'de> Deserialize<'de> for NamedValues {
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<NamedValues, A::Error> {
                 let mut values = Vec::new();
-                while let Some((name, [re, im])) = map.next_entry::<String, [f64; 2]>()? {
-                    values.push((name, Complex64::new(re, im)));
+                while let Some((name, parts)) = map.next_entry::<String, [Value; 2]>()? {
+                    let (Some(re), Some(im)) = (double(&parts[0]), double(&parts[1])) else {
+                        return Err(A::Error::custom(format!(
+                            "{name} has a part that is no number"
+                        )));
+                    };
+                    let digits = match parts {
+                        [Value::String(re), Value::String(im)] => Some([re, im]),
+                        _ => None,
+                    };
+                    values.push(NamedValue {
+                        name,
+                        value: Complex64::new(re, im),
+                        digits,
+                    });
                 }
                 Ok(NamedValues(values))
             }
         }
-        deserializer.deserialize_map(InOrder)
+        if deserializer.is_human_readable() {
+            deserializer.deserialize_map(InOrder)
+        } else {
+            Ok(Self(Vec::deserialize(deserializer)?))
+        }
     }
 }
 
@@ -95,8 +168,16 @@ mod tests {
     fn a_line_is_as_the_contract_has_it() {
         let solution = Solution {
             variables: NamedValues(vec![
-                ("y".into(), Complex64::new(1.0, -0.5)),
-                ("a".into(), Complex64::new(0.25, 0.0)),
+                NamedValue {
+                    name: "y".into(),
+                    value: Complex64::new(1.0, -0.5),
+                    digits: None,
+                },
+                NamedValue {
+                    name: "a".into(),
+                    value: Complex64::new(0.25, 1e-30),
+                    digits: Some(["0.25000000000000000000".into(), "1e-30".into()]),
+                },
             ]),
             multiplicity: 2,
             cycles: vec![2],
@@ -109,16 +190,19 @@ mod tests {
             class: None,
             paths: vec![3, 17],
             certificate: None,
+            deflations: Some(1),
         };
         let line = serde_json::to_string(&solution).unwrap();
         assert_eq!(
             line,
-            "{\"variables\":{\"y\":[1.0,-0.5],\"a\":[0.25,0.0]},\"multiplicity\":2,\
+            "{\"variables\":{\"y\":[1.0,-0.5],\"a\":[\"0.25000000000000000000\",\"1e-30\"]},\"multiplicity\":2,\
              \"cycles\":[2],\"real\":null,\"singular\":true,\"residual\":1e-16,\
              \"condition\":null,\"accuracy\":1e-9,\"precision_bits\":53,\"class\":null,\
-             \"paths\":[3,17],\"certificate\":null}"
+             \"paths\":[3,17],\"certificate\":null,\"deflations\":1}"
         );
         let back: Solution = serde_json::from_str(&line).unwrap();
         assert_eq!(back, solution);
+        let kept = postcard::to_stdvec(&solution).unwrap();
+        assert_eq!(postcard::from_bytes::<Solution>(&kept).unwrap(), solution);
     }
 }

@@ -9,10 +9,10 @@ use crate::classification::{
 };
 use crate::degenerate::{self, DeclaredSets};
 use crate::involution::Involution;
-use crate::path_crossing::{coincidences, crossings, radius};
+use crate::path_crossing::{broken_cycles, coincidences, crossings, radius};
 use crate::point_shape::PointShape;
 use crate::real::is_real;
-use crate::solution::{NamedValues, Solution};
+use crate::solution::Solution;
 use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
 use crate::symmetry::classes;
 use cognate_continuation::path_result::PathResult;
@@ -297,8 +297,7 @@ impl<'a> Draft<'a> {
             );
             for members in groups {
                 let solution = self.solution(&members, verdict == Verdict::Singular);
-                let winding: u64 = solution.1.cycles.iter().map(|&w| u64::from(w)).sum();
-                if winding != solution.1.multiplicity {
+                if !broken_cycles(self.results, &members).is_empty() {
                     broken.push(members[0]);
                 }
                 found.push(solution);
@@ -363,7 +362,7 @@ impl<'a> Draft<'a> {
         let result = &self.results[best];
         let values = self.shape.to_variables(result.endpoint.to_double());
         let solution = Solution {
-            variables: NamedValues(self.system.variables.iter().cloned().zip(values).collect()),
+            variables: self.system.variables.iter().cloned().zip(values).collect(),
             multiplicity: members.len() as u64,
             cycles: cycles(
                 members
@@ -383,6 +382,7 @@ impl<'a> Draft<'a> {
             class: None,
             paths: members.iter().map(|&m| self.results[m].origin.0).collect(),
             certificate: None,
+            deflations: None,
         };
         (best, solution)
     }
@@ -608,7 +608,10 @@ mod tests {
         );
         assert_eq!(set.solutions[1].real, Some(true));
         assert_eq!(set.solutions[2].real, Some(false));
-        assert_eq!(set.solutions[0].variables.0[0].1, Complex64::new(1.0, 0.0));
+        assert_eq!(
+            set.solutions[0].variables.0[0].value,
+            Complex64::new(1.0, 0.0)
+        );
     }
 
     #[test]

@@ -79,6 +79,20 @@ pub struct SolutionCounts {
     pub positive_dimensional: Option<bool>,
     /// Solutions in each named set of endpoints that are no answers.
     pub degenerate: BTreeMap<String, u64>,
+    /// Those that were brought to more digits; null where that was not asked for.
+    #[serde(default)]
+    pub sharpened: Option<SharpenedCounts>,
+}
+
+/// Solutions with more digits than paths give.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SharpenedCounts {
+    /// Decimal digits that were asked for.
+    pub digits: u32,
+    /// Solutions that have them.
+    pub solutions: u64,
+    /// ... of which were singular and got them by deflation.
+    pub by_deflation: u64,
 }
 
 /// Orbits under a symmetry group.
@@ -119,7 +133,7 @@ mod tests {
             serde_json::to_string(&SolutionCounts::default()).unwrap(),
             "{\"distinct\":0,\"nonsingular\":0,\"singular\":0,\"real\":null,\"real_reason\":null,\
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
-             \"degenerate\":{}}"
+             \"degenerate\":{},\"sharpened\":null}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),

@@ -41,6 +41,7 @@ pub fn regular(path: u64, point: &[(f64, f64)]) -> PathResult {
         asked: None,
         certification: None,
         local_dimension: None,
+        sharpening: None,
     }
 }
 

@@ -69,6 +69,7 @@ pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
         asked: None,
         certification: None,
         local_dimension: None,
+        sharpening: None,
     }
 }
 

@@ -9,6 +9,7 @@ use crate::config::DEFAULT_ADDRESS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_protocol::submission::PrecisionChoice;
 use cognate_worker::transport::connect::CredentialFiles;
 use std::path::PathBuf;
@@ -197,8 +198,12 @@ pub struct ProblemArguments {
     /// Proofs that there is exactly one solution in each box, that they differ, that they are real
     #[arg(long)]
     pub certify: bool,
-    /// Singular solutions made regular (not in this version)
-    #[arg(long, hide = true)]
+    /// Decimal digits of the solutions, found by Newton's method at their ends
+    /// [default: those of the paths' arithmetic]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_DIGITS)))]
+    pub digits: Option<u32>,
+    /// Also isolated singular solutions get their digits, by deflation
+    #[arg(long)]
     pub deflate: bool,
     /// Let a trace test decide when --start monodromy has all solutions: it is a proof but for
     /// rounding, where loops without anything new are only evidence

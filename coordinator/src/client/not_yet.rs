@@ -1,6 +1,6 @@
 //! What belongs to the command line but not to this version: refused with its name, before anything starts.
 
-use super::arguments::{Command, Coordinator, ProblemArguments};
+use super::arguments::{Command, Coordinator};
 use super::error::ClientError;
 use crate::intake::MOST_BITS;
 use cognate_protocol::submission::PrecisionChoice;
@@ -8,9 +8,9 @@ use cognate_protocol::submission::PrecisionChoice;
 /// Refuses the first thing asked for that this version does not have.
 pub fn refuse(command: &Command) -> Result<(), ClientError> {
     let missing = match command {
-        Command::Solve(c) => problem(&c.problem),
-        Command::Path(c) => problem(&c.problem),
-        Command::Submit(c) => problem(&c.problem),
+        Command::Solve(c) => precision(c.problem.precision),
+        Command::Path(c) => precision(c.problem.precision),
+        Command::Submit(c) => precision(c.problem.precision),
         Command::Coordinator(c) => coordinator(c),
         Command::Watch(_)
         | Command::Explain(_)
@@ -27,12 +27,6 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         Some(what) => Err(ClientError::NotInThisVersion { what }),
         None => Ok(()),
     }
-}
-
-fn problem(a: &ProblemArguments) -> Option<String> {
-    (a.deflate)
-        .then(|| "--deflate (deflation of singular solutions)".to_string())
-        .or_else(|| precision(a.precision))
 }
 
 fn precision(choice: PrecisionChoice) -> Option<String> {

@@ -179,6 +179,8 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         expected_solutions: a.expect,
         certify: a.certify,
         trace_test: a.trace_test,
+        digits: a.digits.or(file.digits),
+        deflate: a.deflate,
         sets,
     };
     Ok(Prepared {

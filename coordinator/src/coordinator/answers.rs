@@ -47,12 +47,15 @@ pub struct Explanation {
 
 /// What a stage is for, in words.
 fn purpose(stage: &Stage) -> String {
-    match stage.attempt {
-        _ if stage.work == Work::Certify => "certifying".to_owned(),
-        _ if stage.work == Work::LocalDimension => "whether singular endpoints are isolated".into(),
-        0 if stage.homotopy == HomotopyKind::Toric => "tracking to a generic system".to_owned(),
-        0 => "tracking".to_owned(),
-        attempt => format!("tracking again, more carefully ({attempt})"),
+    match (stage.work, stage.attempt) {
+        (Work::Certify, _) => "certifying".to_owned(),
+        (Work::Sharpen { digits }, _) => format!("bringing solutions to {digits} digits"),
+        (Work::LocalDimension, _) => "whether singular endpoints are isolated".to_owned(),
+        (Work::Track, 0) if stage.homotopy == HomotopyKind::Toric => {
+            "tracking to a generic system".to_owned()
+        }
+        (Work::Track, 0) => "tracking".to_owned(),
+        (Work::Track, attempt) => format!("tracking again, more carefully ({attempt})"),
     }
 }
 
@@ -319,6 +322,15 @@ impl Coordinator {
                         .solutions
                         .certified_real
                         .map_or("none".to_owned(), |n| n.to_string()),
+                ));
+            }
+            if let Some(sharpened) = &summary.solutions.sharpened {
+                lines.push(format!(
+                    "sharpened: {} of {} solutions to {} digits, {} of them by deflation",
+                    sharpened.solutions,
+                    summary.solutions.distinct,
+                    sharpened.digits,
+                    sharpened.by_deflation
                 ));
             }
             for (reason, count) in &summary.failures {

@@ -9,9 +9,11 @@ use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::{Next, PathAlgorithm, PlanError};
+use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::stage::{PrepareError, PreparedStage};
 use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
 use cognate_protocol::submission::{Options, PrecisionChoice, StartKind, StartSolutions};
+use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -130,9 +132,20 @@ pub fn plan_options(
             PrecisionChoice::Adaptive | PrecisionChoice::Bits(_) => MAX_RETRIES,
         },
         certify: options.certify,
+        digits: options.digits.unwrap_or(match options.precision {
+            PrecisionChoice::Bits(bits) => digits_of(bits),
+            PrecisionChoice::Double | PrecisionChoice::Adaptive => DIGITS_OF_DOUBLES,
+        }),
+        deflate: options.deflate,
         sets: options.sets.clone(),
         ..PlanOptions::default()
     })
+}
+
+/// Decimal digits that a number of this many bits has for certain.
+fn digits_of(bits: u32) -> u32 {
+    let digits = (f64::from(bits) / std::f64::consts::LOG2_10) as u32;
+    digits.clamp(DIGITS_OF_DOUBLES, MOST_DIGITS)
 }
 
 /// The plan of a system, whose first stage a worker can prepare.

@@ -388,6 +388,7 @@ mod tests {
             asked: None,
             certification: None,
             local_dimension: None,
+            sharpening: None,
         };
         (0..count).map(result).collect()
     }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Solution sets as objects.
-pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL02");
+pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL03");
 
 /// Answers of large jobs as objects.
 pub const LARGE: RecordKind = RecordKind(b"CGNLRG01");
@@ -280,6 +280,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             certified_real,
             positive_dimensional,
             degenerate,
+            sharpened,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;
@@ -295,6 +296,12 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             .map(|(a, b)| a || b);
         for (name, number) in degenerate {
             *counts.degenerate.entry(name.clone()).or_default() += number;
+        }
+        if let Some(found) = sharpened {
+            let sum = counts.sharpened.get_or_insert_default();
+            sum.digits = found.digits;
+            sum.solutions += found.solutions;
+            sum.by_deflation += found.by_deflation;
         }
     }
     TargetBlock {

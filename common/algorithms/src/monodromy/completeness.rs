@@ -11,6 +11,13 @@ use num_complex::Complex64;
 /// Least |lambda| of a point that does not lie at the parameters where a curve begins.
 const NOT_THERE: f64 = 1e-9;
 
+/// How likely loops in a row leave the one orbit alone that is not known beside `known` others,
+/// where each permutes all of them at random: one of known + 1 does.
+pub(super) fn probability_of_hiding(known: usize, loops: u64) -> f64 {
+    let each = 1.0 / (known as f64 + 1.0);
+    (0..loops).fold(1.0, |product, _| product * each)
+}
+
 /// What is known of completeness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tested {

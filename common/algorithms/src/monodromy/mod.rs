@@ -19,7 +19,7 @@ use crate::plan::MAX_PATHS;
 use crate::plan_error::PlanError;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::{MAX_RETRIES, can_be_helped};
-use crate::{Certifiable, Next, Opening, PathAlgorithm};
+use crate::{FiniteEndpoints, Next, Opening, PathAlgorithm};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
@@ -32,7 +32,7 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
-use completeness::Tested;
+use completeness::{Tested, probability_of_hiding};
 use counts::{LoopCounts, Stop};
 use graph::{Arrival, Fate, Graph, Known};
 use num_complex::Complex64;
@@ -64,7 +64,9 @@ impl Default for LoopLimits {
     }
 }
 
-/// Most idle loops that a small set is asked for.
+/// Most idle loops that a small set is asked for. So many, or as many as cost 512 paths, or the five
+/// of the default would hide a solution with a probability below 1e-9 if each permuted all of them at
+/// random.
 pub const MOST_IDLE: u64 = 32;
 /// Paths that idle loops may always cost.
 const IDLE_PATHS: u64 = 512;
@@ -577,6 +579,7 @@ impl MonodromySolve {
 
     fn warn_of_the_end(&mut self) {
         let counts = &self.counts;
+        let known = self.graph.vertices[BASE].points.len();
         let mut warnings = Vec::new();
         let bent = counts.trace_test.as_ref().filter(|test| {
             let off = test.deviation;
@@ -596,8 +599,11 @@ impl MonodromySolve {
                 ),
                 (None, None) => format!(
                     "monodromy found {} solutions at generic parameters, and {} loops more brought \
-                     nothing new: strong evidence that none is missing, but no proof",
-                    counts.solutions, counts.idle_loops
+                     nothing new: strong evidence that none is missing (loops that permute at \
+                     random would hide one with probability {:.0e}), but no proof",
+                    counts.solutions,
+                    counts.idle_loops,
+                    probability_of_hiding(known, counts.idle_loops)
                 ),
             }),
             Some(Stop::PathLimit) => warnings.push(format!(
@@ -620,7 +626,6 @@ impl MonodromySolve {
                     .to_string(),
             );
         }
-        let known = self.graph.vertices[BASE].points.len();
         let more = self.graph.vertices[BASE + 1..].iter();
         let most = more.map(|vertex| vertex.points.len()).max().unwrap_or(0);
         if most > known && counts.stop != Some(Stop::Count) {
@@ -672,9 +677,9 @@ fn edge_seed(seed: u64, edge: usize) -> u64 {
 }
 
 impl PathAlgorithm for MonodromySolve {
-    fn certifiable(&self) -> Option<Certifiable> {
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         match &self.phase {
-            Phase::Arrive(solve) => solve.certifiable(),
+            Phase::Arrive(solve) => solve.finite_endpoints(),
             Phase::Check(_) | Phase::Loops(_) | Phase::Sections(_) | Phase::Stuck => None,
         }
     }

@@ -520,3 +520,25 @@ fn what_cannot_be_traced_is_refused_by_name() {
         "{error}"
     );
 }
+
+/// Ten thousand random permutations of five: of those that leave the last alone there are a fifth.
+#[test]
+fn idle_loops_are_less_and_less_likely_to_hide_a_solution() {
+    let mut random = RandomStream::new(1, Purpose::Test, 0);
+    let mut alone = 0;
+    for _ in 0..10_000 {
+        let mut order = [0, 1, 2, 3, 4];
+        for i in (1..5).rev() {
+            order.swap(i, random.below(i as u64 + 1) as usize);
+        }
+        alone += u32::from(order[4] == 4);
+    }
+    let expected = probability_of_hiding(4, 1);
+    assert!((f64::from(alone) / 10_000.0 - expected).abs() < 0.02);
+    assert!((probability_of_hiding(4, 3) - 0.008).abs() < 1e-15);
+    for known in 1..2000 {
+        let loops = (IDLE_PATHS / known as u64).clamp(5, MOST_IDLE);
+        assert!(probability_of_hiding(known, loops) < 1e-9, "{known}");
+    }
+    assert_eq!(probability_of_hiding(8652, 100), 0.0);
+}

@@ -11,4 +11,4 @@ mod stage;
 
 pub use certificate::{Certificate, Certification, Uncertified};
 pub use krawczyk::{Krawczyk, MOST_BITS};
-pub use stage::{CertificationStage, certified_system, parameters_at_targets};
+pub use stage::{CertificationStage, certified_system};

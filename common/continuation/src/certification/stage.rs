@@ -1,17 +1,15 @@
 //! CertificationStage: the points of a stage, each with the attempt to certify it.
 
-use super::{Certification, Krawczyk};
-use crate::homotopies::HomotopyKind;
-use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use super::Krawczyk;
+use crate::path_result::PathResult;
+use crate::points_at_targets::{Item, PointsAtTargets};
 use crate::stage::PrepareError;
-use crate::start_points::{Digest, StartPoints, StoredPoints};
-use crate::tracker::outcome::PathOutcome;
+use crate::start_points::{Digest, StoredPoints};
 use crate::work::Stage;
 use cognate_systems::evaluation::Interpreter;
 use cognate_systems::polynomial::degrees;
 use cognate_systems::system::System;
 use cognate_systems::transform::randomize;
-use num_complex::Complex64;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -21,13 +19,9 @@ use std::sync::Arc;
 /// says at which parameters: those at its end, for the item's target.
 #[derive(Debug)]
 pub struct CertificationStage {
-    stage: Stage,
     program: Interpreter,
     homogeneous: Vec<Vec<usize>>,
-    /// Values of all parameters, for each target.
-    targets: Vec<Vec<Complex64>>,
-    points: Arc<StoredPoints>,
-    items: u64,
+    points: PointsAtTargets,
 }
 
 /// The square system whose solutions are certified: the system itself, or the same combinations
@@ -40,30 +34,6 @@ pub fn certified_system(system: &System, seed: u64) -> Result<System, PrepareErr
     Ok(randomize(system, &found, seed))
 }
 
-/// The parameters at the end of a homotopy, target by target.
-pub fn parameters_at_targets(homotopy: &HomotopyKind, system: &System) -> Vec<Vec<Complex64>> {
-    match homotopy {
-        HomotopyKind::StraightLine { parameters }
-        | HomotopyKind::Generic { parameters }
-        | HomotopyKind::Slide { parameters, .. }
-        | HomotopyKind::Intersect { parameters, .. } => {
-            vec![parameters.clone()]
-        }
-        // They end at another system.
-        HomotopyKind::Toric | HomotopyKind::Sections { .. } => {
-            vec![vec![Complex64::new(0.0, 0.0); system.parameters.len()]]
-        }
-        HomotopyKind::Parameter { targets, .. } => targets.clone(),
-        HomotopyKind::PathVariable { parameters } => {
-            let mut parameters = parameters.clone();
-            if let Some(value) = system.path_variable.and_then(|t| parameters.get_mut(t)) {
-                *value = Complex64::new(0.0, 0.0);
-            }
-            vec![parameters]
-        }
-    }
-}
-
 impl CertificationStage {
     /// Checks that stage and system fit, and compiles.
     pub fn new(
@@ -71,67 +41,18 @@ impl CertificationStage {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
-        system.check()?;
-        let dimension = system.dimension();
-        if system.equation_count() < dimension || dimension == 0 {
-            return Err(PrepareError::Underdetermined {
-                equations: system.equation_count(),
-                dimension,
-            });
-        }
-        let targets = parameters_at_targets(&stage.homotopy, system);
-        for target in &targets {
-            if target.len() != system.parameters.len() {
-                return Err(PrepareError::Parameters {
-                    what: "parameters",
-                    found: target.len(),
-                    expected: system.parameters.len(),
-                });
-            }
-        }
-        let base = match &stage.start_points {
-            StartPoints::Selected { base, .. } => base,
-            other => other,
-        };
-        let StartPoints::Stored { object, count } = base else {
-            return Err(PrepareError::StartPoints(
-                "only stored points are certified".into(),
-            ));
-        };
-        let points = objects(*object).ok_or(PrepareError::MissingObject(*object))?;
-        if points.len() as u64 != *count || points.dimension != system.variable_count() {
-            return Err(PrepareError::StartPoints(format!(
-                "{} points of {} coordinates for {} variables",
-                points.len(),
-                points.dimension,
-                system.variable_count()
-            )));
-        }
-        let items = stage
-            .items()
-            .ok_or_else(|| PrepareError::StartPoints("they are more than fit in 64 bits".into()))?;
-        if let StartPoints::Selected { indices, .. } = &stage.start_points {
-            let end = count.saturating_mul(targets.len() as u64);
-            if indices.iter().any(|&index| index >= end) {
-                return Err(PrepareError::StartPoints(
-                    "a selected index is too large".into(),
-                ));
-            }
-        }
+        let points = PointsAtTargets::new(system, stage, objects)?;
         let square = certified_system(system, stage.seed)?;
         Ok(Self {
             program: Krawczyk::program(&square),
             homogeneous: Krawczyk::homogeneous(&square),
-            stage: stage.clone(),
-            targets,
             points,
-            items,
         })
     }
 
     /// Number of items.
     pub fn items(&self) -> u64 {
-        self.items
+        self.points.items()
     }
 
     /// Tries to certify these items; results in item order. Pure, as tracking is.
@@ -139,61 +60,43 @@ impl CertificationStage {
     /// # Panics
     /// When `items` reaches beyond the stage.
     pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
-        assert!(items.end <= self.items, "a chunk lies within its stage");
-        let count = self.points.len().max(1) as u64;
-        let mut test: Option<(u64, Krawczyk)> = None;
+        assert!(items.end <= self.items(), "a chunk lies within its stage");
+        let mut test: Option<(usize, Krawczyk)> = None;
         items
             .map(|item| {
-                let origin = self.stage.origin(item);
-                let target = origin / count;
-                let point = usize::try_from(origin % count).expect("a point that is in memory");
+                let Item { target, point, .. } = self.points.item(item);
                 let known = test.take().filter(|(of, _)| *of == target);
                 let (_, krawczyk) = test.insert(known.unwrap_or_else(|| {
-                    let place = usize::try_from(target).expect("a target that is in memory");
                     let krawczyk = Krawczyk::with_program(
                         self.program.clone(),
                         self.homogeneous.clone(),
-                        &self.targets[place],
+                        self.points.parameters(target),
                     );
                     (target, krawczyk)
                 }));
-                let point = self.points.point(point);
-                self.result(origin, point, krawczyk.certify(point))
+                let certification = krawczyk.certify(point);
+                let bits = certification
+                    .certificate()
+                    .map(|found| found.precision_bits);
+                PathResult {
+                    precision_bits: bits.unwrap_or(super::MOST_BITS),
+                    certification: Some(certification),
+                    ..self.points.result(item)
+                }
             })
             .collect()
-    }
-
-    fn result(&self, origin: u64, point: &[Complex64], certification: Certification) -> PathResult {
-        PathResult {
-            origin: PathIndex(origin),
-            attempt: self.stage.attempt,
-            outcome: PathOutcome::Regular,
-            // No path was followed: the point is the one that was given, in the values of the
-            // variables, and all that is known of it is in the certification.
-            endpoint: Coordinates::Double(point.to_vec()),
-            t: Complex64::new(0.0, 0.0),
-            residual: f64::INFINITY,
-            condition: f64::INFINITY,
-            accuracy: f64::INFINITY,
-            winding_number: None,
-            infinity_turns: Vec::new(),
-            precision_bits: certification
-                .certificate()
-                .map_or(super::MOST_BITS, |found| found.precision_bits),
-            counts: Counts::default(),
-            asked: None,
-            certification: Some(certification),
-            local_dimension: None,
-        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certification::Uncertified;
+    use crate::certification::{Certification, Uncertified};
+    use crate::homotopies::HomotopyKind;
+    use crate::start_points::StartPoints;
     use crate::work::{StageId, Work};
     use cognate_systems::formats::read;
+    use num_complex::Complex64;
 
     fn real(values: &[f64]) -> Vec<Complex64> {
         values.iter().map(|&v| Complex64::new(v, 0.0)).collect()

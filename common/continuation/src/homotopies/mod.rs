@@ -92,6 +92,11 @@ impl HomotopyKind {
         }
     }
 
+    /// Whether its paths are all that there are: those of a start system, not of points that are given.
+    pub fn takes_all_paths(&self) -> bool {
+        matches!(self, Self::StraightLine { .. } | Self::Generic { .. })
+    }
+
     /// Whether the paths end at solutions of the system, rather than of one on the way to it.
     pub fn ends_at_the_system(&self) -> bool {
         match self {

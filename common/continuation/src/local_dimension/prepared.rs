@@ -123,6 +123,7 @@ impl PreparedLocalDimension {
             asked: None,
             certification: None,
             local_dimension: found,
+            sharpening: None,
         }
     }
 }

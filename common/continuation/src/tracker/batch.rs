@@ -25,6 +25,9 @@ pub(super) struct Batch<R: Real> {
     pub target: Complex<R::Control>,
     /// Wanted length of the next step.
     pub h: R::Control,
+    /// Largest first Newton correction of a step, relative, and what it is where nothing is near.
+    pub limit: R::Control,
+    usual_limit: f64,
     /// Lanes whose next step has length 0.
     pub refine: R::Mask,
     /// Lanes whose last step was not rejected.
@@ -35,7 +38,7 @@ pub(super) struct Batch<R: Real> {
 }
 
 impl<R: Real> Batch<R> {
-    pub fn new(context: R::Context, dimension: usize, parameters: usize) -> Self {
+    pub fn new(context: R::Context, dimension: usize, parameters: usize, limit: f64) -> Self {
         let points = || vec![Complex::<R>::zero(context); dimension];
         let control = |v: f64| R::Control::from_f64((), v);
         Self {
@@ -48,6 +51,8 @@ impl<R: Real> Batch<R> {
             newest: 0,
             target: Complex::from_f64((), 1.0, 0.0),
             h: control(0.0),
+            limit: control(limit),
+            usual_limit: limit,
             refine: R::Mask::splat(true),
             may_grow: R::Mask::splat(true),
             a: vec![Complex::zero(context); parameters],
@@ -198,8 +203,15 @@ impl<R: Real> Batch<R> {
     pub fn follow(&mut self, lane: usize, target: Complex64, h: f64) {
         self.target.set_lane(lane, target);
         self.h.set_lane(lane, h);
+        self.limit.set_lane(lane, self.usual_limit);
         self.refine.set_lane(lane, false);
         self.may_grow.set_lane(lane, true);
+    }
+
+    /// The lane's next steps are no longer and no coarser than this.
+    pub fn restrict(&mut self, lane: usize, h: f64, limit: f64) {
+        self.h.set_lane(lane, self.h.lane(lane).min(h));
+        self.limit.set_lane(lane, self.usual_limit.min(limit));
     }
 }
 

@@ -15,6 +15,7 @@ use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
 use super::rooms::{Departure, Door, Ended, Room, Waiting};
 use super::settings::Settings;
+use super::survey::{Reach, Surveyor};
 use crate::chart::{LEAST_NORM, norm};
 use crate::endgames::cauchy::{self, VERTICES, distance};
 use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
@@ -26,6 +27,7 @@ use cognate_machine_code::Evaluator;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
+use cognate_numeric::scalar::jet::TERMS;
 use cognate_numeric::scalar::{Complex, DoubleDouble, Mask, Real};
 use cognate_systems::evaluation::Evaluate;
 use num_complex::Complex64;
@@ -61,6 +63,8 @@ const FIRM: f64 = 1e-10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
 /// next rung.
 const STARVED: u32 = 2;
+/// In robust mode a first Newton correction is at most this part of the distance to another path.
+const APART: f64 = 0.05;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
 /// is not for want of digits.
 const ENDGAME_BITS: u32 = 212;
@@ -86,6 +90,8 @@ pub(super) struct Lockstep<'a, R: Real> {
     p: Vec<Complex<R>>,
     dp: Vec<Complex<R>>,
     refiner: Refiner<'a, R::Single>,
+    /// In robust mode.
+    surveyor: Option<Surveyor<'a, R::Single>>,
     circle: Vec<Complex64>,
     waiting: Waiting,
     ended: Ended,
@@ -126,8 +132,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
             context,
             on_the_way: Limits::on_the_way(room.bits, &settings),
             around_zero: Limits::around_zero(room.bits, &settings),
+            batch: Batch::new(context, n, parameters, settings.predictor_tolerance),
+            surveyor: (settings.reach > 0.0).then(|| Surveyor::new(homotopy, context)),
             settings,
-            batch: Batch::new(context, n, parameters),
             lanes: vec![Lane::default(); R::WIDTH],
             scratch: Evaluate::<R>::scratch(homotopy.evaluator(), context),
             matrix: Matrix::zeros(context, n, n + 2),
@@ -322,7 +329,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let [first, second, third] = &corrections;
 
         // Accept: the correction contracts, and what is left of it is below the tolerance.
-        let limit = control(settings.predictor_tolerance);
+        let limit = batch.limit.clone();
         let tolerance = control(settings.tolerance);
         let mut contracted = control(CONTRACTION);
         contracted.mul(first);
@@ -459,6 +466,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 let h = (0.5 * reach / speed).min(settings.max_step).max(1e-6);
                 self.batch.follow(lane, Complex64::default(), h);
                 self.lanes[lane].phase = Phase::Approaching;
+                self.look_around(lane);
             }
             Phase::Approaching => {
                 // Steps far shorter than the way that is left speak of a singularity beside the
@@ -491,6 +499,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     || h < settings.min_step * t.re.max(settings.endgame_radius)
                 {
                     self.give_up(lane, t, Failure::StepTooSmall);
+                } else if step.accepted {
+                    self.look_around(lane);
                 }
             }
             Phase::Arriving => {
@@ -568,6 +578,24 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 self.obey(lane, next);
             }
         }
+    }
+
+    /// In robust mode the next step of a path stays away from singularities and from other paths.
+    fn look_around(&mut self, lane: usize) {
+        let Some(surveyor) = &mut self.surveyor else {
+            return;
+        };
+        let (context, t) = (self.context, self.batch.t(lane));
+        let digits = self.batch.digits(lane);
+        let point: Vec<_> = digits
+            .iter()
+            .map(|z| z.value::<R::Single>(context))
+            .collect();
+        let path = &mut self.lanes[lane];
+        let Reach { radius, apart } = surveyor.look(&point, t, path.target);
+        path.evaluations += TERMS as u32;
+        self.batch
+            .restrict(lane, self.settings.reach * radius, APART * apart);
     }
 
     /// Carries out what the endgame wants.
@@ -883,6 +911,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             asked: None,
             certification: None,
             local_dimension: None,
+            sharpening: None,
         };
         self.ended.results.push((path.item, result));
     }

@@ -12,3 +12,4 @@ pub mod observer;
 pub mod outcome;
 pub(crate) mod rooms;
 pub mod settings;
+mod survey;

@@ -3,6 +3,10 @@
 use cognate_numeric::precision::rungs;
 use serde::{Deserialize, Serialize};
 
+/// Robust steps are half as long as the way to the nearest singularity: beta_1 in Telen, Van Barel,
+/// Verschelde (2020), section 4.
+const REACH: f64 = 0.5;
+
 /// What decides how a path is tracked. Part of what a path's result is a function of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
@@ -14,6 +18,9 @@ pub struct Settings {
     pub predictor_tolerance: f64,
     /// Largest step in t.
     pub max_step: f64,
+    /// Robust mode: longest step, as a part of the distance in t to the nearest singularity of the
+    /// path as its Taylor series shows it; 0 switches the mode off.
+    pub reach: f64,
     /// Smallest step, relative to the distance that is left to the next target in t.
     pub min_step: f64,
     /// Accepted and rejected steps of one path; one with 212 bits counts twice, and so on.
@@ -42,6 +49,7 @@ impl Default for Settings {
             tolerance: 1e-10,
             predictor_tolerance: 1e-4,
             max_step: 0.1,
+            reach: 0.0,
             min_step: 1e-13,
             max_steps: 20_000,
             endgame_boundary: 0.1,
@@ -59,7 +67,7 @@ impl Default for Settings {
 /// Named settings; each names its trade.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Preset {
-    /// A hundred times tighter prediction: about three times slower, fewest path jumps.
+    /// A hundred times tighter prediction in robust mode: many times slower, fewest path jumps.
     Careful,
     /// What the known counts were checked with.
     #[default]
@@ -78,6 +86,7 @@ impl Preset {
             Self::Careful => Settings {
                 predictor_tolerance: 1e-6,
                 max_step: 0.05,
+                reach: REACH,
                 ..default
             },
             Self::Default => default,
@@ -95,8 +104,14 @@ impl Preset {
 }
 
 impl Settings {
-    /// Settings for a path that is tracked again, `attempt` counted from 1: tighter each time,
-    /// from the second time on with twice the digits from the beginning.
+    /// The same in robust mode.
+    #[must_use]
+    pub fn robust(self) -> Self {
+        let reach = if self.reach > 0.0 { self.reach } else { REACH };
+        Self { reach, ..self }
+    }
+
+    /// Settings for a path that is tracked again, `attempt` counted from 1: tighter each time, from the second time on with twice the digits from the beginning.
     #[must_use]
     pub fn tightened(&self, attempt: u16) -> Self {
         let mut tighter = self.clone();

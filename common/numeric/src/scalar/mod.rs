@@ -10,10 +10,12 @@ pub mod directed;
 mod double;
 mod double_double;
 mod interval;
+pub mod jet;
 mod multiple_precision;
 
 pub use double_double::DoubleDouble;
 pub use interval::Interval;
+pub use jet::Jet;
 pub use multiple_precision::MultiplePrecision;
 
 use crate::rational::{ComplexRational, Rational};

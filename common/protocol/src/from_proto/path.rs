@@ -10,6 +10,7 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{
     AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
 };
+use cognate_continuation::sharpening::{MOST_DIGITS, Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -25,6 +26,16 @@ pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
         Ok(v1::Work::Track) => Work::Track,
         Ok(v1::Work::Certify) => Work::Certify,
         Ok(v1::Work::LocalDimension) => Work::LocalDimension,
+        Ok(v1::Work::Sharpen) => {
+            if !(1..=MOST_DIGITS).contains(&m.digits) {
+                return Err(ProtocolError::invalid(
+                    "digits",
+                    m.digits,
+                    format!("1 to {MOST_DIGITS}"),
+                ));
+            }
+            Work::Sharpen { digits: m.digits }
+        }
         Ok(v1::Work::Unspecified) | Err(_) => {
             return Err(ProtocolError::invalid(
                 "work",
@@ -310,6 +321,12 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             .transpose()
             .map_err(|e| e.within("certification"))?,
         local_dimension: m.local_dimension.as_ref().map(dual_space).transpose()?,
+        sharpening: m
+            .sharpening
+            .as_ref()
+            .map(sharpening)
+            .transpose()
+            .map_err(|e| e.within("sharpening"))?,
     })
 }
 
@@ -338,28 +355,71 @@ fn certification(m: &v1::Certification) -> Result<Certification, ProtocolError> 
     })
 }
 
-fn certificate(m: &v1::Certificate) -> Result<Certificate, ProtocolError> {
-    within_limit("centre", m.centre.len() / 2, sizes::VARIABLES)?;
-    if !m.centre.len().is_multiple_of(2) {
+/// Exact numbers from their parts.
+fn exact_parts(field: &str, parts: &[String]) -> Result<Vec<ComplexRational>, ProtocolError> {
+    within_limit(field, parts.len() / 2, sizes::VARIABLES)?;
+    if !parts.len().is_multiple_of(2) {
         return Err(ProtocolError::invalid(
-            "centre",
-            format!("{} numbers", m.centre.len()),
+            field,
+            format!("{} numbers", parts.len()),
             "real and imaginary part of every coordinate",
         ));
     }
     let exact = |i: usize| {
-        read_exact(&m.centre[i]).ok_or_else(|| {
+        read_exact(&parts[i]).ok_or_else(|| {
             ProtocolError::invalid(
-                format!("centre[{i}]"),
-                &m.centre[i],
+                format!("{field}[{i}]"),
+                &parts[i],
                 "an exact number such as -0x1fp-3",
             )
         })
     };
+    (0..parts.len() / 2)
+        .map(|i| Ok(ComplexRational::new(exact(2 * i)?, exact(2 * i + 1)?)))
+        .collect()
+}
+
+fn sharpening(m: &v1::Sharpening) -> Result<Sharpening, ProtocolError> {
+    use v1::sharpening::Outcome;
+    Ok(match required("outcome", m.outcome.as_ref())? {
+        Outcome::Sharpened(m) => {
+            within_limit(
+                "precision_bits",
+                m.precision_bits as usize,
+                limits::PRECISION_BITS,
+            )?;
+            let found = Sharpened {
+                values: exact_parts("values", &m.values)?,
+                accuracy: m.accuracy,
+                deflations: m.deflations,
+                precision_bits: m.precision_bits,
+            };
+            if !found.is_sound() {
+                let expected = "at least 0 and below 1";
+                return Err(ProtocolError::invalid("accuracy", m.accuracy, expected));
+            }
+            Sharpening::Sharpened(Box::new(found))
+        }
+        Outcome::Unsharpened(reason) => {
+            Sharpening::Unsharpened(match v1::Unsharpened::try_from(*reason) {
+                Ok(v1::Unsharpened::DamagedPoint) => Unsharpened::DamagedPoint,
+                Ok(v1::Unsharpened::NotRegular) => Unsharpened::NotRegular,
+                Ok(v1::Unsharpened::NewtonLeaves) => Unsharpened::NewtonLeaves,
+                Ok(v1::Unsharpened::Unspecified) | Err(_) => {
+                    return Err(ProtocolError::invalid(
+                        "unsharpened",
+                        *reason,
+                        "a reason that this version knows",
+                    ));
+                }
+            })
+        }
+    })
+}
+
+fn certificate(m: &v1::Certificate) -> Result<Certificate, ProtocolError> {
     let certificate = Certificate {
-        centre: (0..m.centre.len() / 2)
-            .map(|i| Ok(ComplexRational::new(exact(2 * i)?, exact(2 * i + 1)?)))
-            .collect::<Result<_, ProtocolError>>()?,
+        centre: exact_parts("centre", &m.centre)?,
         radius: m.radius.clone(),
         error: m.error.clone(),
         contraction: m.contraction,

@@ -7,6 +7,7 @@ use crate::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
 use crate::v1;
+use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_numeric::rational::{ComplexRational, Rational};
@@ -130,6 +131,14 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
         expected_solutions: m.expected_solutions,
         certify: m.certify,
         trace_test: m.trace_test,
+        digits: match m.digits {
+            Some(digits) if !(1..=MOST_DIGITS).contains(&digits) => {
+                let expected = format!("1 to {MOST_DIGITS}");
+                return Err(ProtocolError::invalid("digits", digits, expected));
+            }
+            digits => digits,
+        },
+        deflate: m.deflate,
         sets: match m.sets.is_empty() {
             true => None,
             false => Some(equation_sets("sets", &m.sets)?),

@@ -3,7 +3,7 @@
 use super::finite;
 use crate::error::{ProtocolError, within_limit};
 use crate::v1;
-use cognate_solutions::solution::{NamedValues, Solution};
+use cognate_solutions::solution::{NamedValue, NamedValues, Solution};
 use cognate_systems::formats::limits as sizes;
 use num_complex::Complex64;
 
@@ -28,9 +28,13 @@ pub fn solution(m: &v1::Solution) -> Result<Solution, ProtocolError> {
             return Err(ProtocolError::invalid(field, value, "a number"));
         }
     }
-    let names = m.variables.iter().map(|v| v.name.clone());
+    let named = |(v, value): (&v1::VariableValue, Complex64)| NamedValue {
+        name: v.name.clone(),
+        value,
+        digits: v.re_digits.clone().zip(v.im_digits.clone()).map(Into::into),
+    };
     Ok(Solution {
-        variables: NamedValues(names.zip(values).collect()),
+        variables: NamedValues(m.variables.iter().zip(values).map(named).collect()),
         multiplicity: m.multiplicity,
         cycles: m.cycles.clone(),
         real: m.real,
@@ -47,5 +51,6 @@ pub fn solution(m: &v1::Solution) -> Result<Solution, ProtocolError> {
             .map(serde_json::from_str)
             .transpose()
             .map_err(|e| ProtocolError::invalid("certificate", e, "a certificate as JSON"))?,
+        deflations: m.deflations,
     })
 }

@@ -7,10 +7,12 @@ use crate::v1;
 use cognate_continuation::certification::{Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
+use cognate_continuation::sharpening::{Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, Work};
 use cognate_numeric::exact_text::exact_text;
+use cognate_numeric::rational::ComplexRational;
 
 /// A stage.
 pub fn stage(stage: &Stage) -> v1::Stage {
@@ -20,6 +22,7 @@ pub fn stage(stage: &Stage) -> v1::Stage {
             Work::Track => v1::Work::Track,
             Work::Certify => v1::Work::Certify,
             Work::LocalDimension => v1::Work::LocalDimension,
+            Work::Sharpen { .. } => v1::Work::Sharpen,
         }
         .into(),
         homotopy: Some(homotopy(&stage.homotopy)),
@@ -29,6 +32,10 @@ pub fn stage(stage: &Stage) -> v1::Stage {
         ))),
         seed: stage.seed,
         attempt: stage.attempt.into(),
+        digits: match stage.work {
+            Work::Sharpen { digits } => digits,
+            Work::Track | Work::Certify | Work::LocalDimension => 0,
+        },
     }
 }
 
@@ -168,6 +175,38 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             bound: found.bound,
             margin: found.margin,
         }),
+        sharpening: r.sharpening.as_ref().map(sharpening),
+    }
+}
+
+/// Real and imaginary parts of dyadic numbers.
+fn exact_parts(values: &[ComplexRational]) -> Vec<String> {
+    let parts = values.iter().flat_map(|z| [&z.re, &z.im]);
+    parts
+        .map(|part| exact_text(part).expect("numbers of points and boxes are dyadic"))
+        .collect()
+}
+
+fn sharpening(of: &Sharpening) -> v1::Sharpening {
+    use v1::sharpening::Outcome;
+    let outcome = match of {
+        Sharpening::Sharpened(found) => Outcome::Sharpened(v1::Sharpened {
+            values: exact_parts(&found.values),
+            accuracy: found.accuracy,
+            deflations: found.deflations,
+            precision_bits: found.precision_bits,
+        }),
+        Sharpening::Unsharpened(reason) => {
+            let reason = match reason {
+                Unsharpened::DamagedPoint => v1::Unsharpened::DamagedPoint,
+                Unsharpened::NotRegular => v1::Unsharpened::NotRegular,
+                Unsharpened::NewtonLeaves => v1::Unsharpened::NewtonLeaves,
+            };
+            Outcome::Unsharpened(reason.into())
+        }
+    };
+    v1::Sharpening {
+        outcome: Some(outcome),
     }
 }
 
@@ -175,12 +214,7 @@ fn certification(of: &Certification) -> v1::Certification {
     use v1::certification::Outcome;
     let outcome = match of {
         Certification::Certified(certificate) => Outcome::Certificate(v1::Certificate {
-            centre: certificate
-                .centre
-                .iter()
-                .flat_map(|z| [&z.re, &z.im])
-                .map(|part| exact_text(part).expect("the numbers of a certificate are dyadic"))
-                .collect(),
+            centre: exact_parts(&certificate.centre),
             radius: certificate.radius.clone(),
             error: certificate.error.clone(),
             contraction: certificate.contraction,

@@ -12,12 +12,12 @@ pub fn solution(s: &Solution, target: u32) -> v1::Solution {
             .variables
             .0
             .iter()
-            .map(|(name, z)| v1::VariableValue {
-                name: name.clone(),
-                re: z.re,
-                im: z.im,
-                re_digits: None,
-                im_digits: None,
+            .map(|v| v1::VariableValue {
+                name: v.name.clone(),
+                re: v.value.re,
+                im: v.value.im,
+                re_digits: v.digits.as_ref().map(|[re, _]| re.clone()),
+                im_digits: v.digits.as_ref().map(|[_, im]| im.clone()),
             })
             .collect(),
         multiplicity: s.multiplicity,
@@ -35,6 +35,7 @@ pub fn solution(s: &Solution, target: u32) -> v1::Solution {
             serde_json::to_string(certificate).expect("a certificate has only names and numbers")
         }),
         target,
+        deflations: s.deflations,
     }
 }
 

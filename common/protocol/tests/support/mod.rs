@@ -6,6 +6,7 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{
     AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
 };
+use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -243,6 +244,8 @@ impl Draw {
             expected_solutions: Some(length as u64).filter(|&n| n > 0),
             certify: length > 1,
             trace_test: length == 1,
+            digits: (count > 1).then_some(50),
+            deflate: length > 2,
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
         }
     }
@@ -253,6 +256,7 @@ impl Draw {
             tolerance: 1e-10,
             predictor_tolerance: 1e-4,
             max_step: 0.1,
+            reach: 0.0,
             min_step: 1e-13,
             max_steps: 20_000,
             endgame_boundary: 0.1,
@@ -379,6 +383,33 @@ impl Draw {
         }))
     }
 
+    /// A result of a stage that sharpens.
+    pub fn sharpened_result(&mut self) -> PathResult {
+        let exact = |x: f64| Rational::from_f64(x).expect("a finite number");
+        let sharpening = if self.coin() {
+            let all = [
+                Unsharpened::DamagedPoint,
+                Unsharpened::NotRegular,
+                Unsharpened::NewtonLeaves,
+            ];
+            Sharpening::Unsharpened(all[self.below(all.len())])
+        } else {
+            Sharpening::Sharpened(Box::new(Sharpened {
+                values: self.many(3, |draw| {
+                    let tail = exact(draw.number()) >> 200;
+                    ComplexRational::new(exact(draw.number()) + tail, exact(draw.number()))
+                }),
+                accuracy: 1e-30,
+                deflations: self.index(4),
+                precision_bits: 338,
+            }))
+        };
+        PathResult {
+            sharpening: Some(sharpening),
+            ..self.path_result()
+        }
+    }
+
     /// A result; what is known of a failed path may be NaN.
     pub fn path_result(&mut self) -> PathResult {
         let outcome = match self.below(3) {
@@ -417,6 +448,7 @@ impl Draw {
                 bound: draw.0.bits(),
                 margin: draw.number().abs(),
             }),
+            sharpening: None,
         }
     }
 }

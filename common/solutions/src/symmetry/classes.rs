@@ -22,7 +22,7 @@ pub fn assign(
     let shape = PointShape::of(system);
     let values: Vec<Vec<Complex64>> = solutions
         .iter()
-        .map(|s| s.variables.0.iter().map(|(_, z)| *z).collect())
+        .map(|s| s.variables.values().collect())
         .collect();
     let radius = |s: &Solution| {
         let (factor, floor) = match s.singular {

@@ -68,6 +68,8 @@ pub struct FileSettings {
     pub seed: Option<u64>,
     /// Digits to compute with (`MPType`, `Precision`).
     pub precision: Option<PrecisionHint>,
+    /// Decimal digits of the solutions (`SharpenDigits`; 0 there means those of the paths).
+    pub digits: Option<u32>,
     /// Accuracy of endpoints (`FinalTol`).
     pub final_tolerance: Option<f64>,
     /// Accuracy on the path (`TrackTolBeforeEG`).

@@ -256,6 +256,7 @@ fn everything_that_json_holds_comes_back() {
 #[test]
 fn settings_come_back_and_what_a_notation_lacks_is_said() {
     let settings = FileSettings {
+        digits: Some(30),
         seed: Some(7),
         precision: Some(PrecisionHint::Bits(192)),
         final_tolerance: Some(1.5e-12),

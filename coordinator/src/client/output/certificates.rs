@@ -124,7 +124,7 @@ mod tests {
 
     fn solution(certified: bool) -> Solution {
         Solution {
-            variables: NamedValues(vec![]),
+            variables: NamedValues::default(),
             multiplicity: 1,
             cycles: vec![1],
             real: None,
@@ -139,6 +139,7 @@ mod tests {
                 certified,
                 ..SolutionCertificate::default()
             }),
+            deflations: None,
         }
     }
 

@@ -86,13 +86,12 @@ impl BertiniFile {
 
     fn point(&mut self, solution: &Solution) -> Result<(), ClientError> {
         let mut text = String::new();
-        for (_, z) in &solution.variables.0 {
-            text.push_str(&format!(
-                "{} {}
-",
-                scientific(z.re),
-                scientific(z.im)
-            ));
+        for variable in &solution.variables.0 {
+            let [re, im] = match &variable.digits {
+                Some(digits) => digits.clone(),
+                None => [scientific(variable.value.re), scientific(variable.value.im)],
+            };
+            text.push_str(&format!("{re} {im}\n"));
         }
         text.push('\n');
         self.count += 1;
@@ -154,8 +153,8 @@ impl Folder {
             if self.nonsingular.count == 0 {
                 points.write_bytes(&StoredPoints::head(solution.variables.0.len()))?;
             }
-            for (_, z) in &solution.variables.0 {
-                points.write_bytes(&StoredPoints::coordinate_bytes(*z))?;
+            for z in solution.variables.values() {
+                points.write_bytes(&StoredPoints::coordinate_bytes(z))?;
             }
         }
         self.nonsingular.point(solution)
@@ -194,8 +193,6 @@ impl Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate_solutions::solution::NamedValues;
-
     fn solution(re: f64, real: bool, singular: bool) -> Solution {
         let values = [
             ("x", Complex64::new(re, 0.0)),
@@ -203,7 +200,7 @@ mod tests {
         ];
         let variables = values.map(|(name, z)| (name.to_string(), z));
         Solution {
-            variables: NamedValues(variables.into()),
+            variables: variables.into_iter().collect(),
             multiplicity: 1,
             cycles: vec![1],
             real: Some(real),
@@ -215,6 +212,7 @@ mod tests {
             class: None,
             paths: vec![0],
             certificate: None,
+            deflations: None,
         }
     }
 

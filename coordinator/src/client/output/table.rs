@@ -4,7 +4,7 @@ use super::summary::open_questions;
 use super::text::{Look, complex, count, counted, cut, magnitude, rate, seconds, wrapped};
 use crate::results::summary::Summary;
 use cognate_algorithms::monodromy::counts::LoopCounts;
-use cognate_solutions::solution::Solution;
+use cognate_solutions::solution::{NamedValue, Solution};
 use num_complex::Complex64;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -304,6 +304,17 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
         };
         lines.line("certified", &count(n), &note);
     }
+    if let Some(sharpened) = &s.sharpened {
+        let mut note = format!(
+            "of {} brought to {} digits",
+            count(s.distinct),
+            sharpened.digits
+        );
+        if sharpened.by_deflation > 0 {
+            note.push_str(&format!(", {} by deflation", count(sharpened.by_deflation)));
+        }
+        lines.line("sharpened", &count(sharpened.solutions), &note);
+    }
     if s.positive_dimensional == Some(true) {
         lines.line("and also", "", "a positive-dimensional solution set");
     }
@@ -454,14 +465,14 @@ pub fn solution_list(
         columns.remove(1);
     }
     let fixed = columns.len();
-    for (v, (name, _)) in first.variables.0.iter().enumerate() {
+    for (v, NamedValue { name, .. }) in first.variables.0.iter().enumerate() {
         let mut cells: Vec<String> = shown
             .iter()
             .map(|s| {
                 s.variables
                     .0
                     .get(v)
-                    .map_or(String::new(), |(_, z)| coordinate(s, *z))
+                    .map_or(String::new(), |v| coordinate(s, v.value))
             })
             .collect();
         // Signs stand in a column of their own.
@@ -542,7 +553,7 @@ fn coordinate(solution: &Solution, z: Complex64) -> String {
         .variables
         .0
         .iter()
-        .map(|(_, z)| z.re.abs().max(z.im.abs()));
+        .map(|v| v.value.re.abs().max(v.value.im.abs()));
     let noise = solution.accuracy.clamp(1e-14, 1e-6) * values.fold(1.0, f64::max);
     let keep = |part: f64| if part.abs() <= noise { 0.0 } else { part };
     complex(Complex64::new(keep(z.re), keep(z.im)), FIGURES, 1e-9)

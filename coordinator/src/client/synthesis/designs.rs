@@ -229,7 +229,7 @@ impl Search<'_> {
         let mut roots = vec![];
         connection
             .solutions(&job, |solution| {
-                let values = solution.variables.0.iter().map(|(_, z)| *z);
+                let values = solution.variables.values();
                 let values = values.collect::<Vec<_>>().try_into().map_err(|_| {
                     ClientError::GaveUp("a solution of it has another number of variables".into())
                 })?;

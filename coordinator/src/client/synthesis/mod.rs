@@ -323,7 +323,7 @@ async fn ends(
 }
 
 fn arrived(solution: &Solution) -> Result<Arrived, ClientError> {
-    let values = solution.variables.0.iter().map(|(_, z)| *z);
+    let values = solution.variables.values();
     let point: Result<Point, _> = values.collect::<Vec<_>>().try_into();
     let proof = solution.certificate.as_ref();
     let certified = proof.is_some_and(|c| c.certified && c.distinct == Some(true));

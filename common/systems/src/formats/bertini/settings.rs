@@ -37,6 +37,10 @@ pub(super) fn read(
             "precision" => {
                 bits = Some(u32::try_from(value.whole()?).map_err(|_| value.wrong("bits"))?);
             }
+            "sharpendigits" => {
+                let digits = u32::try_from(value.whole()?).map_err(|_| value.wrong("digits"))?;
+                settings.digits = Some(digits).filter(|&digits| digits > 0);
+            }
             "finaltol" => settings.final_tolerance = Some(value.positive()?),
             "tracktolbeforeeg" => settings.tracking_tolerance = Some(value.positive()?),
             "tracktolduringeg" => settings.endgame_tolerance = Some(value.positive()?),

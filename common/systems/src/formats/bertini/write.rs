@@ -123,6 +123,9 @@ fn write_settings(settings: &FileSettings, system: &System, out: &mut String) {
     if let Some(seed) = settings.seed {
         put("RandomSeed", seed.to_string());
     }
+    if let Some(digits) = settings.digits {
+        put("SharpenDigits", digits.to_string());
+    }
     match settings.precision {
         Some(PrecisionHint::Double) => put("MPType", "0".into()),
         Some(PrecisionHint::Bits(bits)) => {

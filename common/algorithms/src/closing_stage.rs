@@ -1,0 +1,170 @@
+//! ClosingStage: after a solve one more stage, which looks at its finite endpoints.
+
+use crate::{Opening, StageProgress};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The finite endpoints of a finished solve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FiniteEndpoints {
+    /// A homotopy that ends at the parameters of each target.
+    pub homotopy: HomotopyKind,
+    /// Its seed, from which combinations of equations are made where there are too many.
+    pub seed: u64,
+    /// The settings that its paths were tracked with.
+    pub settings: Settings,
+    /// The nonsingular ones, target by target.
+    pub regular: Vec<FiniteEndpoint>,
+    /// Of each singular point that is not known to lie on a positive-dimensional set one.
+    pub singular: Vec<FiniteEndpoint>,
+}
+
+/// One endpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FiniteEndpoint {
+    /// At which target.
+    pub target: u64,
+    /// Which path ended there, as the solution sets name it.
+    pub path: u64,
+    /// Values of the variables.
+    pub values: Vec<Complex64>,
+}
+
+/// The stage, and what it found: a fact for each endpoint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ClosingStage<Fact> {
+    homotopy: HomotopyKind,
+    seed: u64,
+    /// `None` where there was nothing to look at.
+    stage: Option<StageProgress>,
+    /// Target and path of each item.
+    items: Vec<(u64, u64)>,
+    /// Item by item; empty until the stage is absorbed.
+    found: Vec<Fact>,
+}
+
+impl<Fact> ClosingStage<Fact> {
+    /// The stage for these endpoints, after the stages that there were.
+    pub fn open(
+        endpoints: FiniteEndpoints,
+        points: Vec<FiniteEndpoint>,
+        work: Work,
+        before: &[StageProgress],
+    ) -> (Self, Option<Box<Opening>>) {
+        let FiniteEndpoints {
+            homotopy,
+            seed,
+            settings,
+            ..
+        } = endpoints;
+        let mut closing = Self {
+            homotopy: homotopy.clone(),
+            seed,
+            stage: None,
+            items: points.iter().map(|p| (p.target, p.path)).collect(),
+            found: Vec::new(),
+        };
+        let Some(first) = points.first() else {
+            return (closing, None);
+        };
+        let dimension = first.values.len();
+        let stored = Arc::new(StoredPoints {
+            dimension,
+            coordinates: points.iter().flat_map(|p| p.values.clone()).collect(),
+        });
+        let all = stored.as_start();
+        let count = points.len() as u64;
+        let start_points = if points.iter().all(|p| p.target == 0) && !several(&homotopy) {
+            all
+        } else {
+            // Item i of target t is point i there: its index among all targets and points.
+            StartPoints::Selected {
+                base: Box::new(all),
+                indices: (0..)
+                    .zip(&points)
+                    .map(|(i, p)| p.target * count + i)
+                    .collect(),
+            }
+        };
+        let id = before.iter().map(|stage| stage.id.0 + 1).max().unwrap_or(0);
+        let stage = Stage {
+            id: StageId(id),
+            work,
+            homotopy,
+            start_points,
+            settings,
+            seed,
+            attempt: 0,
+        };
+        closing.stage = Some(StageProgress {
+            id: stage.id,
+            work,
+            attempt: 0,
+            items: count,
+            absorbed: false,
+        });
+        let opening = Opening {
+            stage,
+            objects: vec![stored],
+        };
+        (closing, Some(Box::new(opening)))
+    }
+
+    /// Takes the results of the stage.
+    pub fn absorb(
+        &mut self,
+        stage: StageId,
+        results: &mut dyn Iterator<Item = PathResult>,
+        fact: impl Fn(PathResult) -> Fact,
+    ) {
+        let own = self
+            .stage
+            .as_mut()
+            .filter(|own| own.id == stage && !own.absorbed)
+            .expect("only an open stage is absorbed");
+        own.absorbed = true;
+        self.found = results.map(fact).collect();
+        assert_eq!(
+            self.found.len(),
+            self.items.len(),
+            "a stage is absorbed as a whole"
+        );
+    }
+
+    /// How far the stage is, where there is one.
+    pub fn progress(&self) -> Option<StageProgress> {
+        self.stage
+    }
+
+    /// True when nothing more is to come.
+    pub fn is_done(&self) -> bool {
+        self.stage.is_none_or(|stage| stage.absorbed)
+    }
+
+    /// The facts by target and path.
+    pub fn facts(&self) -> HashMap<(u64, u64), &Fact> {
+        self.items.iter().copied().zip(&self.found).collect()
+    }
+
+    /// The homotopy that ends at the parameters of each target.
+    pub fn homotopy(&self) -> &HomotopyKind {
+        &self.homotopy
+    }
+
+    /// The seed of its randomness.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+}
+
+/// Whether a homotopy has several targets.
+fn several(homotopy: &HomotopyKind) -> bool {
+    matches!(homotopy, HomotopyKind::Parameter { targets, .. } if targets.len() > 1)
+}

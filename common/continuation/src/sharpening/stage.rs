@@ -1,0 +1,77 @@
+//! SharpeningStage: the points of a stage, each with the attempt to bring it to more digits.
+
+use super::search::sharpen;
+use super::{MOST_DIGITS, Sharpening};
+use crate::path_result::PathResult;
+use crate::points_at_targets::{Item, PointsAtTargets};
+use crate::stage::PrepareError;
+use crate::start_points::{Digest, StoredPoints};
+use crate::work::Stage;
+use cognate_systems::system::System;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A stage of `Work::Sharpen`, ready for any of its items in any order.
+#[derive(Debug)]
+pub struct SharpeningStage {
+    /// All equations, also where combinations of them were tracked.
+    system: System,
+    points: PointsAtTargets,
+    digits: u32,
+    seed: u64,
+}
+
+impl SharpeningStage {
+    /// Checks that stage and system fit.
+    pub fn new(
+        system: &System,
+        stage: &Stage,
+        digits: u32,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<Self, PrepareError> {
+        if !(1..=MOST_DIGITS).contains(&digits) {
+            return Err(PrepareError::StartPoints(format!(
+                "{digits} digits; expected 1 to {MOST_DIGITS}"
+            )));
+        }
+        Ok(Self {
+            points: PointsAtTargets::new(system, stage, objects)?,
+            system: system.clone(),
+            digits,
+            seed: stage.seed,
+        })
+    }
+
+    /// Number of items.
+    pub fn items(&self) -> u64 {
+        self.points.items()
+    }
+
+    /// Sharpens these items; results in item order. Pure, as tracking is.
+    ///
+    /// # Panics
+    /// When `items` reaches beyond the stage.
+    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+        assert!(items.end <= self.items(), "a chunk lies within its stage");
+        items
+            .map(|item| {
+                let Item { target, point, .. } = self.points.item(item);
+                let parameters = self.points.parameters(target);
+                let found = sharpen(&self.system, parameters, point, self.digits, self.seed);
+                let before = self.points.result(item);
+                match found {
+                    Ok(found) => PathResult {
+                        precision_bits: found.precision_bits,
+                        accuracy: found.accuracy,
+                        sharpening: Some(Sharpening::Sharpened(Box::new(found))),
+                        ..before
+                    },
+                    Err(reason) => PathResult {
+                        sharpening: Some(Sharpening::Unsharpened(reason)),
+                        ..before
+                    },
+                }
+            })
+            .collect()
+    }
+}
