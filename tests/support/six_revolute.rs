@@ -6,7 +6,7 @@
 //! the directions of its inner axes.
 
 use crate::builders::example;
-use crate::systems::{SerialArm, axis_equations, written};
+use crate::systems::{SerialArm, by_axes};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -51,7 +51,7 @@ pub fn by_its_axes() -> System {
             k => ["x", "y", "w"].map(|c| format!("{c}{k}")),
         }
     };
-    let equations = axis_equations(&SerialArm {
+    by_axes(&SerialArm {
         axis: &z,
         cosine: &|k| text(TWISTS[k - 1][0]),
         length: &|k| {
@@ -60,20 +60,7 @@ pub fn by_its_axes() -> System {
         },
         offset: &|k| text(OFFSETS[k - 1]),
         place: &|c| text(PLACE[c]),
-    });
-    let names: Vec<String> = (2..=5).flat_map(z).collect();
-    let functions: Vec<String> = (1..=12).map(|i| format!("f{i}")).collect();
-    let lines: Vec<String> = functions
-        .iter()
-        .zip(&equations)
-        .map(|(f, e)| format!("{f} = {e};"))
-        .collect();
-    written(&format!(
-        "variable_group {};\nfunction {};\n{}",
-        names.join(", "),
-        functions.join(", "),
-        lines.join("\n")
-    ))
+    })
 }
 
 /// The directions of the axes 2 to 5 where the joints are so, in the order of [`by_its_axes`].

@@ -85,24 +85,10 @@ pub fn axis_equations(arm: &SerialArm<'_>) -> Vec<String> {
     equations
 }
 
-/// Inverse kinematics of a general 6R arm by the directions z2..z5 of its inner
-/// axes: lengths, twists, and one vector equation for the way from base to hand.
-pub fn six_revolute_axis_vectors() -> System {
-    let z = |k: usize| -> [String; 3] {
-        match k {
-            1 => ["0", "0", "1"].map(String::from),
-            6 => ["3/13", "4/13", "12/13"].map(String::from),
-            k => ["x", "y", "w"].map(|c| format!("{c}{k}")),
-        }
-    };
-    let equations = axis_equations(&SerialArm {
-        axis: &z,
-        cosine: &|k| format!("{k}/7"),
-        length: &|k| format!("{}/5", k + 2),
-        offset: &|k| format!("{}/3", 2 * k + 1),
-        place: &|c| format!("{}/11", c + 5),
-    });
-    let names: Vec<String> = (2..=5).flat_map(z).collect();
+/// The [`axis_equations`] of an arm in the directions of its axes 2 to 5.
+pub fn by_axes(arm: &SerialArm<'_>) -> System {
+    let equations = axis_equations(arm);
+    let names: Vec<String> = (2..=5).flat_map(arm.axis).collect();
     let functions: Vec<String> = (1..=12).map(|i| format!("f{i}")).collect();
     let lines: Vec<String> = functions
         .iter()
@@ -115,4 +101,23 @@ pub fn six_revolute_axis_vectors() -> System {
         functions.join(", "),
         lines.join("\n")
     ))
+}
+
+/// Inverse kinematics of a general 6R arm by the directions z2..z5 of its inner
+/// axes: lengths, twists, and one vector equation for the way from base to hand.
+pub fn six_revolute_axis_vectors() -> System {
+    let z = |k: usize| -> [String; 3] {
+        match k {
+            1 => ["0", "0", "1"].map(String::from),
+            6 => ["3/13", "4/13", "12/13"].map(String::from),
+            k => ["x", "y", "w"].map(|c| format!("{c}{k}")),
+        }
+    };
+    by_axes(&SerialArm {
+        axis: &z,
+        cosine: &|k| format!("{k}/7"),
+        length: &|k| format!("{}/5", k + 2),
+        offset: &|k| format!("{}/3", 2 * k + 1),
+        place: &|c| format!("{}/11", c + 5),
+    })
 }

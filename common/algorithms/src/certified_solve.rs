@@ -76,19 +76,10 @@ impl PathAlgorithm for CertifiedSolve {
     }
 
     fn progress(&self) -> Progress {
-        let mut progress = self.solve.progress();
-        let Some(own) = &self.certification else {
-            progress.done = false;
-            return progress;
-        };
-        if let Some(stage) = own.progress() {
-            progress.stages.push(stage);
-            progress.done = stage.absorbed;
-            if !stage.absorbed {
-                progress.description = format!("certifying {} solutions", stage.items);
-            }
-        }
-        progress
+        let before = self.solve.progress();
+        ClosingStage::progress(self.certification.as_ref(), before, |items| {
+            format!("certifying {items} solutions")
+        })
     }
 
     fn snapshot(&self) -> Vec<u8> {

@@ -1,6 +1,6 @@
 //! ClosingStage: after a solve one more stage, which looks at its finite endpoints.
 
-use crate::{Opening, StageProgress};
+use crate::{Opening, Progress, StageProgress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
@@ -138,9 +138,25 @@ impl<Fact> ClosingStage<Fact> {
         );
     }
 
-    /// How far the stage is, where there is one.
-    pub fn progress(&self) -> Option<StageProgress> {
-        self.stage
+    /// How far a solve is that such a stage closes: `None` before it is known what the stage looks
+    /// at. `description` says what it does with so many endpoints.
+    pub fn progress(
+        closing: Option<&Self>,
+        mut progress: Progress,
+        description: impl FnOnce(u64) -> String,
+    ) -> Progress {
+        let Some(closing) = closing else {
+            progress.done = false;
+            return progress;
+        };
+        if let Some(stage) = closing.stage {
+            progress.stages.push(stage);
+            progress.done = stage.absorbed;
+            if !stage.absorbed {
+                progress.description = description(stage.items);
+            }
+        }
+        progress
     }
 
     /// True when nothing more is to come.

@@ -90,20 +90,10 @@ impl PathAlgorithm for SharpenedSolve {
     }
 
     fn progress(&self) -> Progress {
-        let mut progress = self.solve.progress();
-        let Some(own) = &self.sharpening else {
-            progress.done = false;
-            return progress;
-        };
-        if let Some(stage) = own.progress() {
-            progress.stages.push(stage);
-            progress.done = stage.absorbed;
-            if !stage.absorbed {
-                let (items, digits) = (stage.items, self.digits);
-                progress.description = format!("bringing {items} solutions to {digits} digits");
-            }
-        }
-        progress
+        let before = self.solve.progress();
+        ClosingStage::progress(self.sharpening.as_ref(), before, |items| {
+            format!("bringing {items} solutions to {} digits", self.digits)
+        })
     }
 
     fn snapshot(&self) -> Vec<u8> {
