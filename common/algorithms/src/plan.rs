@@ -29,8 +29,10 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Most paths of one solve: all results are held in memory, about 300 bytes a path.
+/// Most paths of one solve where all results are held in memory, about 300 bytes a path.
 pub const MAX_PATHS: u64 = 4_000_000;
+/// ... and where those of plain paths need not be (see `solutions::plain`), of which 24 bytes are.
+pub const MAX_PLAIN_PATHS: u64 = 40_000_000;
 
 /// Most operations that choosing a start spends on a mixed volume: about a second.
 const CHOOSING_OPERATIONS: u64 = 500_000_000;
@@ -165,6 +167,12 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         plan.algorithm = AnyAlgorithm::Sharpened(Box::new(solve));
     }
     if options.certify {
+        if plan.paths > MAX_PATHS {
+            return Err(PlanError::TooManyPaths {
+                start: plan.start,
+                number: Some(plan.paths),
+            });
+        }
         plan.algorithm = AnyAlgorithm::Certified(Box::new(CertifiedSolve::new(plan.algorithm)));
     }
     Ok(plan)
@@ -704,9 +712,9 @@ mod tests {
 
     #[test]
     fn what_is_too_large_is_named() {
-        let large = bertini("variable_group x, y; function f, g; f = x^3000 - 1; g = y^3000 - 1;");
+        let large = bertini("variable_group x, y; function f, g; f = x^9000 - 1; g = y^9000 - 1;");
         let error = refusal(&large, &PlanOptions::default());
-        assert!(error.to_string().contains("9000000 paths"), "{error}");
+        assert!(error.to_string().contains("81000000 paths"), "{error}");
         assert!(
             error.to_string().starts_with("not in this version"),
             "{error}"

@@ -1,7 +1,7 @@
 //! PlanError: why there is no plan, in words for the person who gave the system.
 
 use crate::monodromy::trace::NoTraceTest;
-use crate::plan::MAX_PATHS;
+use crate::plan::{MAX_PATHS, MAX_PLAIN_PATHS};
 use crate::start_costs::StartKind;
 use crate::start_pair::StartPairError;
 use cognate_solutions::symmetry::SymmetryError;
@@ -119,7 +119,7 @@ pub enum PlanError {
     /// Too large.
     #[error(
         "not in this version: the {start} start has {} paths, more than the limit of {MAX_PATHS} \
-         paths of one solve",
+         paths of one solve ({MAX_PLAIN_PATHS} by degrees where nothing needs all of them in memory)",
         .number.map_or("2^64 or more".to_string(), |n| n.to_string())
     )]
     TooManyPaths {

@@ -1,5 +1,6 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
+use crate::plan::{MAX_PATHS, MAX_PLAIN_PATHS};
 use crate::plan_error::PlanError;
 use crate::set_structures::{given, guessed, set_names};
 use cognate_continuation::start_points::StartPoints;
@@ -8,6 +9,7 @@ use cognate_continuation::start_systems::grouping::best_grouping;
 use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
+use cognate_solutions::plain::Sieve;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
 use cognate_systems::transform::clear_denominators::nonzero_variables;
@@ -530,7 +532,7 @@ fn total_degree(
     let start = StartPoints::TotalDegree {
         degrees: degrees.total.clone(),
     };
-    let count = counted(&start, StartKind::TotalDegree)?;
+    let count = counted(system, &start, StartKind::TotalDegree)?;
     Ok((tracked, start, count))
 }
 
@@ -557,14 +559,17 @@ fn multihomogeneous(system: &System, degrees: &Degrees) -> Result<(StartPoints, 
             .then(|| Exchange::of(system, &degrees.by_group))
             .flatten(),
     };
-    let count = counted(&start, StartKind::Multihomogeneous)?;
+    let count = counted(system, &start, StartKind::Multihomogeneous)?;
     Ok((start, count))
 }
 
-fn counted(start: &StartPoints, kind: StartKind) -> Result<u64, PlanError> {
+fn counted(system: &System, start: &StartPoints, kind: StartKind) -> Result<u64, PlanError> {
+    // Images, orbits and named sets need all results.
+    let plain = Sieve::suits(system) && start.exchange().is_none();
+    let limit = if plain { MAX_PLAIN_PATHS } else { MAX_PATHS };
     match start.count() {
         Some(0) => Err(PlanError::NoPaths),
-        Some(number) if number <= crate::plan::MAX_PATHS => Ok(number),
+        Some(number) if number <= limit => Ok(number),
         number => Err(PlanError::TooManyPaths {
             start: kind,
             number,

@@ -12,7 +12,7 @@ use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::Notify;
-use tokio::time::{Instant, sleep, timeout};
+use tokio::time::{Instant, sleep, sleep_until, timeout};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
@@ -189,6 +189,36 @@ impl Coordinator {
         Ok(())
     }
 
+    /// One step of a job. Absorbing millions of results takes longer than the right to drive lasts, so it
+    /// is kept meanwhile; `None` once it is lost.
+    async fn step(
+        &self,
+        drive: &mut Drive,
+        every: Duration,
+        renewed: &mut Instant,
+    ) -> Result<Option<Driven>, DriveError> {
+        let (job, epoch) = (drive.job(), drive.epoch());
+        let tools = self.tools();
+        let mut stepping = std::pin::pin!(drive.step(&tools));
+        loop {
+            tokio::select! {
+                driven = &mut stepping => return driven.map(Some),
+                () = sleep_until(*renewed + every) => {}
+            }
+            let right = self.ledger.steward(job, &self.who, self.policy.steward_ms);
+            match right.await {
+                Ok(Some(right)) if right == epoch => {}
+                Ok(_) => {
+                    self.changed(job);
+                    return Ok(None);
+                }
+                // What the step writes is fenced all the same.
+                Err(error) => tracing::warn!(%job, %error, "the right to drive is not renewed"),
+            }
+            *renewed = Instant::now();
+        }
+    }
+
     /// Drives one job until it ends, another coordinator has it, or this one stops.
     async fn drive(
         &self,
@@ -209,7 +239,10 @@ impl Coordinator {
                 }
                 renewed = Instant::now();
             }
-            match drive.step(&tools).await? {
+            let Some(driven) = self.step(&mut drive, renewal, &mut renewed).await? else {
+                return Ok(());
+            };
+            match driven {
                 Driven::Went => {
                     self.work.notify_waiters();
                     self.changed(job);

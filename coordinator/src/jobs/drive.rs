@@ -151,6 +151,11 @@ impl Drive {
         self.job
     }
 
+    /// Which right to drive it this is.
+    pub fn epoch(&self) -> Epoch {
+        self.epoch
+    }
+
     /// The steward with the job's state.
     pub fn steward(&self) -> &Steward {
         self.steward.as_ref().expect(HERE)

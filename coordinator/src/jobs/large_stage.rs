@@ -231,7 +231,10 @@ impl LargeStage {
     ) -> Result<Crowd, DriveError> {
         let first = steward.first_stage();
         let held = steward.held_paths();
-        let (crowd, _) = see_all(tools, job, first, steward.crowd(0)).await?;
+        let stages = tools.ledger.stages(job).await?;
+        let paths = stages.iter().find(|stage| stage.stage == first);
+        let crowd = steward.crowd(paths.map_or(0, |stage| stage.items));
+        let (crowd, _) = see_all(tools, job, first, crowd).await?;
         let mut crowd = elsewhere(move || {
             let mut crowd = crowd;
             crowd.settle();
