@@ -15,8 +15,9 @@ use num_complex::Complex64;
 
 /// Most deflations of one point: enough for a root of multiplicity 9 of one equation.
 const MOST_DEFLATIONS: u32 = 8;
-/// Deflated equations with more unknowns than these are not tried.
-const MOST_UNKNOWNS: usize = 300;
+/// Deflated equations with more unknowns than these are not tried: 300 cost a minute at a point that no
+/// deflation makes regular.
+const MOST_UNKNOWNS: usize = 100;
 /// Singular values below this part of 1, or of the largest, may be those of 0.
 const SMALL: f64 = 1e-3;
 /// ... if there is at least this factor between them and the next larger.
