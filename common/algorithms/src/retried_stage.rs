@@ -352,8 +352,9 @@ impl RetriedStage {
         // Paths that met, or do not fit into their cycles, may have jumped; one that failed lacks steps
         // or digits, of which looking around takes more.
         let failed = |path: &u64| {
-            let outcome = self.place(*path).map(|place| self.results[place].outcome);
-            matches!(outcome, Some(PathOutcome::Failed(_)))
+            let result = self.place(*path).map(|place| &self.results[place]);
+            let decide = |result| classify(result, &self.shape, &self.tolerances).verdict;
+            result.map(decide) == Some(Verdict::Failed)
         };
         let settings = match indices.iter().any(failed) {
             true => tighter,

@@ -19,8 +19,9 @@ use num_complex::Complex64;
 pub const VERTICES: u32 = 16;
 /// Ratio of successive radii.
 const SHRINKAGE: f64 = 0.125;
-/// Turns after which a path that has not closed is taken further in, twice as many each time: more
-/// often branch points lie inside the radius than the winding number is so large.
+/// Turns after which a path that has not closed is taken further in, twice as many every second time,
+/// unless it looks as if it diverged: more often branch points lie inside the radius than the
+/// winding number is so large.
 const FIRST_TURNS: u32 = 4;
 /// After so many radii at which the path did not close the ratio of successive ones is squared, then
 /// cubed, and so on: branch points that lie so near to 0 may lie at any order of magnitude.
@@ -36,6 +37,9 @@ const LEAST_POWER: f64 = 0.01;
 const UNIFORM: f64 = 0.5;
 /// And goes on to be where their mean changes by less than this part from radius to radius.
 const STEADY: f64 = 0.02;
+/// Or where it has not fallen over so many radii: that of a coordinate with a limit falls to 0, while
+/// fractional powers of t that come closer and closer to a leading one may creep for ever.
+const UNFALLING: u32 = 4;
 /// Means over all samples and over every other one must agree to this before a mean is looked at.
 const RESOLVED: f64 = 1e-3;
 
@@ -90,11 +94,13 @@ pub struct Cauchy {
     total_turns: u32,
     /// At how many radii the path did not close.
     unclosed: u32,
+    /// Whether the path looks as if it diverged, at this radius.
+    diverging: bool,
     noise: f64,
     /// Valuations of the homogenising coordinates at all samples, sample after sample.
     valuations: Vec<Complex64>,
-    /// Those that were found at the radius before.
-    powers: Vec<Option<f64>>,
+    /// The exponents that were found at the radius before, and at how many radii up to it none fell.
+    powers: Vec<Option<(f64, u32)>>,
     infinity: Vec<Winding>,
     previous: Option<(u32, Vec<Complex64>)>,
 }
@@ -191,6 +197,7 @@ impl Cauchy {
         self.samples.push(Complex64::default());
         self.vertex = 0;
         self.turns = 0;
+        self.diverging = false;
         self.noise = noise;
         self.valuations.clear();
         self.infinity.resize(homogenizing.len(), Winding::default());
@@ -232,14 +239,20 @@ impl Cauchy {
         let size = norm(point);
         let closed = (1e-9f64).max(100.0 * self.noise);
         if distance(point, &self.start) > closed * size {
-            let patience = FIRST_TURNS << self.unclosed.min(16);
-            if self.turns >= patience.min(settings.max_winding_number) {
-                self.unclosed += 1;
-                self.previous = None;
-                if self.diverges() {
-                    return Next::Diverging;
+            // A solution as near to infinity as t^(1/c) is here belongs to c sheets, which close: what
+            // looks like divergence is believed where more sheets than are tried meet.
+            let most = settings.max_winding_number;
+            let patience = (FIRST_TURNS << (self.unclosed / 2).min(16)).min(most);
+            if self.turns >= patience && !self.diverging {
+                if !self.diverges() {
+                    self.unclosed += 1;
+                    self.previous = None;
+                    return self.further_inward(settings);
                 }
-                return self.further_inward(settings);
+                self.diverging = true;
+            }
+            if self.turns >= most {
+                return Next::Diverging;
             }
             self.add(point, form);
             return Next::Vertex {
@@ -329,22 +342,29 @@ impl Cauchy {
     }
 
     /// Whether some homogenising coordinate is a positive power of t here, and was the same at the
-    /// radius before: its valuation t x'/x is one number all around, and that number stays.
+    /// radius before: its valuation t x'/x is one number all around, and that number stays, or
+    /// has not fallen for long.
     ///
-    /// A path to infinity need not close within a few turns for that. (Valuations as evidence of
+    /// A path to infinity need not close for that. (Valuations as evidence of
     /// divergence: Breiding, Timme, HomotopyContinuation.jl, 2018; Huber, Verschelde, Polyhedral
     /// end games, 1998.)
     fn diverges(&mut self) -> bool {
         let groups = self.infinity.len();
-        let powers: Vec<Option<f64>> = (0..groups)
-            .map(|k| power(self.valuations.iter().skip(k).step_by(groups)))
-            .collect();
-        let stays = |(now, before): (&Option<f64>, &Option<f64>)| match (now, before) {
-            (Some(now), Some(before)) => (now - before).abs() <= STEADY * now,
-            _ => false,
-        };
-        let diverges = powers.iter().zip(&self.powers).any(stays);
-        self.powers = powers;
+        self.powers.resize(groups, None);
+        let mut diverges = false;
+        for (k, before) in self.powers.iter_mut().enumerate() {
+            let now = power(self.valuations.iter().skip(k).step_by(groups));
+            *before = match (now, &before) {
+                (None, _) => None,
+                (Some(now), None) => Some((now, 1)),
+                (Some(now), Some((then, radii))) => {
+                    diverges |= (now - then).abs() <= STEADY * now;
+                    let falls = now < (1.0 - STEADY) * then;
+                    Some((now, if falls { 1 } else { radii + 1 }))
+                }
+            };
+            diverges |= before.is_some_and(|(_, radii)| radii >= UNFALLING);
+        }
         diverges
     }
 
@@ -459,6 +479,58 @@ mod tests {
             let valuation = |s: Complex64| vec![s / 50.0 * (one + s * 0.06) / x(s)];
             assert_eq!(drive(50, 1e-3, &path, &valuation).0, expected);
         }
+    }
+
+    /// Seven solutions of which a homogenising coordinate is the root of 1e-9, as cyclic-7 has them: until t
+    /// is as small they are like t^(1/7), as a path to infinity is.
+    #[test]
+    fn a_solution_that_is_near_infinity_is_no_divergence() {
+        let (sheets, a) = (7, 1e-9);
+        let settings = Settings::default();
+        let circle = roots_of_unity(VERTICES);
+        let mut last = Complex64::new(1.0, 0.0);
+        let follow = |last: &mut Complex64, from: Complex64, to: Complex64| {
+            for k in 1..=100 {
+                let t = from + (to - from) * (f64::from(k) / 100.0);
+                for _ in 0..20 {
+                    let power = last.powu(sheets - 1);
+                    *last -= (power * *last - t - a) / (power * f64::from(sheets));
+                }
+            }
+            vec![*last, *last + 1.0]
+        };
+        let valuation = |t: Complex64| vec![t / (t + a) / f64::from(sheets)];
+        let mut cauchy = Cauchy::default();
+        let mut t = Complex64::new(1e-3, 0.0);
+        let x = follow(&mut last, Complex64::new(1.0, 0.0), t);
+        let mut next = cauchy.begin(t.re, &x, 1e-15, &x[..1], false);
+        let settled = loop {
+            let to = match &next {
+                Next::Vertex { radius, vertex } => circle[(vertex % VERTICES) as usize] * *radius,
+                Next::Inward(radius) => Complex64::new(*radius, 0.0),
+                Next::Settled(settled) => break settled.clone(),
+                other => panic!("{other:?} at {t}"),
+            };
+            if matches!(next, Next::Inward(_)) {
+                // Wherever on the seven sheets a turn ends, inwards it goes on from its start.
+                last = cauchy.start()[0];
+                t = Complex64::new(cauchy.radius(), 0.0);
+            }
+            let x = follow(&mut last, t, to);
+            t = to;
+            next = match next {
+                Next::Inward(radius) => cauchy.begin(radius, &x, 1e-15, &x[..1], false),
+                _ => {
+                    let form = form_of_difference(&x, cauchy.start());
+                    cauchy.at_vertex(&x, 1e-15, form, &x[..1], &valuation(to), &settings)
+                }
+            };
+        };
+        assert_eq!(
+            (settled.winding_number, &settled.infinity_turns[..]),
+            (1, &[0][..])
+        );
+        assert!((settled.endpoint[0].powu(sheets) / a - 1.0).norm_sqr() < 1e-12);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Batch: where the paths of all lanes are, where they were, and where they go next.
 
 use super::digits::Digits;
+use super::survey::Series;
 use crate::predictor::hermite::POINTS;
 use cognate_numeric::scalar::{Complex, Mask, Real};
 use num_complex::Complex64;
@@ -206,6 +207,24 @@ impl<R: Real> Batch<R> {
         self.limit.set_lane(lane, self.usual_limit);
         self.refine.set_lane(lane, false);
         self.may_grow.set_lane(lane, true);
+    }
+
+    /// Predicts a lane's path by its series, a way of length `s` from where it is.
+    pub fn extrapolate(
+        &self,
+        context: R::Context,
+        lane: usize,
+        series: &Series,
+        s: f64,
+        predicted: &mut [Complex<R>],
+    ) {
+        let only = one_lane::<R>(lane);
+        let all = predicted.iter_mut().zip(self.here());
+        for ((predicted, here), by) in all.zip(series.displacements(s)) {
+            let mut there = here.clone();
+            there.add(&Complex::from_f64(context, by.re, by.im));
+            predicted.select(only, &there);
+        }
     }
 
     /// The lane's next steps are no longer and no coarser than this.

@@ -26,7 +26,7 @@ impl Limits {
     /// that is all: there the endgame knows which noise it can bear.
     pub fn around_zero(bits: u32, settings: &Settings) -> Self {
         Self {
-            rounds: 2,
+            rounds: if bits > DOUBLE { MOST_ROUNDS } else { 2 },
             settled: 0.1 * settings.tolerance,
             refined: REFINED,
             noise: 0.01 * settings.predictor_tolerance * finer(bits),

@@ -15,7 +15,7 @@ use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
 use super::rooms::{Departure, Door, Ended, Room, Waiting};
 use super::settings::Settings;
-use super::survey::{Reach, Surveyor};
+use super::survey::{Series, Surveyor, View};
 use crate::chart::{LEAST_NORM, norm};
 use crate::endgames::cauchy::{self, VERTICES, distance};
 use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
@@ -43,7 +43,8 @@ const START_ERROR: f64 = 1e-3;
 /// Farthest that the last Newton steps may move a regular endpoint.
 const ARRIVED: f64 = 1e-7;
 
-/// Smallest step around 0, or towards it, as a part of the distance from it.
+/// Smallest step of doubles around 0, or towards it, as a part of the distance from it; with more
+/// digits, `min_step`.
 const LEAST_ARC: f64 = 1e-9;
 /// Part of the way left below which a step speaks of a singularity beside the path: towards one
 /// at its end, steps are a third of the way or so.
@@ -92,6 +93,8 @@ pub(super) struct Lockstep<'a, R: Real> {
     refiner: Refiner<'a, R::Single>,
     /// In robust mode.
     surveyor: Option<Surveyor<'a, R::Single>>,
+    /// Where each lane's path goes on, as its last look showed; in robust mode, on the way.
+    series: Vec<Option<Series>>,
     circle: Vec<Complex64>,
     waiting: Waiting,
     ended: Ended,
@@ -135,6 +138,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             batch: Batch::new(context, n, parameters, settings.predictor_tolerance),
             surveyor: (settings.reach > 0.0).then(|| Surveyor::new(homotopy, context)),
             settings,
+            series: vec![None; R::WIDTH],
             lanes: vec![Lane::default(); R::WIDTH],
             scratch: Evaluate::<R>::scratch(homotopy.evaluator(), context),
             matrix: Matrix::zeros(context, n, n + 2),
@@ -182,6 +186,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 return;
             };
             path.arrive(self.room.bits);
+            self.series[lane] = None;
             let target = path.target;
             self.batch.exchanges.set_lane(lane, exchanges);
             let (a, b) = homotopy.ends(target);
@@ -241,7 +246,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
         // Predict, from the point itself where the step has length 0.
         let slots: [usize; POINTS] = std::array::from_fn(|age| batch.slot(age));
-        let counts: [R::Mask; POINTS - 1] = std::array::from_fn(|k| batch.known[slots[k + 1]]);
+        let mut counts: [R::Mask; POINTS - 1] = std::array::from_fn(|k| batch.known[slots[k + 1]]);
         let moving = batch.refine.not();
         let w = weights(
             &std::array::from_fn(|age| batch.t[slots[age]].clone()),
@@ -265,6 +270,17 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 sum.mul_add(&weight, &batch.x[slot][i]);
             }
             candidate[i].set(&sum);
+        }
+        if self.surveyor.is_some() {
+            for (lane, series) in self.series.iter().enumerate() {
+                if let Some(series) = series.as_ref().filter(|_| moving.lane(lane)) {
+                    batch.extrapolate(self.context, lane, series, tried.lane(lane), &mut candidate);
+                    // Its error is of order 5: between those of Hermite's with two points and three.
+                    for (k, known) in counts.iter_mut().enumerate() {
+                        known.set_lane(lane, k == 0);
+                    }
+                }
+            }
         }
 
         // Newton; then Newton and tangent from one factorisation.
@@ -466,15 +482,24 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 let h = (0.5 * reach / speed).min(settings.max_step).max(1e-6);
                 self.batch.follow(lane, Complex64::default(), h);
                 self.lanes[lane].phase = Phase::Approaching;
-                self.look_around(lane);
+                self.comes_too_near(lane, None);
             }
             Phase::Approaching => {
+                let too_near =
+                    step.accepted && !step.arrived && self.comes_too_near(lane, Some(step));
+                let settings = &self.settings;
+                let (h, t) = (self.batch.h.lane(lane), self.batch.t(lane));
+                let too_small = h < settings.min_step * t.re.max(settings.endgame_radius);
+                if too_near && !too_small {
+                    return;
+                }
                 // Steps far shorter than the way that is left speak of a singularity beside the
                 // path, not at its end: it is passed by before the turns begin.
                 let radius = settings.endgame_radius;
                 let passing = h < PASSING * t.re && t.re > PASSED * radius;
                 let at_end = t.re <= radius && !passing && !(step.accepted && h >= t.re);
                 if step.arrived {
+                    self.series[lane] = None;
                     self.lanes[lane].phase = Phase::Arriving;
                     self.batch.refine(lane);
                 } else if self.room.beyond && (step.size > FAR || at_end) {
@@ -493,14 +518,11 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         self.lanes[lane].steps_here = 0;
                     }
                 } else if at_end {
+                    self.series[lane] = None;
                     self.lanes[lane].phase = Phase::Settling;
                     self.batch.refine(lane);
-                } else if self.lanes[lane].starved >= STARVED
-                    || h < settings.min_step * t.re.max(settings.endgame_radius)
-                {
+                } else if self.lanes[lane].starved >= STARVED || too_small {
                     self.give_up(lane, t, Failure::StepTooSmall);
-                } else if step.accepted {
-                    self.look_around(lane);
                 }
             }
             Phase::Arriving => {
@@ -540,7 +562,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         _ => Phase::Sampling,
                     };
                     self.batch.refine(lane);
-                } else if self.lanes[lane].starved >= STARVED || h < LEAST_ARC * t.norm_sqr().sqrt()
+                } else if self.lanes[lane].starved >= STARVED
+                    || h < self.least_arc() * t.norm_sqr().sqrt()
                 {
                     self.give_up(lane, t, Failure::StepTooSmall);
                 }
@@ -580,10 +603,11 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
     }
 
-    /// In robust mode the next step of a path stays away from singularities and from other paths.
-    fn look_around(&mut self, lane: usize) {
+    /// In robust mode the next step of a path stays away from singularities and from other paths; one
+    /// that has come too near to another is taken back.
+    fn comes_too_near(&mut self, lane: usize, step: Option<&Step>) -> bool {
         let Some(surveyor) = &mut self.surveyor else {
-            return;
+            return false;
         };
         let (context, t) = (self.context, self.batch.t(lane));
         let digits = self.batch.digits(lane);
@@ -592,10 +616,26 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .map(|z| z.value::<R::Single>(context))
             .collect();
         let path = &mut self.lanes[lane];
-        let Reach { radius, apart } = surveyor.look(&point, t, path.target);
         path.evaluations += TERMS as u32;
+        let View {
+            radius,
+            apart,
+            series,
+        } = surveyor.look(&point, t, path.target);
+        let limit = APART * apart;
+        // How far apart paths are is known where they were before: they may have come closer.
+        if step.is_some_and(|step| step.predictor_error > limit) {
+            path.rejections += 1;
+            let before = self.batch.step_back(lane);
+            let half = 0.5 * (before - t).norm_sqr().sqrt();
+            self.batch.restrict(lane, half, limit);
+            self.batch.may_grow.set_lane(lane, false);
+            return true;
+        }
+        self.series[lane] = Some(series);
         self.batch
-            .restrict(lane, self.settings.reach * radius, APART * apart);
+            .restrict(lane, self.settings.reach * radius, limit);
+        false
     }
 
     /// Carries out what the endgame wants.
@@ -702,6 +742,15 @@ impl<'a, R: Real> Lockstep<'a, R> {
     fn is_double_point(&self, settled: &cauchy::Settled, target: u64) -> bool {
         let mut refiner = Refiner::<DoubleDouble<f64>>::new(self.room.homotopy, ());
         settled.winding_number == 2 && refiner.out_of_reach(&settled.endpoint, target) <= ONE_POINT
+    }
+
+    /// Smallest step around 0, or towards it, as a part of the distance from it.
+    fn least_arc(&self) -> f64 {
+        if self.fine() {
+            self.settings.min_step
+        } else {
+            LEAST_ARC
+        }
     }
 
     /// Whether points have more digits than doubles.

@@ -1,4 +1,5 @@
-//! Surveyor: how far a path may go without coming near another, from Taylor series at a point of it.
+//! Surveyor: where a path goes, and how far it may go without coming near another, from its Taylor
+//! series at a point.
 //!
 //! Where x(t) has its nearest singularity two paths meet or one leaves for infinity, and a step that
 //! passes by at less than its distance cannot be taken for one on another path; a prediction
@@ -13,18 +14,53 @@ use cognate_numeric::lanes::dispatch::{Job, dispatch};
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::jet::TERMS;
 use cognate_numeric::scalar::{Complex, Jet, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
 
+/// What a branch point of two paths, where coordinates are like (1 - s)^(1/2), makes of the square
+/// root of the ratio of its Taylor coefficients of orders 1 and 3, and 2 and 4: the radii that
+/// they say are so many times too large (a pole's are right).
+const BRANCH_POINT: [f64; 2] = [2.83, 1.79];
+/// Directions in which other solutions are looked for, beside the one in which the Jacobian is weakest.
+const DIRECTIONS: usize = 2;
+/// Where the denominator of a Pade approximant is below this, the Taylor polynomial serves.
+const NEAR_POLE: f64 = 0.25;
+
 /// What one look shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Reach {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct View {
     /// Distance in t to the nearest singularity of the path.
     pub radius: f64,
     /// Distance to the nearest other path at this t, relative to the largest coordinate.
     pub apart: f64,
+    /// Where the path goes.
+    pub series: Series,
+}
+
+/// Taylor coefficients of orders 1 to 4 of every coordinate, in the length of the way down the real
+/// axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Series(Vec<[Complex64; TERMS - 1]>);
+
+impl Series {
+    /// How far each coordinate is from where it was, after a way of length `s`: by the [3/1]
+    /// Pade approximant, whose pole is the one that the last two coefficients speak of.
+    pub fn displacements(&self, s: f64) -> impl Iterator<Item = Complex64> {
+        self.0.iter().map(move |[a, b, c, d]| {
+            let one = Complex64::new(1.0, 0.0);
+            // 1 - s d/c
+            let denominator = one - d * s / c;
+            let cubic = if denominator.norm_sqr() >= NEAR_POLE * NEAR_POLE {
+                c / denominator
+            } else {
+                c + d * s
+            };
+            (a + (b + cubic * s) * s) * s
+        })
+    }
 }
 
 /// Work space for looking around from points of paths, in the arithmetic of the room.
@@ -47,9 +83,9 @@ struct Look<'r, 'a, 'p, S: Real> {
 }
 
 impl<S: Real> Job for Look<'_, '_, '_, S> {
-    type Output = Reach;
+    type Output = View;
     #[inline(always)]
-    fn run(self) -> Reach {
+    fn run(self) -> View {
         self.surveyor.survey(self.point, self.t, self.target)
     }
 }
@@ -68,7 +104,7 @@ impl<'a, S: Real> Surveyor<'a, S> {
     }
 
     /// What is to be seen from a point of a path that goes on along the real axis.
-    pub fn look(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> Reach {
+    pub fn look(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> View {
         dispatch(Look {
             surveyor: self,
             point,
@@ -78,14 +114,14 @@ impl<'a, S: Real> Surveyor<'a, S> {
     }
 
     #[inline(always)]
-    fn survey(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> Reach {
-        let context = self.context;
+    fn survey(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> View {
         let parameters = self.parameters(t, target);
         let now: Vec<Complex<S>> = parameters.iter().map(|p| term(p, 0)).collect();
         let (program, scratch) = (self.homotopy.program(), &mut self.scratch);
         program.jacobian(point, &now, &mut self.jacobian, scratch);
         // Order after order: the equations at what is known of x, and Newton for what is missing.
         let mut x: Vec<Complex<Jet<S>>> = point.iter().map(still).collect();
+        let mut series = Series(vec![Default::default(); point.len()]);
         let mut sizes = [0.0; TERMS];
         for order in 1..TERMS {
             let rest = self.term_of_values(&x, &parameters, order);
@@ -95,30 +131,57 @@ impl<'a, S: Real> Surveyor<'a, S> {
                 x.im.0[order].sub(&missing.im);
             }
             let rounded: Vec<Complex64> = missing.iter().map(|z| z.lane(0)).collect();
+            for (coefficients, missing) in series.0.iter_mut().zip(&rounded) {
+                coefficients[order - 1] = -missing;
+            }
             sizes[order] = length(&rounded);
         }
         // A series whose odd terms vanish has a radius too: every second coefficient tells.
-        let ratio = |k: usize| (sizes[k] / sizes[k + 2]).sqrt();
+        let ratio = |k: usize| (sizes[k] / sizes[k + 2]).sqrt() / BRANCH_POINT[k - 1];
         let radius = smaller(ratio(1), ratio(2));
         // The nearest other solution lies about where the Jacobian is weakest: at point + s v with
-        // s J v + s^2 F''(v, v)/2 = 0.
+        // s J v + s^2 F''(v, v)/2 = 0. In all directions quadratic equations have none nearer than
+        // 1/|J^-1 F''/2|, of which a few directions tell the Frobenius norm: over all unit vectors
+        // the mean of the squares is 2/(n (n + 1)) of it.
         let n = point.len();
+        let at_rest: Vec<Complex<Jet<S>>> = now.iter().map(still).collect();
         let entry = |i: usize, j: usize| self.jacobian.at(i, j).lane(0);
         let columns = (0..n).map(|j| (0..n).map(|i| entry(i, j)).collect());
         let weakest = Svd::of(columns.collect()).domain.pop().unwrap_or_default();
+        let mut bent = self.bent(point, &at_rest, &weakest);
+        let mut random = RandomStream::new(0, Purpose::Probe, 2);
+        let mut squares = 0.0;
+        for _ in 0..DIRECTIONS {
+            let v: Vec<Complex64> = (0..n).map(|_| random.unit()).collect();
+            let v: Vec<Complex64> = v.iter().map(|z| z / length(&v)).collect();
+            let size = self.bent(point, &at_rest, &v);
+            squares += size * size;
+        }
+        let pairs = (n * (n + 1) / 2) as f64;
+        let all = (pairs * squares / DIRECTIONS as f64).sqrt();
+        if all > bent {
+            bent = all;
+        }
+        let here: Vec<Complex64> = point.iter().map(|z| z.lane(0)).collect();
+        View {
+            radius,
+            apart: 1.0 / (bent * norm(&here)),
+            series,
+        }
+    }
+
+    /// |J^-1 F''(v, v)/2|
+    #[inline(always)]
+    fn bent(&mut self, point: &[Complex<S>], at_rest: &[Complex<Jet<S>>], v: &[Complex64]) -> f64 {
+        let context = self.context;
         let mut beside: Vec<Complex<Jet<S>>> = point.iter().map(still).collect();
-        for (x, v) in beside.iter_mut().zip(&weakest) {
+        for (x, v) in beside.iter_mut().zip(v) {
             x.re.0[1] = S::from_f64(context, v.re);
             x.im.0[1] = S::from_f64(context, v.im);
         }
-        let at_rest: Vec<Complex<Jet<S>>> = now.iter().map(still).collect();
-        let curvature = self.term_of_values(&beside, &at_rest, 2);
+        let curvature = self.term_of_values(&beside, at_rest, 2);
         let bent: Vec<Complex64> = self.solve(&curvature).iter().map(|z| z.lane(0)).collect();
-        let here: Vec<Complex64> = point.iter().map(|z| z.lane(0)).collect();
-        Reach {
-            radius,
-            apart: 1.0 / (length(&bent) * norm(&here)),
-        }
+        length(&bent)
     }
 
     /// The parameters as they move when t goes down along the real axis.
@@ -238,7 +301,7 @@ mod tests {
         PreparedStage::new(&system, &stage, &|_| Some(points.clone())).unwrap()
     }
 
-    fn seen<S: Real>(stage: &PreparedStage, context: S::Context) -> Reach {
+    fn seen<S: Real>(stage: &PreparedStage, context: S::Context) -> View {
         let start = stage.start_point(0).unwrap();
         let point: Vec<Complex<S>> = start
             .iter()
