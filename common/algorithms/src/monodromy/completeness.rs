@@ -42,7 +42,7 @@ impl MonodromySolve {
         }
         match self.test.clone() {
             None => Tested::No,
-            Some(Test::Pencil { moved: None, .. }) if self.counts.idle_loops == 0 => Tested::No,
+            Some(Test::Pencil { moved: None, .. }) if self.counts.loops == 0 => Tested::No,
             Some(Test::Pencil {
                 pencil,
                 moved: None,
@@ -90,6 +90,16 @@ impl MonodromySolve {
         });
     }
 
+    /// Whether a vertex serves the trace test only.
+    pub(super) fn is_beside(&self, vertex: usize) -> bool {
+        let moved = match self.test {
+            Some(Test::Pencil { moved, .. }) => moved,
+            Some(Test::Curve(_)) | None => None,
+        };
+        let last = |moved: [usize; 2]| moved[1] + usize::from(self.curve.is_some());
+        moved.is_some_and(|moved| (moved[0]..=last(moved)).contains(&vertex))
+    }
+
     /// A vertex with one edge from the base.
     fn lead_to(&mut self, parameters: Vec<Complex64>) -> usize {
         let vertex = self.graph.add_vertex(parameters);
@@ -101,7 +111,7 @@ impl MonodromySolve {
     /// The points that all of the base lead to there, orbit by orbit; `None` where one is lost.
     fn led_to(&self, vertex: usize) -> Option<Vec<Vec<Complex64>>> {
         let edges = &self.graph.edges;
-        let edge = edges.iter().position(|edge| edge.to == vertex)?;
+        let edge = edges.iter().position(|edge| edge.ends[1] == vertex)?;
         let reached = self.graph.reached(edge)?;
         Some(reached.iter().flat_map(|point| self.orbit(point)).collect())
     }
@@ -198,7 +208,8 @@ impl MonodromySolve {
         else {
             return Vec::new();
         };
-        let back = self.graph.edges.iter().position(|edge| edge.to == last + 1);
+        let edges = &self.graph.edges;
+        let back = edges.iter().position(|edge| edge.ends[1] == last + 1);
         let reached = back.and_then(|edge| self.graph.reached(edge));
         let there = reached.unwrap_or_default().into_iter().filter(|point| {
             let lambda = point.values.last().copied().unwrap_or_default();

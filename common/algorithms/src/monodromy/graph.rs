@@ -1,12 +1,12 @@
 //! Graph: parameter values with what is known to solve the system there, and the paths between them.
 //!
 //! Tracking all solutions at one vertex along an edge permutes them, up to
-//! their names: an edge is a bijection between the orbits at its ends. Paths
-//! that break it have jumped, and are tracked again more tightly (compare
-//! Duff, Hill, Jensen, Lee, Leykin, Sommars: Solving polynomial systems via
-//! homotopy continuation and monodromy, 2019). Every edge has one direction:
-//! two edges with different detours make a loop, and m edges between two
-//! vertices make m - 1 loops for m paths a solution, whichever way they lead.
+//! their names: an edge is a bijection between the orbits at its ends, and a
+//! path along it shows one pair of it, whichever end the path began at (Duff,
+//! Hill, Jensen, Lee, Leykin, Sommars: Solving polynomial systems via homotopy
+//! continuation and monodromy, 2019). Paths that break it have jumped, and are
+//! tracked again more tightly. So an edge costs one path a solution, and each
+//! edge more than a tree needs makes a loop more.
 
 use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::point_shape::PointShape;
@@ -33,38 +33,110 @@ pub(crate) struct Vertex {
     pub points: Vec<Known>,
 }
 
-/// What became of one source point on an edge.
+/// What is known of one point on an edge from where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Fate {
-    /// It is to be tracked, for the first time or again.
+    /// Its partner is not known: it is to be tracked, for the first time or again.
     Open { attempt: u16 },
-    /// It leads to this point of the edge's other end.
+    /// Its partner is this point of the edge's other end.
     To { point: u32, attempt: u16 },
     /// Nothing more is tried.
     Lost,
 }
 
+/// Along which way an edge is tracked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(crate) enum Way {
+    /// As it was drawn.
+    Ahead,
+    /// From its end to its beginning, on the same detour.
+    Back,
+}
+
+impl Way {
+    fn other(self) -> Self {
+        match self {
+            Self::Ahead => Self::Back,
+            Self::Back => Self::Ahead,
+        }
+    }
+}
+
 /// A path between two vertices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Edge {
-    pub from: usize,
-    pub to: usize,
+    /// The vertices where it begins and ends.
+    pub ends: [usize; 2],
     /// Seed of its detour.
     pub seed: u64,
-    /// Different orbits lead to different orbits.
+    /// Different orbits lead to different orbits, and it is tracked both ways; else ahead only.
     pub bijective: bool,
-    /// For each point of `from`.
-    pub fates: Vec<Fate>,
+    /// For each point of the vertices where it begins and ends; of the end only where it is bijective.
+    pub fates: [Vec<Fate>; 2],
+}
+
+impl Edge {
+    /// The vertex where paths of this way begin.
+    pub fn source(&self, way: Way) -> usize {
+        self.ends[way as usize]
+    }
+
+    /// The vertex where they arrive.
+    pub fn target(&self, way: Way) -> usize {
+        self.ends[way.other() as usize]
+    }
+
+    /// Both ways, or the only one.
+    fn ways(&self) -> &'static [Way] {
+        match self.bijective {
+            true => &[Way::Ahead, Way::Back],
+            false => &[Way::Ahead],
+        }
+    }
+
+    /// How many points have no partner yet and are to be tracked this way.
+    fn open(&self, way: Way) -> usize {
+        let fates = self.fates[way as usize].iter();
+        fates
+            .filter(|fate| matches!(fate, Fate::Open { .. }))
+            .count()
+    }
+
+    /// How many pairs are known.
+    fn pairs(&self) -> usize {
+        let fates = self.fates[0].iter();
+        fates.filter(|fate| matches!(fate, Fate::To { .. })).count()
+    }
+}
+
+/// Paths that can be tracked together: of one edge, one way, and equally tight.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Wanted {
+    pub edge: usize,
+    pub way: Way,
+    pub attempt: u16,
+    /// Points of the vertex where they begin, ascending.
+    pub sources: Vec<u32>,
 }
 
 /// What tracking showed about one source.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Arrival {
     pub edge: usize,
+    pub way: Way,
     pub source: u32,
     pub attempt: u16,
     /// Where it arrived; `None` where it arrived nowhere.
     pub end: Option<Known>,
+}
+
+/// A point on an edge: the edge, the way on which it is a source, and its number there.
+type Key = (usize, Way, u32);
+
+impl Arrival {
+    fn key(&self) -> Key {
+        (self.edge, self.way, self.source)
+    }
 }
 
 /// What happened when arrivals were taken in.
@@ -95,33 +167,74 @@ impl Graph {
         self.vertices.len() - 1
     }
 
-    /// An edge along which everything that is known is to be tracked.
+    /// An edge on which no pair is known.
     pub fn add_edge(&mut self, from: usize, to: usize, seed: u64, bijective: bool) {
-        let known = self.vertices[from].points.len();
+        let open =
+            |vertex: usize| vec![Fate::Open { attempt: 0 }; self.vertices[vertex].points.len()];
+        let back = if bijective { open(to) } else { Vec::new() };
         self.edges.push(Edge {
-            from,
-            to,
+            ends: [from, to],
             seed,
             bijective,
-            fates: vec![Fate::Open { attempt: 0 }; known],
+            fates: [open(from), back],
         });
     }
 
-    /// What is to be tracked: for each edge and attempt the sources, ascending.
-    pub fn open(&self) -> Vec<(usize, u16, Vec<u32>)> {
-        let mut open = BTreeMap::<(usize, u16), Vec<u32>>::new();
+    /// What is to be tracked next; empty when all pairs of all edges are known.
+    ///
+    /// An edge is tracked one way in a round, from where more is known. With d points at every
+    /// vertex, q and r known at the ends of an edge and c pairs known, a path that begins at q leads
+    /// to a new point with probability (d - r) / (d - c), if partners are random (the potential of
+    /// Duff et al., section 4), so q - c paths bring (q - c)(d - r) / (d - c): more than the (r - c)(d - q) / (d - c)
+    /// the other way exactly where q > r, whatever d is.
+    ///
+    /// `all`: how many points a vertex has, where that is thought to be known. Then not everything
+    /// need be tracked: of the edges into a vertex the ones with the largest potential are taken until
+    /// they would bring all that is missing there, if they brought different points.
+    pub fn wanted(&self, all: Option<usize>) -> Vec<Wanted> {
+        let known = |vertex: usize| self.vertices[vertex].points.len();
+        let mut chosen = BTreeMap::<usize, Vec<(usize, Way)>>::new();
         for (number, edge) in self.edges.iter().enumerate() {
-            for (source, fate) in edge.fates.iter().enumerate() {
-                if let Fate::Open { attempt } = fate {
-                    open.entry((number, *attempt))
-                        .or_default()
-                        .push(source as u32);
-                }
+            let ways = edge.ways().iter().filter(|&&way| edge.open(way) > 0);
+            let best = ways.max_by_key(|&&way| (known(edge.source(way)), way.other()));
+            if let Some(&way) = best {
+                chosen
+                    .entry(edge.target(way))
+                    .or_default()
+                    .push((number, way));
             }
         }
-        let open = open.into_iter();
-        open.map(|((edge, attempt), sources)| (edge, attempt, sources))
-            .collect()
+        if let Some(all) = all {
+            for edges in chosen.values_mut() {
+                let left = |number: usize| all.saturating_sub(self.edges[number].pairs());
+                edges.sort_by_key(|&(number, _)| (left(number), number));
+                let mut share = 0.0;
+                edges.retain(|&(number, way)| {
+                    let taken = share < 1.0;
+                    share += self.edges[number].open(way) as f64 / left(number).max(1) as f64;
+                    taken
+                });
+            }
+        }
+        let mut chosen: Vec<(usize, Way)> = chosen.into_values().flatten().collect();
+        chosen.sort_unstable();
+        let mut wanted = Vec::new();
+        for (number, way) in chosen {
+            let mut open = BTreeMap::<u16, Vec<u32>>::new();
+            let fates = self.edges[number].fates[way as usize].iter();
+            for (source, fate) in fates.enumerate() {
+                if let Fate::Open { attempt } = fate {
+                    open.entry(*attempt).or_default().push(source as u32);
+                }
+            }
+            wanted.extend(open.into_iter().map(|(attempt, sources)| Wanted {
+                edge: number,
+                way,
+                attempt,
+                sources,
+            }));
+        }
+        wanted
     }
 
     /// Some points of a vertex, as they are stored.
@@ -141,19 +254,26 @@ impl Graph {
         let points = &mut self.vertices[vertex].points;
         points.push(point);
         let number = points.len() as u32 - 1;
-        for edge in self.edges.iter_mut().filter(|edge| edge.from == vertex) {
-            edge.fates.push(Fate::Open { attempt: 0 });
+        for edge in &mut self.edges {
+            for &way in edge.ways() {
+                if edge.source(way) == vertex {
+                    edge.fates[way as usize].push(Fate::Open { attempt: 0 });
+                }
+            }
         }
         number
     }
 
-    /// Once the group is known: points of one orbit become one, before any edge leads away.
+    /// Once the group is known: points of one orbit become one, before any edge can be tracked from
+    /// there.
     ///
     /// # Panics
-    /// When an edge leads away already.
+    /// When one can already.
     pub fn merge(&mut self, vertex: usize, group: &SymmetryGroup, shape: &PointShape, seed: u64) {
         assert!(
-            self.edges.iter().all(|edge| edge.from != vertex),
+            self.edges
+                .iter()
+                .all(|edge| edge.ways().iter().all(|&way| edge.source(way) != vertex)),
             "points are merged before their names are used"
         );
         let points = &self.vertices[vertex].points;
@@ -170,8 +290,8 @@ impl Graph {
         }
         let kept = orbits.iter().map(|orbit| points[orbit[0]].clone());
         self.vertices[vertex].points = kept.collect();
-        for edge in self.edges.iter_mut().filter(|edge| edge.to == vertex) {
-            for fate in &mut edge.fates {
+        for edge in self.edges.iter_mut().filter(|edge| edge.ends[1] == vertex) {
+            for fate in &mut edge.fates[0] {
                 if let Fate::To { point, .. } = fate {
                     *point = names[*point as usize];
                 }
@@ -204,11 +324,11 @@ impl Graph {
         new.len()
     }
 
-    /// The points that all of a vertex lead to along one edge; `None` while one does not.
+    /// The points that all of a vertex lead to along one edge, ahead; `None` while one does not.
     pub fn reached(&self, edge: usize) -> Option<Vec<&Known>> {
-        let Edge { to, fates, .. } = &self.edges[edge];
-        let points = &self.vertices[*to].points;
-        let reached = fates.iter().map(|fate| match fate {
+        let Edge { ends, fates, .. } = &self.edges[edge];
+        let points = &self.vertices[ends[1]].points;
+        let reached = fates[0].iter().map(|fate| match fate {
             Fate::To { point, .. } => Some(&points[*point as usize]),
             Fate::Open { .. } | Fate::Lost => None,
         });
@@ -227,13 +347,12 @@ impl Graph {
     ) -> Settled {
         let mut settled = Settled::default();
         for arrival in arrivals.iter().filter(|arrival| arrival.end.is_none()) {
-            settled.lost +=
-                u64::from(!self.again(arrival.edge, arrival.source, arrival.attempt, most));
+            settled.lost += u64::from(!self.again(arrival.key(), arrival.attempt, most));
         }
         for vertex in 0..self.vertices.len() {
             let here: Vec<(&Arrival, &Known)> = arrivals
                 .iter()
-                .filter(|arrival| self.edges[arrival.edge].to == vertex)
+                .filter(|arrival| self.edges[arrival.edge].target(arrival.way) == vertex)
                 .filter_map(|arrival| Some((arrival, arrival.end.as_ref()?)))
                 .collect();
             if !here.is_empty() {
@@ -262,8 +381,8 @@ impl Graph {
             .map(|point| (point.values.as_slice(), point.radius))
             .collect();
         let orbits = group.orbits(&points, shape, seed);
-        // For each edge and target point: who claims to lead there.
-        let mut claims = BTreeMap::<(usize, u32), Vec<(u32, u16)>>::new();
+        // For each edge, way and target point: who claims to lead there.
+        let mut claims = BTreeMap::<(usize, Way, u32), Vec<(u32, u16)>>::new();
         for orbit in orbits {
             let split = orbit.partition_point(|&member| member < known);
             let (old, new) = orbit.split_at(split);
@@ -283,46 +402,44 @@ impl Graph {
                 // Too inaccurate to tell two known points apart.
                 _ => {
                     for (arrival, _) in arrived {
-                        let (edge, source) = (arrival.edge, arrival.source);
-                        let again = self.again(edge, source, arrival.attempt, most);
+                        let again = self.again(arrival.key(), arrival.attempt, most);
                         settled.lost += u64::from(!again);
                     }
                     continue;
                 }
             };
             for (arrival, _) in arrived {
-                let claim = claims.entry((arrival.edge, target)).or_default();
+                let claim = (arrival.edge, arrival.way, target);
+                let claim = claims.entry(claim).or_default();
                 claim.push((arrival.source, arrival.attempt));
             }
         }
-        let mut before = BTreeMap::<(usize, u32), Vec<(u32, u16)>>::new();
-        for (number, edge) in self.edges.iter().enumerate() {
-            if edge.to != vertex || !edge.bijective {
-                continue;
-            }
-            for (source, fate) in edge.fates.iter().enumerate() {
-                if let Fate::To { point, attempt } = fate {
-                    let sources = before.entry((number, *point)).or_default();
-                    sources.push((source as u32, *attempt));
+        for ((edge, way, target), mut sources) in claims {
+            let bijective = self.edges[edge].bijective;
+            if bijective {
+                // Its partner from before, whichever way that was found.
+                let before = self.edges[edge].fates[way.other() as usize][target as usize];
+                if let Fate::To { point, .. } = before {
+                    let attempt = self.attempt((edge, way, point));
+                    sources.push((point, attempt));
                 }
             }
-        }
-        for ((edge, target), mut sources) in claims {
-            sources.extend(before.remove(&(edge, target)).into_iter().flatten());
             sources.sort_unstable();
-            let crossed = self.edges[edge].bijective && sources.len() > 1;
+            let crossed = bijective && sources.len() > 1;
+            if crossed {
+                // Its own partner is to be looked for again, if it comes to that.
+                let key = (edge, way.other(), target);
+                let attempt = (self.attempt(key) + 1).min(most);
+                *self.fate(key) = Fate::Open { attempt };
+            }
             let mut all_again = true;
             for (place, &(source, attempt)) in sources.iter().enumerate() {
-                let arrived = Fate::To {
-                    point: target,
-                    attempt,
-                };
-                if crossed && (self.again(edge, source, attempt, most) || place > 0) {
+                if crossed && (self.again((edge, way, source), attempt, most) || place > 0) {
                     all_again &= attempt < most;
                 } else {
                     // What never comes apart leaves the target to the first.
                     all_again &= !crossed;
-                    self.edges[edge].fates[source as usize] = arrived;
+                    self.pair((edge, way, source), attempt, target);
                 }
             }
             settled.crossings += u64::from(crossed && sources.iter().any(|s| s.1 == 0));
@@ -330,10 +447,39 @@ impl Graph {
         }
     }
 
+    fn fate(&mut self, (edge, way, point): Key) -> &mut Fate {
+        &mut self.edges[edge].fates[way as usize][point as usize]
+    }
+
+    /// How often a point was tracked again; of one that is lost, as if it could be again.
+    fn attempt(&self, (edge, way, point): Key) -> u16 {
+        match self.edges[edge].fates[way as usize][point as usize] {
+            Fate::Open { attempt } | Fate::To { attempt, .. } => attempt,
+            Fate::Lost => u16::MAX - 1,
+        }
+    }
+
+    /// Notes that a source has been tracked to a target, for both.
+    fn pair(&mut self, key: Key, attempt: u16, target: u32) {
+        let (edge, way, source) = key;
+        *self.fate(key) = Fate::To {
+            point: target,
+            attempt,
+        };
+        if self.edges[edge].bijective {
+            let partner = (edge, way.other(), target);
+            let attempt = self.attempt(partner);
+            *self.fate(partner) = Fate::To {
+                point: source,
+                attempt,
+            };
+        }
+    }
+
     /// Lets a source be tracked again, more tightly; false where that was done often enough.
-    fn again(&mut self, edge: usize, source: u32, attempt: u16, most: u16) -> bool {
+    fn again(&mut self, key: Key, attempt: u16, most: u16) -> bool {
         let may = attempt < most;
-        self.edges[edge].fates[source as usize] = if may {
+        *self.fate(key) = if may {
             Fate::Open {
                 attempt: attempt + 1,
             }
@@ -360,6 +506,7 @@ mod tests {
     fn arrival(source: u32, attempt: u16, x: f64) -> Arrival {
         Arrival {
             edge: 0,
+            way: Way::Ahead,
             source,
             attempt,
             end: Some(at(x)),
@@ -383,14 +530,95 @@ mod tests {
         graph.settle(arrivals, &group, &PointShape::of(&system), 1, 2)
     }
 
+    fn back(arrival: Arrival) -> Arrival {
+        Arrival {
+            way: Way::Back,
+            ..arrival
+        }
+    }
+
+    fn wanted(graph: &Graph) -> Vec<(usize, Way, u16, Vec<u32>)> {
+        let wanted = graph.wanted(None).into_iter();
+        wanted
+            .map(|w| (w.edge, w.way, w.attempt, w.sources))
+            .collect()
+    }
+
     #[test]
     fn everything_is_tracked_once() {
         let mut graph = graph();
-        assert_eq!(graph.open(), [(0, 0, vec![0, 1, 2])]);
+        assert_eq!(wanted(&graph), [(0, Way::Ahead, 0, vec![0, 1, 2])]);
         let all = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
         assert_eq!(settle(&mut graph, &all), Settled::default());
-        assert_eq!((graph.open(), graph.vertices[1].points.len()), (vec![], 3));
+        assert_eq!(
+            (wanted(&graph), graph.vertices[1].points.len()),
+            (vec![], 3)
+        );
         assert_eq!(graph.stored(1, &[2, 0]).point(0)[0].re, 0.9);
+    }
+
+    /// What is known at the far end and has no partner goes back, and nothing goes both ways.
+    #[test]
+    fn an_edge_is_tracked_from_where_more_is_known() {
+        let mut graph = graph();
+        let all = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
+        settle(&mut graph, &all);
+        graph.add_point(1, at(0.6));
+        graph.add_edge(0, 1, 2, true);
+        let back_alone = (0, Way::Back, 0, vec![3]);
+        let all_back = (1, Way::Back, 0, vec![0, 1, 2, 3]);
+        assert_eq!(wanted(&graph), [back_alone, all_back.clone()]);
+        let found = [back(arrival(3, 0, 0.4))];
+        assert_eq!(settle(&mut graph, &found), Settled::default());
+        assert_eq!(graph.vertices[0].points.len(), 4);
+        let to = |point| Fate::To { point, attempt: 0 };
+        assert_eq!(
+            graph.edges[0].fates,
+            [0, 1].map(|_| [0, 1, 2, 3].map(to).to_vec())
+        );
+        // As much is known on both sides now.
+        assert_eq!(wanted(&graph), [(1, Way::Ahead, 0, vec![0, 1, 2, 3])]);
+    }
+
+    /// The edge with two pairs leads to more new points a path; where it would bring all that is
+    /// missing, the other one waits.
+    #[test]
+    fn where_the_number_is_known_the_best_edges_are_tracked_first() {
+        let mut graph = graph();
+        graph.add_point(0, at(0.4));
+        graph.add_edge(0, 1, 2, true);
+        settle(&mut graph, &[arrival(0, 0, 0.7), arrival(1, 0, 0.8)]);
+        let edges = |all: Option<usize>| -> Vec<(usize, usize)> {
+            let wanted = graph.wanted(all).into_iter();
+            wanted.map(|w| (w.edge, w.sources.len())).collect()
+        };
+        assert_eq!(edges(None), [(0, 2), (1, 4)]);
+        assert_eq!(
+            edges(Some(6)),
+            [(0, 2), (1, 4)],
+            "2/4 of what is missing is not all"
+        );
+        assert_eq!(edges(Some(4)), [(0, 2)]);
+    }
+
+    /// A pair that was found from one end is broken by a path from the other that meets it.
+    #[test]
+    fn two_ways_that_disagree_are_tracked_again() {
+        let mut graph = graph();
+        let all = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
+        settle(&mut graph, &all);
+        graph.add_point(1, at(0.6));
+        let met = settle(&mut graph, &[back(arrival(3, 0, 0.3))]);
+        assert_eq!((met.crossings, met.crossings_left), (1, 0));
+        // Both that claim (0.3), and (0.3) itself; the far end knows more.
+        assert_eq!(wanted(&graph), [(0, Way::Back, 1, vec![2, 3])]);
+        assert_eq!(graph.edges[0].fates[0][2], Fate::Open { attempt: 1 });
+        let again = [back(arrival(2, 1, 0.3)), back(arrival(3, 1, 0.5))];
+        assert_eq!(settle(&mut graph, &again), Settled::default());
+        assert_eq!(
+            (wanted(&graph), graph.vertices[0].points.len()),
+            (vec![], 4)
+        );
     }
 
     #[test]
@@ -400,10 +628,13 @@ mod tests {
         settle(&mut graph, &first);
         let third = settle(&mut graph, &[arrival(2, 0, 0.8)]);
         assert_eq!((third.crossings, third.crossings_left), (1, 0));
-        assert_eq!(graph.open(), [(0, 1, vec![1, 2])]);
+        assert_eq!(wanted(&graph), [(0, Way::Ahead, 1, vec![1, 2])]);
         let again = settle(&mut graph, &[arrival(1, 1, 0.8), arrival(2, 1, 0.9)]);
         assert_eq!(again, Settled::default());
-        assert_eq!((graph.open(), graph.vertices[1].points.len()), (vec![], 3));
+        assert_eq!(
+            (wanted(&graph), graph.vertices[1].points.len()),
+            (vec![], 3)
+        );
     }
 
     #[test]
@@ -425,11 +656,12 @@ mod tests {
             total.lost += settled.lost;
         }
         assert_eq!((total.crossings_left, total.lost), (1, 1));
-        let kept = Fate::To {
-            point: 0,
-            attempt: 2,
-        };
-        assert_eq!(graph.edges[0].fates, [kept, Fate::Lost, Fate::Lost]);
-        assert_eq!(graph.open(), []);
+        let kept = |attempt| Fate::To { point: 0, attempt };
+        assert_eq!(graph.edges[0].fates[0], [kept(2), Fate::Lost, Fate::Lost]);
+        assert!(matches!(
+            graph.edges[0].fates[1][..],
+            [Fate::To { point: 0, .. }]
+        ));
+        assert_eq!(wanted(&graph), []);
     }
 }

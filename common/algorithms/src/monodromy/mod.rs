@@ -1,9 +1,10 @@
 //! Monodromy: all solutions of a generic member of a family, from one of them.
 //!
 //! The start solutions are followed to random complex parameters, the base.
-//! From there loops are made, by fresh random parameters and back along other
-//! detours; every solution that turns up takes part in all of them. When some
-//! loops in a row bring nothing new, all that is known at the base is followed
+//! From there loops are made, in a graph of random parameters with several
+//! detours between each two; every solution that turns up anywhere takes part in
+//! all of them, whichever way leads to more new ones. When some loops in a row
+//! bring nothing new, all that is known at the base is followed
 //! to the parameters that are asked for. With a symmetry group one solution of
 //! each orbit is tracked. A jump of a path cannot make a false solution here,
 //! it only breaks the bijection of a leg, and that is seen ([`graph`]).
@@ -20,7 +21,7 @@ use crate::plan_error::PlanError;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::{MAX_RETRIES, can_be_helped};
 use crate::{FiniteEndpoints, Next, Opening, PathAlgorithm};
-use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::homotopies::{HomotopyKind, way_back};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
@@ -34,7 +35,7 @@ use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
 use completeness::{Tested, probability_of_hiding};
 use counts::{LoopCounts, Stop};
-use graph::{Arrival, Fate, Graph, Known};
+use graph::{Arrival, Fate, Graph, Known, Wanted, Way};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -70,10 +71,10 @@ impl Default for LoopLimits {
 pub const MOST_IDLE: u64 = 32;
 /// Paths that idle loops may always cost.
 const IDLE_PATHS: u64 = 512;
-/// Legs that lead from the base to a fresh vertex, and as many back: 2 * 2 - 1 = 3 loops for 4
-/// paths a solution. With one there and one back it would be 1 for 2; with more, loops depend on
-/// the same two places.
-const LEGS: usize = 2;
+/// Detours between two vertices, at most: 3 make 2 loops, of which all are on the orbit of one
+/// solution but for a chance of one in their number. With more, loops depend on the same two places, and
+/// on branch points near the line between them.
+const DETOURS: usize = 3;
 
 /// Where the start solutions solve the system; nothing leads back there.
 const START: usize = 0;
@@ -86,6 +87,7 @@ const FIRST: usize = 0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Batch {
     edge: usize,
+    way: Way,
     attempt: u16,
     sources: Vec<u32>,
     /// Its stage, once it is open.
@@ -199,7 +201,7 @@ impl MonodromySolve {
         graph.add_vertex(base);
         graph.add_edge(START, BASE, edge_seed(seed, FIRST), false);
         let count = usize::try_from(start.count).expect("a plan has no more paths than its limit");
-        graph.edges[FIRST].fates = vec![Fate::Open { attempt: 0 }; count];
+        graph.edges[FIRST].fates[0] = vec![Fate::Open { attempt: 0 }; count];
         Self {
             shape,
             tolerances,
@@ -296,8 +298,20 @@ impl MonodromySolve {
     }
 
     /// The stage of a batch of the present round.
-    fn opening(&self, edge: usize, attempt: u16, sources: &[u32]) -> Opening {
+    fn opening(&self, batch: &Batch) -> Opening {
+        let Batch {
+            edge,
+            way,
+            attempt,
+            ref sources,
+            ..
+        } = *batch;
         let e = &self.graph.edges[edge];
+        let (from, to) = (e.source(way), e.target(way));
+        let seed = match way {
+            Way::Ahead => e.seed,
+            Way::Back => way_back(e.seed),
+        };
         let (points, objects) = if edge == FIRST {
             let all = sources.len() as u64 == self.start.count;
             let points = if all {
@@ -316,11 +330,11 @@ impl MonodromySolve {
             });
             (points, found.collect())
         } else {
-            let points = Arc::new(self.graph.stored(e.from, sources));
+            let points = Arc::new(self.graph.stored(from, sources));
             (points.as_start(), vec![points])
         };
-        let (from, to) = (&self.graph.vertices[e.from], &self.graph.vertices[e.to]);
-        let stage = self.stage(&from.parameters, &to.parameters, e.seed, points);
+        let (from, to) = (&self.graph.vertices[from], &self.graph.vertices[to]);
+        let stage = self.stage(&from.parameters, &to.parameters, seed, points);
         Opening {
             stage: Stage {
                 settings: self.settings.tightened(attempt),
@@ -349,8 +363,8 @@ impl MonodromySolve {
 
     /// What comes after a round, or at the beginning. The phase is `Loops` without batches.
     fn plan_round(&mut self) {
-        let open = self.graph.open();
-        let started = open.iter().all(|(edge, ..)| *edge != FIRST);
+        let open = self.graph.wanted(self.expected());
+        let started = open.iter().all(|wanted| wanted.edge != FIRST);
         if started && self.graph.vertices[BASE].points.is_empty() {
             self.counts.stop = Some(Stop::NoStart);
             self.phase = Phase::Stuck;
@@ -391,17 +405,26 @@ impl MonodromySolve {
                 return;
             }
         }
-        let mut open = self.graph.open();
+        let mut open = self.graph.wanted(self.expected());
         if open.is_empty() {
             self.add_loops();
-            open = self.graph.open();
+            open = self.graph.wanted(self.expected());
         }
-        let batches = open.into_iter().map(|(edge, attempt, sources)| Batch {
-            edge,
-            attempt,
-            sources,
-            stage: None,
-            results: None,
+        let batches = open.into_iter().map(|wanted| {
+            let Wanted {
+                edge,
+                way,
+                attempt,
+                sources,
+            } = wanted;
+            Batch {
+                edge,
+                way,
+                attempt,
+                sources,
+                stage: None,
+                results: None,
+            }
         });
         self.phase = Phase::Loops(batches.collect());
     }
@@ -416,24 +439,44 @@ impl MonodromySolve {
         }
         self.weighed = self.counts.loops;
         self.exhausted_at = known;
-        let cheap = (IDLE_PATHS / known as u64).min(MOST_IDLE);
-        let wanted = u64::from(self.limits.idle_loops).max(cheap);
-        let patience = if self.limits.count.is_some() { 4 } else { 1 };
-        self.counts.idle_loops >= wanted.saturating_mul(patience).max(1)
+        self.counts.idle_loops >= self.idle_wanted()
     }
 
-    /// A fresh vertex with legs there and back.
+    /// How many idle loops are enough.
+    fn idle_wanted(&self) -> u64 {
+        let known = self.graph.vertices[BASE].points.len() as u64;
+        let cheap = (IDLE_PATHS / known).min(MOST_IDLE);
+        let wanted = u64::from(self.limits.idle_loops).max(cheap);
+        let patience = if self.limits.count.is_some() { 4 } else { 1 };
+        wanted.saturating_mul(patience).max(1)
+    }
+
+    /// How many points a vertex has, if as many solutions are as was said and their orbits are as
+    /// large as those that are known.
+    fn expected(&self) -> Option<usize> {
+        let (counted, points) = self.counted;
+        let (count, points) = (self.limits.count?, points as u64);
+        let orbits = count.saturating_mul(points).div_ceil(counted.max(1));
+        usize::try_from(orbits).ok().filter(|_| counted > 0)
+    }
+
+    /// A fresh vertex with detours from those before it, as many as are still needed.
     fn add_loops(&mut self) {
         let number = self.graph.vertices.len();
         let parameters = generic_parameters(&self.start.parameters, self.seed, number);
+        let before: Vec<usize> = (BASE..number).filter(|&v| !self.is_beside(v)).collect();
         let vertex = self.graph.add_vertex(parameters);
-        for (from, to) in [(BASE, vertex), (vertex, BASE)] {
-            for _ in 0..LEGS {
-                let seed = edge_seed(self.seed, self.graph.edges.len());
-                self.graph.add_edge(from, to, seed, true);
-            }
+        let idle = self.idle_wanted().saturating_sub(self.counts.idle_loops);
+        let needed = usize::try_from(idle)
+            .unwrap_or(usize::MAX)
+            .saturating_add(1);
+        let edges = needed.clamp(DETOURS, DETOURS * before.len());
+        for k in 0..edges {
+            let seed = edge_seed(self.seed, self.graph.edges.len());
+            self.graph
+                .add_edge(before[k % before.len()], vertex, seed, true);
         }
-        self.counts.loops += (2 * LEGS - 1) as u64;
+        self.counts.loops += edges as u64 - 1;
     }
 
     /// Finds the group at the first solution that is known at generic parameters.
@@ -509,6 +552,7 @@ impl MonodromySolve {
                 };
                 arrivals.push(Arrival {
                     edge: batch.edge,
+                    way: batch.way,
                     source,
                     attempt,
                     end,
@@ -719,7 +763,7 @@ impl PathAlgorithm for MonodromySolve {
                     let planned = batches.iter().position(|batch| batch.stage.is_none());
                     if let Some(place) = planned {
                         let batch = batches[place].clone();
-                        let opening = self.opening(batch.edge, batch.attempt, &batch.sources);
+                        let opening = self.opening(&batch);
                         if let Phase::Loops(batches) = &mut self.phase {
                             batches[place].stage = Some(opening.stage.id);
                         }

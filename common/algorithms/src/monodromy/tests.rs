@@ -243,6 +243,79 @@ fn the_order_of_stages_does_not_matter() {
     );
 }
 
+/// Every pair of every edge is found from either end; another detour back leads elsewhere.
+#[test]
+fn an_edge_leads_back_to_where_it_came_from() {
+    let system = written(CUBICS);
+    let mut plan = monodromy(&system, 3);
+    solve(&mut plan);
+    let AnyAlgorithm::Monodromy(solved) = &mut plan.algorithm else {
+        panic!("it is a monodromy solve")
+    };
+    let partners = |solved: &MonodromySolve, edge: usize, way: Way| -> Vec<usize> {
+        let batch = Batch {
+            edge,
+            way,
+            attempt: 0,
+            sources: (0..9).collect(),
+            stage: None,
+            results: None,
+        };
+        let opening = solved.opening(&batch);
+        let find = |_: Digest| opening.objects.first().cloned();
+        let prepared = PreparedStage::new(&system, &opening.stage, &find).unwrap();
+        let ends = prepared.track(0..9, 8).into_iter();
+        let ends = ends.map(|result| solved.arrival_of(&result).expect("it arrives"));
+        let there = &solved.graph.vertices[solved.graph.edges[edge].target(way)].points;
+        let distance = |a: &Known, b: &Known| -> f64 {
+            let pairs = a.values.iter().zip(&b.values);
+            pairs.map(|(a, b)| (a - b).norm_sqr()).sum()
+        };
+        let place = |end: Known| there.iter().position(|known| distance(known, &end) < 1e-16);
+        ends.map(|end| place(end).expect("it is known")).collect()
+    };
+    let edges = solved.graph.edges.len();
+    let mut elsewhere = 0;
+    for edge in FIRST + 1..edges {
+        for (way, fates) in [Way::Ahead, Way::Back].into_iter().zip(0..) {
+            let fates = solved.graph.edges[edge].fates[fates as usize].iter();
+            let pairs: Vec<usize> = fates
+                .map(|fate| match fate {
+                    Fate::To { point, .. } => *point as usize,
+                    other => panic!("{other:?}"),
+                })
+                .collect();
+            assert_eq!(partners(solved, edge, way), pairs, "{edge} {way:?}");
+        }
+        let ahead = partners(solved, edge, Way::Ahead);
+        solved.graph.edges[edge].seed = way_back(solved.graph.edges[edge].seed);
+        elsewhere += u32::from(partners(solved, edge, Way::Ahead) != ahead);
+    }
+    assert!(edges > 20 && elsewhere > 3, "{edges} {elsewhere}");
+}
+
+/// With the number known, half of what an edge costs is saved at least: 3 edges, not all of them whole.
+#[test]
+fn few_paths_are_tracked_where_the_number_is_known() {
+    let system = written(CUBICS);
+    let mut tracked = 0;
+    for seed in 0..10 {
+        let options = PlanOptions {
+            start: StartChoice::Monodromy,
+            seed,
+            loops: LoopLimits {
+                count: Some(9),
+                ..LoopLimits::default()
+            },
+            ..PlanOptions::default()
+        };
+        let (set, counts) = solve(&mut plan(&system, &options).unwrap());
+        assert_eq!((set.counts.distinct, counts.stop), (9, Some(Stop::Count)));
+        tracked += counts.tracked;
+    }
+    assert!(tracked < 10 * 4 * 9, "{tracked}");
+}
+
 /// A tracker that jumps now and then: every path of a leg's first attempt ends where the first
 /// one does. Nothing is lost, and it is counted.
 #[test]
@@ -365,9 +438,9 @@ fn points_on_a_slice_are_complete_when_their_sum_moves_on_a_line() {
             .graph
             .edges
             .iter_mut()
-            .filter(|edge| edge.from == BASE)
+            .filter(|edge| edge.ends[0] == BASE)
         {
-            edge.fates.pop();
+            edge.fates[0].pop();
         }
         let without = solve.trace_of(&pencil, moved.unwrap());
         assert!(

@@ -15,7 +15,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 pub use parameter_path::ParameterPath;
-pub use prepare::Homotopy;
+pub use prepare::{Homotopy, way_back};
 
 /// What is deformed into what. Pure data; [`prepare`] makes a program of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
