@@ -165,14 +165,24 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
                     .to_owned(),
             ))
         }
+        (StartKind::Monodromy, _)
+            if options.idle_loops.is_some() && options.confidence.is_some() =>
+        {
+            Err(ApiError::Problem(
+                "options.idle_loops, options.confidence: they are two rules for when loops end; \
+                 give one"
+                    .to_owned(),
+            ))
+        }
         (StartKind::Monodromy, _) => Ok(()),
         _ if options.idle_loops.is_some()
             || options.expected_solutions.is_some()
-            || options.trace_test =>
+            || options.trace_test
+            || options.confidence.is_some() =>
         {
             Err(ApiError::Problem(
-                "options.idle_loops, options.expected_solutions, options.trace_test: they go \
-                 with start kind \"monodromy\" only"
+                "options.idle_loops, options.expected_solutions, options.trace_test, \
+                 options.confidence: they go with start kind \"monodromy\" only"
                     .to_owned(),
             ))
         }

@@ -60,6 +60,11 @@ fn a_family_is_solved_once_and_kept() {
         explained.contains("monodromy: 8 solutions in 2 classes"),
         "{explained}"
     );
+    let estimated = explained.contains("estimate: 2 classes, all known with probability 9");
+    assert!(
+        estimated && explained.contains("Hauenstein and Sherman"),
+        "{explained}"
+    );
 
     // From what was kept to the wanted parameters, in a solve of its own.
     let again = cluster.command(&[
@@ -78,6 +83,28 @@ fn a_family_is_solved_once_and_kept() {
     assert_eq!(again["solutions"]["nonsingular"], 8, "{again:#}");
     assert_eq!(again["solutions"]["real"], 4);
     assert_eq!(again["monodromy"], Value::Null);
+    // Loops that end by an estimate.
+    let sure = cluster.command(&[
+        "solve",
+        "family.json",
+        "--start",
+        "monodromy",
+        "--confidence",
+        "0.999",
+        "--format",
+        "json",
+    ]);
+    let sure = summary(&sure);
+    let loops = &sure["monodromy"]["loops"];
+    assert_eq!(
+        (&loops["stop"], &loops["solutions"]),
+        (&"confidence".into(), &8.into())
+    );
+    let estimate = &loops["estimate"];
+    assert_eq!(estimate["likeliest"], 8, "{loops:#}");
+    assert!(estimate["confidence"].as_f64() >= Some(0.999));
+    let assumption = estimate["assumption"].as_str().unwrap();
+    assert!(assumption.contains("at random"), "{assumption}");
     cluster.stop();
 }
 
@@ -95,6 +122,17 @@ fn what_does_not_fit_is_refused_with_its_reason() {
         (
             &["solve", "family.json", "--idle-loops", "7"],
             "only goes with --start monodromy",
+        ),
+        (
+            &[
+                "solve",
+                "family.json",
+                "--start",
+                "monodromy",
+                "--confidence",
+                "1",
+            ],
+            "expected a probability between 0 and 1",
         ),
     ] {
         let output = cluster.command(arguments);

@@ -59,6 +59,9 @@ pub struct Options {
     pub certify: bool,
     /// For [`StartKind::Monodromy`]: whether a trace test decides that it has all solutions.
     pub trace_test: bool,
+    /// For [`StartKind::Monodromy`]: with what probability, between 0 and 1, none should be missing
+    /// if loops permute at random; `None`: idle loops end it.
+    pub confidence: Option<f64>,
     /// Decimal digits of the solutions; `None`: those of the precision.
     pub digits: Option<u32>,
     /// Whether isolated singular solutions are brought to their digits by deflation.

@@ -126,6 +126,14 @@ pub enum PresetName {
     Reckless,
 }
 
+/// A probability that is neither 0 nor 1.
+fn probability(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(p) if p > 0.0 && p < 1.0 => Ok(p),
+        _ => Err("expected a probability between 0 and 1, such as 0.999".to_owned()),
+    }
+}
+
 /// An arithmetic, as typed.
 fn precision(text: &str) -> Result<PrecisionChoice, String> {
     match text {
@@ -192,6 +200,10 @@ pub struct ProblemArguments {
     /// Loops in a row without anything new after which --start monodromy ends [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub idle_loops: Option<u32>,
+    /// Instead of idle loops: --start monodromy ends when, if loops permute the solutions at random, none
+    /// is missing with this probability, such as 0.999
+    #[arg(long, value_name = "PROBABILITY", value_parser = probability, conflicts_with = "idle_loops")]
+    pub confidence: Option<f64>,
     /// How many solutions there are at generic parameters, where --start monodromy should know
     #[arg(long, value_name = "N")]
     pub expect: Option<u64>,

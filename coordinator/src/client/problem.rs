@@ -101,6 +101,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (a.idle_loops.is_some(), "--idle-loops"),
         (a.expect.is_some(), "--expect"),
         (a.trace_test, "--trace-test"),
+        (a.confidence.is_some(), "--confidence"),
     ] {
         if given && a.start != Start::Monodromy {
             return Err(wrong(option, "only goes with --start monodromy"));
@@ -179,6 +180,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         expected_solutions: a.expect,
         certify: a.certify,
         trace_test: a.trace_test,
+        confidence: a.confidence,
         digits: a.digits.or(file.digits),
         deflate: a.deflate,
         sets,

@@ -7,6 +7,7 @@ use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
 use crate::results::summary::{SOLUTIONS, Summary};
 use cognate_algorithms::AnyAlgorithm;
+use cognate_algorithms::monodromy::estimate::percent;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId, Work};
@@ -313,6 +314,20 @@ impl Coordinator {
                     loops.crossings_found,
                     loops.crossings_resolved
                 ));
+                if let Some(estimate) = &loops.estimate {
+                    lines.push(format!(
+                        "estimate: {} classes, all known with probability {}, by capture and \
+                         recapture: N of them are likely as the product of (N)_r over places with r \
+                         known, divided by that of (N)_c over edges with c pairs and by (N)_s with s \
+                         at the start, (N)_k = N (N-1) ... (N-k+1) (after Hauenstein and Sherman \
+                         2020); it takes for granted that {}",
+                        estimate
+                            .likeliest
+                            .map_or("an unknown number of".to_owned(), |n| n.to_string()),
+                        percent(estimate.confidence),
+                        estimate.assumption
+                    ));
+                }
             }
             if let Some(certified) = summary.solutions.certified {
                 lines.push(format!(

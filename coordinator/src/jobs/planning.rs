@@ -123,6 +123,7 @@ pub fn plan_options(
                 .unwrap_or(LoopLimits::default().idle_loops),
             count: options.expected_solutions,
             trace_test: options.trace_test,
+            confidence: options.confidence,
         },
         seed: options.seed.unwrap_or_default(),
         settings: options.settings.resolve(),

@@ -1,5 +1,6 @@
 //! Counts: how a set of solutions was found by monodromy, for people and for the summary.
 
+use super::estimate::Estimate;
 use serde::{Deserialize, Serialize};
 
 /// Why no more loops were made.
@@ -12,6 +13,8 @@ pub enum Stop {
     IdleLoops,
     /// A trace test says that none is missing.
     TraceTest,
+    /// If loops permute at random, none is missing with the probability that was asked for.
+    Confidence,
     /// As many paths were tracked as one solve may.
     PathLimit,
     /// No start point could be tracked to generic parameters.
@@ -68,4 +71,7 @@ pub struct LoopCounts {
     /// The last trace test; `None` where none was asked for or came to an end.
     #[serde(default)]
     pub trace_test: Option<TraceCounts>,
+    /// How many classes there are by what was met again; `None` before the first loop.
+    #[serde(default)]
+    pub estimate: Option<Estimate>,
 }

@@ -13,7 +13,7 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::symmetry::SymmetryGroup;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A solution, which stands for its orbit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -103,7 +103,7 @@ impl Edge {
     }
 
     /// How many pairs are known.
-    fn pairs(&self) -> usize {
+    pub fn pairs(&self) -> usize {
         let fates = self.fates[0].iter();
         fates.filter(|fate| matches!(fate, Fate::To { .. })).count()
     }
@@ -322,6 +322,16 @@ impl Graph {
             self.add_point(vertex, point.clone());
         }
         new.len()
+    }
+
+    /// To how many different points an edge leads.
+    pub fn targets(&self, edge: usize) -> usize {
+        let fates = self.edges[edge].fates[0].iter();
+        let points = fates.filter_map(|fate| match fate {
+            Fate::To { point, .. } => Some(*point),
+            Fate::Open { .. } | Fate::Lost => None,
+        });
+        points.collect::<BTreeSet<u32>>().len()
     }
 
     /// The points that all of a vertex lead to along one edge, ahead; `None` while one does not.

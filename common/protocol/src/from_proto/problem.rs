@@ -131,6 +131,16 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
         expected_solutions: m.expected_solutions,
         certify: m.certify,
         trace_test: m.trace_test,
+        confidence: match m.confidence {
+            Some(p) if !(p > 0.0 && p < 1.0) => {
+                return Err(ProtocolError::invalid(
+                    "confidence",
+                    p,
+                    "a probability between 0 and 1, both excluded",
+                ));
+            }
+            confidence => confidence,
+        },
         digits: match m.digits {
             Some(digits) if !(1..=MOST_DIGITS).contains(&digits) => {
                 let expected = format!("1 to {MOST_DIGITS}");

@@ -88,6 +88,7 @@ pub fn options(options: &Options) -> v1::Options {
         expected_solutions: options.expected_solutions,
         certify: options.certify,
         trace_test: options.trace_test,
+        confidence: options.confidence,
         digits: options.digits,
         deflate: options.deflate,
         sets: options

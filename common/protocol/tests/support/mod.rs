@@ -244,6 +244,7 @@ impl Draw {
             expected_solutions: Some(length as u64).filter(|&n| n > 0),
             certify: length > 1,
             trace_test: length == 1,
+            confidence: (count > 1).then_some(0.999),
             digits: (count > 1).then_some(50),
             deflate: length > 2,
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),

@@ -3,7 +3,8 @@
 use super::summary::open_questions;
 use super::text::{Look, complex, count, counted, cut, magnitude, rate, seconds, wrapped};
 use crate::results::summary::Summary;
-use cognate_algorithms::monodromy::counts::LoopCounts;
+use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
+use cognate_algorithms::monodromy::estimate::percent;
 use cognate_solutions::solution::{NamedValue, Solution};
 use num_complex::Complex64;
 use std::fmt::Write as _;
@@ -367,6 +368,14 @@ fn loops_block(lines: &mut Lines, loops: &LoopCounts) {
             false => format!("not complete: the sum of so many points should move on a line{off}"),
         };
         lines.line("trace test", &count(test.points), &said);
+    }
+    if let (Some(Stop::Confidence), Some(estimate)) = (loops.stop, &loops.estimate) {
+        let likeliest = estimate.likeliest.map_or("?".to_owned(), count);
+        let sure = format!(
+            "classes; no more with probability {}, if loops permute at random",
+            percent(estimate.confidence)
+        );
+        lines.line("estimated", &likeliest, &sure);
     }
     if loops.lost > 0 {
         lines.line(
