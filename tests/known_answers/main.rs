@@ -17,4 +17,5 @@ mod parameter_homotopies;
 mod polyhedral;
 mod singular_endpoints;
 mod start_costs;
+mod straight_line_programs;
 mod twenty_variables;

@@ -1,5 +1,6 @@
 //! Set structures of linear-product starts: guessed from the monomials or given, checked and counted.
 
+use crate::start_costs::not_multiplied_out;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::linear_product::{
     LinearProductError, SOLVING_STEPS, SetStructure, check_covered, count, guess,
@@ -109,7 +110,7 @@ fn supports_of(system: &System) -> Result<Vec<Vec<Vec<u32>>>, String> {
     if system.equation_count() > system.dimension() {
         return Err("not counted for combinations of equations".into());
     }
-    let supports = supports(system).ok_or("multiplying the equations out takes too long")?;
+    let supports = supports(system).ok_or_else(|| not_multiplied_out(system))?;
     let mut monomials = supports.iter().flatten();
     if monomials.any(|m| m.iter().sum::<u32>() > MOST_FACTORS) {
         return Err(format!("not tried for degrees above {MOST_FACTORS}"));

@@ -10,7 +10,8 @@ use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
 use cognate_solutions::plain::Sieve;
-use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
+use cognate_systems::expression::Node;
+use cognate_systems::polynomial::{self, Degrees, check_homogeneous, degrees_by_form, supports};
 use cognate_systems::system::{System, VariableGroup};
 use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
@@ -428,7 +429,7 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
     if system.equation_count() > system.dimension() {
         return Err("not counted for combinations of equations".into());
     }
-    let supports = supports(system).ok_or("multiplying the equations out takes too long")?;
+    let supports = supports(system).ok_or_else(|| not_multiplied_out(system))?;
     mixed_cells(
         &affine_supports(&supports, &nonzero_variables(system)),
         0,
@@ -437,6 +438,46 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
     .map(|found| found.mixed_volume)
     .map_err(|error| error.to_string())
 }
+
+/// Why the monomials of a system are not known: the equation that may have the most of them, by its
+/// form. A system whose equations share subexpressions is solved without its monomials.
+pub(crate) fn not_multiplied_out(system: &System) -> String {
+    let all: Vec<usize> = (0..system.variable_count()).collect();
+    let sizes = system.equations.iter().enumerate().map(|(i, &equation)| {
+        let degrees = degrees_by_form(&system.expressions, equation, &all);
+        let nodes = degrees.keys().map(|&id| system.expressions.node(id));
+        let variables = nodes
+            .filter(|node| matches!(node, Node::Variable(_)))
+            .count();
+        let degree = degrees[&equation];
+        // Monomials of at most this degree: (n + d) over n.
+        let terms = (1..=variables).try_fold(1u128, |product, k| {
+            let next = product.checked_mul(u128::from(degree) + k as u128)?;
+            Some(next / k as u128).filter(|&terms| terms <= MANY_TERMS)
+        });
+        (terms.unwrap_or(MANY_TERMS), i, degree, variables)
+    });
+    let Some((terms, i, degree, variables)) =
+        sizes.max_by_key(|&(terms, i, ..)| (terms, usize::MAX - i))
+    else {
+        return "there are no equations".into();
+    };
+    let name = match system.equation_names.get(i) {
+        Some(name) if !name.is_empty() => format!("equation {name}"),
+        _ => format!("equation {}", i + 1),
+    };
+    let terms = match terms {
+        MANY_TERMS => "more than 10^12".into(),
+        terms => format!("up to {terms}"),
+    };
+    format!(
+        "the equations are not multiplied out: {name}, of degree {degree} in {variables} variables, may \
+         have {terms} terms"
+    )
+}
+
+/// Numbers of terms are not told beyond.
+const MANY_TERMS: u128 = 1_000_000_000_000;
 
 /// Whether two legs for each of `volume` paths cost less than one for each of `count`.
 ///
