@@ -98,6 +98,7 @@ pub async fn metrics(ledger: &dyn Ledger) -> Result<String, LedgerError> {
     let mut chunks = [0; 3];
     let mut paths: BTreeMap<&str, u64> = BTreeMap::new();
     let mut micros = 0;
+    let mut speculative = [0; 2];
     for job in ledger.jobs(ROWS).await? {
         *states.entry(job.state.name()).or_default() += 1;
         for stage in ledger.stages(job.job).await? {
@@ -110,6 +111,8 @@ pub async fn metrics(ledger: &dyn Ledger) -> Result<String, LedgerError> {
             *paths.entry("singular").or_default() += stage.outcomes.singular;
             *paths.entry("failed").or_default() += stage.outcomes.failed;
             micros += stage.cpu_micros;
+            speculative[0] += stage.speculative_leases;
+            speculative[1] += stage.speculative_won;
         }
     }
     let now = ledger.now().await?;
@@ -143,6 +146,19 @@ pub async fn metrics(ledger: &dyn Ledger) -> Result<String, LedgerError> {
         help,
         &time,
     );
+    let of_speculative = [
+        (
+            "cognate_speculative_leases_total",
+            "Late chunks that were given to a second worker.",
+        ),
+        (
+            "cognate_speculative_leases_won_total",
+            "Late chunks that the second worker reported first.",
+        ),
+    ];
+    for ((name, help), value) in of_speculative.into_iter().zip(speculative) {
+        family(&mut text, name, "counter", help, &[(String::new(), value)]);
+    }
     let of = |count: fn(&(u64, u64)) -> u64| -> Vec<(String, u64)> {
         let counts = workers.iter();
         counts
@@ -199,6 +215,7 @@ mod tests {
         );
         assert!(text.contains("cognate_chunks{state=\"done\"} 1"), "{text}");
         assert!(text.contains("cognate_tracking_microseconds_total 7000"));
+        assert!(text.contains("cognate_speculative_leases_total 0"));
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             let (name, value) = line.rsplit_once(' ').expect("name and value");
             assert!(name.starts_with("cognate_") && value.parse::<u64>().is_ok());

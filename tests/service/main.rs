@@ -7,6 +7,7 @@ mod certificates;
 mod coordinator_restarted;
 mod digits;
 mod full_disk;
+mod late_chunk;
 mod lease_expired;
 mod monodromy;
 mod nine_points;

@@ -141,7 +141,10 @@ fn verdict(answer: Result<Completion, ApiError>) -> Result<v1::ReportVerdict, Ap
         Ok(Completion::Accepted | Completion::Witnessed) => {
             of(v1::Verdict::Accepted, String::new())
         }
-        Ok(Completion::AlreadyAccepted) => of(v1::Verdict::AlreadyAccepted, String::new()),
+        // That another worker was first is not the worker's business either.
+        Ok(Completion::AlreadyAccepted | Completion::Overtaken) => {
+            of(v1::Verdict::AlreadyAccepted, String::new())
+        }
         Ok(Completion::Stale) => of(v1::Verdict::Stale, String::new()),
         Ok(Completion::HashDiffers) => of(v1::Verdict::HashDiffers, String::new()),
         // A job or a stage that is not here has no use for results.

@@ -1,6 +1,7 @@
 //! Policy: the numbers by which chunks are leased, renewed and taken back.
 
 use super::sizing::Sizing;
+use super::speculation::Speculation;
 use crate::ledger::identity::{RequestId, WorkerId};
 use crate::ledger::rows::LeaseRequest;
 
@@ -32,6 +33,8 @@ pub struct Policy {
     pub held_paths: u64,
     /// How large chunks are.
     pub sizing: Sizing,
+    /// When the last chunks of a stage are given to a second worker.
+    pub speculation: Speculation,
 }
 
 impl Default for Policy {
@@ -46,6 +49,7 @@ impl Default for Policy {
             audit_percent: 0,
             held_paths: 100_000,
             sizing: Sizing::default(),
+            speculation: Speculation::default(),
         }
     }
 }
@@ -68,6 +72,7 @@ impl Policy {
             slots,
             duration_ms: self.lease_ms,
             sizing: self.sizing,
+            speculation: self.speculation,
             suspicion_limit: self.suspicion_limit,
             in_flight_limit: self.in_flight_limit,
         }

@@ -3,9 +3,11 @@
 //! Plain decisions only. Whose turn it is, the ledger decides where it can see
 //! all jobs at once (virtual time per tenant, then per job); how large a chunk
 //! is cut, [`sizing`]; what becomes of one that no worker survives, [`expiry`];
-//! which are done twice, [`audit`]; the numbers behind it, [`leasing`].
+//! which are done twice to compare, [`audit`]; which because they are late,
+//! [`speculation`]; the numbers behind it, [`leasing`].
 
 pub mod audit;
 pub mod expiry;
 pub mod leasing;
 pub mod sizing;
+pub mod speculation;

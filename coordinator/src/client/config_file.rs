@@ -4,6 +4,7 @@ use super::error::ClientError;
 use super::problem;
 use crate::chunks::leasing::Policy;
 use crate::chunks::sizing::Sizing;
+use crate::chunks::speculation::Speculation;
 use crate::config::{Config, Rules};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -68,6 +69,8 @@ tables! {
         split_into: u64,
         in_flight_limit: u32,
         audit_percent: u32,
+        speculation_times: u32,
+        speculation_least_seconds: f64,
         held_paths: u64,
     }
     /// The fields of `Sizing`.
@@ -142,6 +145,14 @@ impl ConfigFile {
                 )?,
                 audit_percent: r.audit_percent.unwrap_or(policy.audit_percent).min(100),
                 held_paths: r.held_paths.unwrap_or(policy.held_paths),
+                speculation: Speculation {
+                    times: r.speculation_times.unwrap_or(policy.speculation.times),
+                    least_ms: in_ms(
+                        "speculation_least_seconds",
+                        r.speculation_least_seconds,
+                        policy.speculation.least_ms,
+                    )?,
+                },
                 sizing: Sizing {
                     longest_ms: number("longest_ms", c.longest_ms, sizing.longest_ms)?,
                     shared_ms: number("shared_ms", c.shared_ms, sizing.shared_ms)?,

@@ -282,6 +282,14 @@ impl Coordinator {
                 stage.ready
             ));
         }
+        let rows = self.ledger.stages(job).await?;
+        let late: u64 = rows.iter().map(|stage| stage.speculative_leases).sum();
+        let won: u64 = rows.iter().map(|stage| stage.speculative_won).sum();
+        if late > 0 {
+            lines.push(format!(
+                "late: {late} chunks were given to a second worker, which reported {won} of them first"
+            ));
+        }
         if let Some(summary) = &summary {
             let paths = &summary.paths;
             lines.push(format!(
@@ -375,6 +383,8 @@ impl Coordinator {
             "paths": planned.paths,
             "seed": planned.seed,
             "stages": stages,
+            "speculative_leases": late,
+            "speculative_won": won,
             "summary": summary,
         });
         Ok(Explanation {

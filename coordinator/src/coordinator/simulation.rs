@@ -92,6 +92,8 @@ pub struct Cluster {
     pub tracked: u64,
     /// Replies that were lost and heard the second time.
     pub heard_again: u64,
+    /// Reports of late workers, after the second one's was accepted.
+    pub overtaken: u64,
     /// One of the workers computes wrongly.
     broken: bool,
     /// Items whose results were accepted, by stage.
@@ -123,6 +125,7 @@ impl Cluster {
             deadly: None,
             tracked: 0,
             heard_again: 0,
+            overtaken: 0,
             broken: false,
             accepted: BTreeSet::new(),
             processes: Vec::new(),
@@ -394,6 +397,7 @@ impl Cluster {
                     self.heard_again += 1;
                     self.count(&report);
                 }
+                Ok(Completion::Overtaken) => self.overtaken += 1,
                 Ok(_) => {}
                 Err(_) => {
                     self.crash(process);

@@ -3,7 +3,8 @@
 use super::simulation::*;
 use super::*;
 use crate::chunks::sizing::Sizing;
-use crate::ledger::clock::ManualClock;
+use crate::chunks::speculation::Speculation;
+use crate::ledger::clock::{Clock, ManualClock};
 use crate::ledger::faulty::{FaultyLedger, Side};
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::{ChunkState, JobRow};
@@ -87,7 +88,8 @@ async fn whatever_fails_the_same_is_found() {
     let number = |n: String| n.parse().expect("COGNATE_SIMULATION_SEEDS is a number");
     let seeds: u64 = seeds.map_or(24, number);
     let (reference, _) = quiet(&problem()).await;
-    let (mut tracked, mut heard_again) = (0, 0);
+    let (mut tracked, mut heard_again, mut overtaken) = (0, 0, 0);
+    let (mut late, mut won) = (0, 0);
     for seed in 0..seeds {
         let clock = Arc::new(ManualClock::default());
         let memory = Arc::new(MemoryLedger::new(clock.clone()));
@@ -95,6 +97,11 @@ async fn whatever_fails_the_same_is_found() {
         let policy = Policy {
             // Here workers die by chance, and no path is at fault.
             suspicion_limit: 1000,
+            // Nobody is patient, so that many chunks are with two workers.
+            speculation: Speculation {
+                times: 1,
+                least_ms: 100,
+            },
             ..policy([1, 3, 5, 16][seed as usize % 4])
         };
         let mut cluster = Cluster::new(ledger, Store::in_memory(), clock, policy, seed);
@@ -110,12 +117,78 @@ async fn whatever_fails_the_same_is_found() {
         assert_eq!(row.solutions, reference.solutions, "seed {seed}");
         tracked += cluster.tracked;
         heard_again += cluster.heard_again;
+        overtaken += cluster.overtaken;
+        for stage in cluster.ledger.stages(cluster.job).await.unwrap() {
+            late += stage.speculative_leases;
+            won += stage.speculative_won;
+        }
     }
-    println!("{seeds} seeds: {tracked} paths tracked, {heard_again} lost replies heard again");
+    println!(
+        "{seeds} seeds: {tracked} paths tracked, {heard_again} lost replies heard again; {late} chunks \
+         given to a second worker, {won} of them done by it first, {overtaken} reports overtaken"
+    );
+    assert!(late > won && won > 0 && overtaken > 0);
     assert!(
         heard_again > 0,
         "some replies are lost, and answered when asked again"
     );
+}
+
+/// A worker takes chunks of the first stage and stands still. Its lease lasts ten minutes, and the job
+/// ends within seconds; what the worker reports after that, or before the second one does, changes
+/// nothing.
+#[tokio::test]
+async fn a_worker_that_stands_still_does_not_hold_up_the_end() {
+    let (reference, _) = quiet(&problem()).await;
+    let (mut won, mut overtaken) = (0, 0);
+    for seed in 0..40 {
+        let mut cluster = cluster([1, 2, 3, 5][seed as usize % 4], seed);
+        cluster.policy.lease_ms = 600_000;
+        cluster.start_coordinator();
+        for _ in 0..2 + seed % 2 {
+            cluster.start_worker();
+        }
+        cluster.submit(&problem()).await;
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        let begin = cluster.clock.now();
+        // Of every third it wakes up in between.
+        let wakes = (seed % 3 == 0).then(|| cluster.dice.roll(60));
+        for step in 0..1000 {
+            for worker in 1..2 + seed as usize % 2 {
+                cluster.pull(0, worker).await;
+                cluster.clock.advance_ms(50);
+                cluster.report(0, worker).await;
+            }
+            if wakes == Some(step) {
+                cluster.report(0, 0).await;
+            }
+            cluster.drive(0).await;
+            cluster.expire(0).await;
+            if cluster.row().await.state.has_ended() {
+                break;
+            }
+        }
+        let row = cluster.row().await;
+        assert_eq!(row.state, JobState::Solved, "seed {seed}: {:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+        let took = row.ended.expect("it has ended").since_ms(begin);
+        assert!(took < 10_000, "seed {seed}: {took} ms, a lease has 600,000");
+        for _ in 0..2 {
+            cluster.report(0, 0).await;
+        }
+        overtaken += cluster.overtaken;
+        let stages = cluster.ledger.stages(cluster.job).await.unwrap();
+        won += stages.iter().map(|s| s.speculative_won).sum::<u64>();
+        let explained = cluster.coordinator(0).explain(cluster.job).await.unwrap();
+        let late: u64 = stages.iter().map(|s| s.speculative_leases).sum();
+        let says = explained
+            .text
+            .contains(&format!("late: {late} chunks were"));
+        assert_eq!(says, late > 0, "{}", explained.text);
+    }
+    println!("{won} chunks done by a second worker, {overtaken} reports overtaken");
+    assert!(won > 30 && overtaken > 30, "{won}, {overtaken}");
 }
 
 #[tokio::test]

@@ -59,6 +59,10 @@ impl Coordinator {
             let leases = self.ledger.lease(request.clone()).await?;
             if !leases.is_empty() {
                 for lease in &leases {
+                    if lease.speculative {
+                        tracing::info!(lease = %lease.lease, worker = %pull.worker.worker,
+                            "a late chunk is given to a second worker");
+                    }
                     self.changed(lease.lease.chunk.job);
                 }
                 return Ok(leases);
@@ -165,6 +169,7 @@ impl Coordinator {
             }
             Err(error) => return Err(error.into()),
         };
+        let address = object.address.clone();
         let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
             self.ledger.witness(lease, object).await?
         } else {
@@ -183,6 +188,13 @@ impl Coordinator {
                 if is_audited(lease.chunk, self.policy.audit_percent) {
                     // Whoever was outvoted has lost chunks.
                     self.work.notify_waiters();
+                }
+            }
+            Completion::Overtaken => {
+                tracing::debug!(%lease, "another worker was first with the same results");
+                // What stays there for a failure or a kill costs a little space, and nothing else.
+                if let Err(error) = self.store.remove_results(&address).await {
+                    tracing::debug!(%lease, %error, "an object of no use stays");
                 }
             }
             Completion::HashDiffers => {

@@ -9,6 +9,7 @@ use super::memory::NEW_JOB_MICROS;
 use super::rows::*;
 use super::{Ledger, LedgerError};
 use crate::chunks::sizing::Sizing;
+use crate::chunks::speculation::Speculation;
 use cognate_continuation::work::StageId;
 use cognate_numeric::NUMERICS_REVISION;
 
@@ -56,6 +57,11 @@ macro_rules! ledger_conformance {
             case!(an_audited_chunk_needs_two_that_agree);
             case!(what_an_outvoted_worker_found_is_done_again);
             case!(a_job_that_used_an_outvoted_worker_fails);
+            case!(a_late_chunk_is_given_to_an_idle_worker);
+            case!(who_is_late_may_still_be_first);
+            case!(who_is_late_may_report_after_the_second_worker_is_lost);
+            case!(what_is_suspected_or_not_late_is_not_given_twice);
+            case!(an_audit_ends_both_leases);
 
             #[test]
             fn it_agrees_with_the_oracle() {
@@ -72,6 +78,9 @@ macro_rules! ledger_conformance {
     };
 }
 pub(crate) use ledger_conformance;
+
+mod speculation;
+pub use self::speculation::*;
 
 /// No suspicion is later.
 const EVER: LedgerTime = LedgerTime(i64::MAX);
@@ -112,6 +121,7 @@ pub fn wants(who: &str, name: &str, slots: u32) -> LeaseRequest {
         slots,
         duration_ms: 1000,
         sizing: Sizing::default(),
+        speculation: Speculation::default(),
         suspicion_limit: 3,
         in_flight_limit: 1000,
     }

@@ -4,6 +4,7 @@
 
 mod audit;
 mod books;
+mod speculation;
 
 pub use self::audit::tainted;
 
@@ -259,6 +260,9 @@ impl Ledger for MemoryLedger {
                     failed: Count::default(),
                     cpu_micros: 0,
                     outcomes: Outcomes::default(),
+                    held_ms: 0,
+                    speculative_leases: 0,
+                    speculative_won: 0,
                 },
                 chunks: BTreeMap::new(),
                 ready: BTreeSet::new(),
@@ -311,6 +315,7 @@ impl Ledger for MemoryLedger {
             row.alone = piece.alone;
             stage.insert(row);
         }
+        books.elders.remove(&chunk);
         Ok(())
     }
 
@@ -328,6 +333,7 @@ impl Ledger for MemoryLedger {
             .filter(|c| c.row.state == ChunkState::Ready && c.row.items == result.items)
             .ok_or(LedgerError::NotAPartition(chunk.job))?;
         books.change(chunk, ChunkState::Failed { result });
+        books.elders.remove(&chunk);
         Ok(())
     }
 
@@ -425,7 +431,9 @@ impl Ledger for MemoryLedger {
         books.acquit(request.request.session());
         let mut again = Vec::new();
         let mut holds_alone = false;
-        for id in books.held(&request.worker) {
+        let held = books.held(&request.worker);
+        let is_idle = held.is_empty();
+        for id in held {
             let job = &books.jobs[&id.job];
             let (problem, definition) =
                 (job.row.asked.problem, job.stages[&id.stage].row.definition);
@@ -450,6 +458,7 @@ impl Ledger for MemoryLedger {
                 problem,
                 definition,
                 alone: chunk.row.alone,
+                speculative: false,
             });
         }
         if !again.is_empty() || holds_alone {
@@ -466,6 +475,9 @@ impl Ledger for MemoryLedger {
                 break;
             }
         }
+        if leases.is_empty() && is_idle && request.slots > 0 {
+            leases.extend(books.speculate(now, &request));
+        }
         if leases.is_empty() && request.slots > 0 && books.is_evicted(&request.worker) {
             return Err(LedgerError::Evicted(request.worker));
         }
@@ -480,6 +492,10 @@ impl Ledger for MemoryLedger {
         let end = self.clock.now().after_ms(duration_ms);
         let mut books = self.books();
         let renewals = leases.iter().map(|lease| {
+            if let Some(elder) = books.elder(*lease) {
+                elder.until = Some(end);
+                return Renewal::Until(end);
+            }
             let chunk = books.chunk(lease.chunk);
             match chunk.filter(|c| c.row.epoch == lease.epoch) {
                 Some(chunk) => match &mut chunk.row.state {
@@ -501,29 +517,30 @@ impl Ledger for MemoryLedger {
         result: ResultObject,
     ) -> Result<Completion, LedgerError> {
         check_size("the CPU time of a chunk", result.cpu_micros)?;
+        let now = self.clock.now();
         let mut books = self.books();
-        let Some(chunk) = books.chunk(lease.chunk) else {
+        let Some(chunk) = books.chunk(lease.chunk).map(|chunk| chunk.row.clone()) else {
             return Ok(Completion::Stale);
         };
-        match &chunk.row.state {
-            ChunkState::Leased { worker, .. }
-                if chunk.row.epoch == lease.epoch && chunk.row.items == result.items =>
-            {
-                let worker = worker.clone();
-                books.accept(lease.chunk, worker, result);
-                Ok(Completion::Accepted)
-            }
-            ChunkState::Accepted { result: first, .. } if first.items == result.items => {
-                Ok(if first.hash != result.hash {
-                    Completion::HashDiffers
-                } else if chunk.row.epoch == lease.epoch {
-                    Completion::AlreadyAccepted
-                } else {
-                    Completion::Stale
-                })
-            }
-            _ => Ok(Completion::Stale),
+        if chunk.items != result.items {
+            return Ok(Completion::Stale);
         }
+        if let ChunkState::Accepted { result: first, .. } = &chunk.state {
+            return Ok(if first.hash != result.hash {
+                Completion::HashDiffers
+            } else if !books.was_leased(lease, chunk.epoch) {
+                Completion::Stale
+            } else if first.address == result.address {
+                Completion::AlreadyAccepted
+            } else {
+                Completion::Overtaken
+            });
+        }
+        let Some(holder) = books.holder(lease) else {
+            return Ok(Completion::Stale);
+        };
+        books.accept(now, lease.chunk, holder, result);
+        Ok(Completion::Accepted)
     }
 
     async fn witness(
@@ -542,14 +559,15 @@ impl Ledger for MemoryLedger {
 
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         let mut books = self.books();
-        let Some(chunk) = books.chunk(lease.chunk) else {
+        let Some(holder) = books.holder(lease) else {
             return Ok(());
         };
-        let held = matches!(chunk.row.state, ChunkState::Leased { .. });
-        if held && chunk.row.epoch == lease.epoch {
-            if let GiveBack::Failed { .. } = why {
-                chunk.row.suspicions += 1;
-            }
+        if let (GiveBack::Failed { .. }, Some(chunk)) = (why, books.chunk(lease.chunk)) {
+            chunk.row.suspicions += 1;
+        }
+        if holder.is_elder {
+            books.elders.remove(&lease.chunk);
+        } else {
             books.unlease(lease.chunk, ChunkState::Ready);
         }
         Ok(())
@@ -583,6 +601,7 @@ impl Ledger for MemoryLedger {
                 });
             }
         }
+        expired.extend(books.expire_elders(now));
         Ok(expired)
     }
 

@@ -3,6 +3,7 @@
 use super::clock::LedgerTime;
 use super::identity::*;
 use crate::chunks::sizing::Sizing;
+use crate::chunks::speculation::{Pace, Speculation};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::PathOutcome;
@@ -232,9 +233,23 @@ pub struct StageRow {
     pub cpu_micros: u64,
     /// How the accepted and failed items ended.
     pub outcomes: Outcomes,
+    /// How long the accepted chunks were with the workers that reported them, in milliseconds.
+    pub held_ms: u64,
+    /// How many chunks were given to a second worker because the first was late.
+    pub speculative_leases: u64,
+    /// How many of these the second worker reported first.
+    pub speculative_won: u64,
 }
 
 impl StageRow {
+    /// What its accepted chunks took.
+    pub fn pace(&self) -> Pace {
+        Pace {
+            items: self.accepted.items,
+            held_ms: self.held_ms,
+        }
+    }
+
     /// The sum that must be `items`.
     pub fn accounted(&self) -> u64 {
         self.ready.items + self.leased.items + self.accepted.items + self.failed.items
@@ -332,6 +347,8 @@ pub struct LeaseRequest {
     pub duration_ms: u64,
     /// How large the chunks are to be.
     pub sizing: Sizing,
+    /// When a chunk that another worker has is given to this one, too.
+    pub speculation: Speculation,
     /// Chunks with this many suspicions are for the steward to split, not to lease.
     pub suspicion_limit: u32,
     /// A job has at most this many chunks with workers.
@@ -353,6 +370,40 @@ pub struct Lease {
     pub definition: Digest,
     /// True when nothing else should run beside it.
     pub alone: bool,
+    /// True when another worker has the chunk, too, and is late. (A request that is sent again is not
+    /// told.)
+    pub speculative: bool,
+}
+
+/// The lease before the last of a chunk that was given to a second worker: it may still report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Elder {
+    /// Its epoch.
+    pub epoch: Epoch,
+    /// Who has it.
+    pub worker: WorkerId,
+    /// When it began.
+    pub leased_at: LedgerTime,
+    /// Until when it lasts, unless renewed; `None` once the chunk is accepted.
+    pub until: Option<LedgerTime>,
+}
+
+/// Who may report a chunk, under one of its leases.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Holder {
+    /// Who.
+    pub worker: WorkerId,
+    /// When the lease began, where that is known.
+    pub leased_at: Option<LedgerTime>,
+    /// The lease is the one before the last.
+    pub is_elder: bool,
+}
+
+impl Holder {
+    /// How long the chunk has been with it, in milliseconds.
+    pub fn held_ms(&self, now: LedgerTime) -> u64 {
+        self.leased_at.map_or(0, |since| now.since_ms(since))
+    }
 }
 
 /// What became of a lease that was to be renewed.
@@ -371,6 +422,9 @@ pub enum Completion {
     Accepted,
     /// It was before, by this very lease: the first answer was lost.
     AlreadyAccepted,
+    /// Another worker had the chunk, too, and its equal result was accepted before: this one's object
+    /// is of no use.
+    Overtaken,
     /// The chunk is audited: it is ready again, and accepted once another execution agrees.
     Witnessed,
     /// The lease had ended: drop the result.

@@ -63,6 +63,7 @@ enum Call {
         slots: u32,
         threads: u32,
         limit: u32,
+        impatient: bool,
     },
     Renew {
         leases: Vec<usize>,
@@ -112,8 +113,10 @@ fn call() -> impl Strategy<Value = Call> {
         1 => (job, 0..4u8, any::<bool>()).prop_filter_map("rarely", |(job, dice, solved)| {
             (dice == 0).then_some(Call::Finish { job, solved })
         }),
-        10 => (0..3u8, 0..200u8, 0..4u32, 1..5u32, 0..9u32).prop_map(
-            |(who, name, slots, threads, limit)| Call::Lease { who, name, slots, threads, limit }
+        10 => (0..3u8, 0..200u8, 0..4u32, 1..5u32, 0..9u32, any::<bool>()).prop_map(
+            |(who, name, slots, threads, limit, impatient)| {
+                Call::Lease { who, name, slots, threads, limit, impatient }
+            }
         ),
         2 => proptest::collection::vec(lease.clone(), 0..4).prop_map(|leases| Call::Renew { leases }),
         10 => (lease.clone(), 0..9u8, 0..90_000u64, 0..12u8, 0..3u8).prop_map(
@@ -241,10 +244,14 @@ impl Pair<'_> {
                 slots,
                 threads,
                 limit,
+                impatient,
             } => {
                 let mut wanted = wants(&format!("w{who}"), &format!("r{name}"), slots);
                 wanted.threads = threads;
                 wanted.in_flight_limit = if limit == 0 { 2 } else { 100 };
+                if impatient {
+                    (wanted.speculation.times, wanted.speculation.least_ms) = (1, 100);
+                }
                 leases.extend(both!(self, lease(wanted.clone())).unwrap_or_default());
             }
             Call::Renew { leases: which } => {

@@ -75,37 +75,35 @@ impl Books {
         lease: LeaseId,
         result: &ResultObject,
     ) -> Option<Completion> {
+        let holder = self.holder(lease);
         let chunk = self.chunk(lease.chunk)?;
-        let worker = match &chunk.row.state {
-            ChunkState::Leased { worker, .. }
-                if chunk.row.epoch == lease.epoch && chunk.row.items == result.items =>
-            {
-                worker.clone()
-            }
-            ChunkState::Accepted { .. } => return None,
-            _ => {
-                let vote = chunk.votes.iter().find(|vote| vote.epoch == lease.epoch)?;
-                return Some(if vote.hash == result.hash {
-                    Completion::Witnessed
-                } else {
-                    Completion::HashDiffers
-                });
-            }
+        if let ChunkState::Accepted { .. } = chunk.row.state {
+            return None;
+        }
+        let Some(holder) = holder.filter(|_| chunk.row.items == result.items) else {
+            let vote = chunk.votes.iter().find(|vote| vote.epoch == lease.epoch)?;
+            return Some(if vote.hash == result.hash {
+                Completion::Witnessed
+            } else {
+                Completion::HashDiffers
+            });
         };
         let agreed = chunk.votes.iter().any(|vote| vote.hash == result.hash);
         chunk.votes.push(Vote {
             epoch: lease.epoch,
-            worker: worker.clone(),
+            worker: holder.worker.clone(),
             hash: result.hash,
         });
         if !agreed {
+            // Where two workers had it, neither has it now.
             self.unlease(lease.chunk, ChunkState::Ready);
+            self.elders.remove(&lease.chunk);
             self.charge(lease.chunk.job, result.cpu_micros as i64);
             return Some(Completion::Witnessed);
         }
         let outvoted = chunk.votes.iter().filter(|vote| vote.hash != result.hash);
         let outvoted: Vec<WorkerId> = outvoted.map(|vote| vote.worker.clone()).collect();
-        self.accept(lease.chunk, worker, result.clone());
+        self.accept(now, lease.chunk, holder, result.clone());
         for worker in &outvoted {
             self.evict(now, worker);
         }
@@ -119,7 +117,8 @@ impl Books {
         for id in self.held(worker) {
             self.unlease(id, ChunkState::Ready);
         }
-        let mut ended = Vec::new();
+        self.drop_elders(|_, elder| elder.worker == *worker);
+        let (mut ended, mut reopened) = (Vec::new(), Vec::new());
         for job in self.jobs.values_mut().filter(|j| !j.row.state.has_ended()) {
             let used = |stage: &Stage| stage.row.closed && !stage.unconfirmed(worker).is_empty();
             let is_tainted = job.stages.values().any(used);
@@ -133,6 +132,11 @@ impl Books {
                 for stage in job.stages.values_mut() {
                     for first in stage.unconfirmed(worker) {
                         stage.reopen(first);
+                        reopened.push(ChunkId {
+                            job: job.row.job,
+                            stage: stage.row.stage,
+                            first,
+                        });
                         touched = true;
                     }
                 }
@@ -143,6 +147,9 @@ impl Books {
                 job.row.steward_epoch.0 += 1;
                 job.row.steward_until = LedgerTime(0);
             }
+        }
+        for chunk in reopened {
+            self.elders.remove(&chunk);
         }
         for job in ended {
             self.release_all(job);

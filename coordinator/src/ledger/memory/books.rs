@@ -17,6 +17,8 @@ pub struct Books {
     pub tenants: BTreeMap<Tenant, i64>,
     pub workers: BTreeMap<WorkerId, Worker>,
     pub leases: BTreeMap<WorkerId, BTreeSet<ChunkId>>,
+    /// Of chunks that were given to a second worker, the lease before.
+    pub elders: BTreeMap<ChunkId, Elder>,
 }
 
 pub struct Job {
@@ -39,6 +41,8 @@ pub struct Chunk {
     pub request: Option<RequestId>,
     /// When the lease ended that was not renewed.
     pub silent_since: Option<LedgerTime>,
+    /// When the last lease began.
+    pub leased_at: Option<LedgerTime>,
     pub charged: i64,
     /// What executions of an audited chunk found.
     pub votes: Vec<Vote>,
@@ -88,6 +92,7 @@ impl Stage {
             row,
             request: None,
             silent_since: None,
+            leased_at: None,
             charged: 0,
             votes: Vec::new(),
         };
@@ -172,16 +177,28 @@ impl Books {
     }
 
     /// Takes a worker's result for a chunk that it has.
-    pub fn accept(&mut self, id: ChunkId, worker: WorkerId, result: ResultObject) {
+    pub fn accept(&mut self, now: LedgerTime, id: ChunkId, holder: Holder, result: ResultObject) {
         let (items, micros) = (result.items.len(), result.cpu_micros);
+        let held_ms = holder.held_ms(now);
+        let Holder {
+            worker, is_elder, ..
+        } = holder;
         let accepted = ChunkState::Accepted {
             worker: worker.clone(),
             result,
         };
         self.unlease(id, accepted);
+        if let Some(chunk) = self.chunk(id) {
+            // Where the elder reports, the chunk may have been ready after a silent worker.
+            (chunk.request, chunk.silent_since) = (None, None);
+        }
         self.charge(id.job, micros as i64);
+        let elder = self.elders.get_mut(&id);
+        let has_elder = elder.is_some_and(|elder| elder.until.take().is_some());
         if let Some(stage) = self.stage(id) {
             stage.row.cpu_micros += micros;
+            stage.row.held_ms += held_ms;
+            stage.row.speculative_won += u64::from(has_elder && !is_elder);
         }
         if let Some(worker) = self.workers.get_mut(&worker) {
             worker.items_done += items;
@@ -194,6 +211,7 @@ impl Books {
         for id in held.into_iter().filter(|id| id.job == job) {
             self.unlease(id, ChunkState::Ready);
         }
+        self.drop_elders(|id, _| id.job == job);
     }
 
     pub fn present_threads(&self, now: LedgerTime, request: &LeaseRequest) -> u64 {
@@ -281,6 +299,7 @@ impl Books {
         };
         chunk.request = Some(request.request.clone());
         chunk.silent_since = None;
+        chunk.leased_at = Some(now);
         chunk.charged = charged;
         let chunk = chunk.row.clone();
         stage.count(id.first);
@@ -298,6 +317,7 @@ impl Books {
             problem: job.row.asked.problem,
             definition: counts.definition,
             alone: chunk.alone,
+            speculative: false,
         };
         self.charge(id.job, charged);
         self.leases

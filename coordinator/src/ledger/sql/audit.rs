@@ -4,6 +4,7 @@
 use super::decode::*;
 use super::engine::{Connection, query};
 use super::leases::{Found, accept, complete, find, release, release_all, signed};
+use super::speculation::{drop_elder, drop_elders_of_worker};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
@@ -41,15 +42,18 @@ pub async fn witness(
         return Ok(Completion::Stale);
     };
     let votes = votes(c, lease.chunk).await?;
-    let stands = found.state == "leased" && found.epoch == lease.epoch;
-    if found.state == "accepted" || !(stands && found.items == result.items) {
+    let holder = match found.state.as_str() {
+        "accepted" => None,
+        _ => found.holder(lease)?.filter(|_| found.items == result.items),
+    };
+    let Some(holder) = holder else {
         let vote = votes.iter().find(|vote| vote.epoch == lease.epoch);
         return match vote.filter(|_| found.state != "accepted") {
             Some(vote) if vote.hash == result.hash => Ok(Completion::Witnessed),
             Some(_) => Ok(Completion::HashDiffers),
-            None => complete(c, lease, result).await,
+            None => complete(c, now, lease, result).await,
         };
-    }
+    };
     let (job, first) = (lease.chunk.job.to_string(), signed(lease.chunk.first));
     query(
         "INSERT INTO votes (job, stage, first, epoch, worker, hash) VALUES (?, ?, ?, ?, ?, ?);
@@ -59,7 +63,7 @@ pub async fn witness(
     .bind(lease.chunk.stage.0)
     .bind(first)
     .bind(signed(lease.epoch.0))
-    .bind(worker(&found.row)?.as_str())
+    .bind(holder.worker.as_str())
     .bind(result.hash.to_string())
     .bind(&job)
     .bind(lease.chunk.stage.0)
@@ -67,19 +71,42 @@ pub async fn witness(
     .execute(&mut *c)
     .await?;
     if !votes.iter().any(|vote| vote.hash == result.hash) {
-        // What it took is charged, as for any other execution.
-        let used = Found {
-            charged: found.charged - cpu_micros,
-            ..found
-        };
-        release(c, lease.chunk, &used, 0, false).await?;
+        // What it took is charged, as for any other execution. Where two workers had the chunk,
+        // neither has it now.
+        if found.state == "leased" {
+            let used = Found {
+                charged: found.charged - cpu_micros,
+                ..found
+            };
+            release(c, lease.chunk, &used, 0, false).await?;
+        } else {
+            charge(c, lease.chunk.job, cpu_micros).await?;
+        }
+        drop_elder(c, lease.chunk, 0).await?;
         return Ok(Completion::Witnessed);
     }
-    accept(c, lease, &found, &result, cpu_micros).await?;
+    accept(c, now, lease, &found, &holder, &result, cpu_micros).await?;
     for outvoted in votes.iter().filter(|vote| vote.hash != result.hash) {
         evict(c, now, &outvoted.worker).await?;
     }
     Ok(Completion::Accepted)
+}
+
+/// Adds to the virtual time of a job and its tenant.
+async fn charge(c: &mut Connection, job: JobId, micros: i64) -> Result<(), LedgerError> {
+    let job = job.to_string();
+    query(
+        "UPDATE jobs SET virtual_time = virtual_time + ? WHERE job = ?;
+         UPDATE tenants SET virtual_time = virtual_time + ?
+         WHERE tenant = (SELECT tenant FROM jobs WHERE job = ?)",
+    )
+    .bind(micros)
+    .bind(&job)
+    .bind(micros)
+    .bind(&job)
+    .execute(c)
+    .await?;
+    Ok(())
 }
 
 /// Chunks of unfinished jobs that this worker has done, and for which nobody else has found the same.
@@ -108,6 +135,7 @@ async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Result<()
             release(c, chunk, &found, 0, false).await?;
         }
     }
+    drop_elders_of_worker(c, who).await?;
     let (mut used, mut open) = (BTreeSet::new(), Vec::new());
     let rows = query(UNCONFIRMED)
         .bind(who.as_str())
@@ -132,6 +160,7 @@ async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Result<()
     let mut touched = used.clone();
     for chunk in open.iter().filter(|chunk| !used.contains(&chunk.chunk.job)) {
         reopen(c, chunk).await?;
+        drop_elder(c, chunk.chunk, 0).await?;
         touched.insert(chunk.chunk.job);
     }
     for job in touched {

@@ -121,6 +121,9 @@ pub fn stage_row(row: &Row) -> Result<StageRow, LedgerError> {
         failed: count("failed_items", "failed_chunks")?,
         cpu_micros: number(row, "cpu_micros")?,
         outcomes: outcomes(row)?,
+        held_ms: number(row, "held_ms")?,
+        speculative_leases: number(row, "speculative_leases")?,
+        speculative_won: number(row, "speculative_won")?,
     })
 }
 
@@ -174,6 +177,21 @@ pub fn chunk_row(row: &Row) -> Result<ChunkRow, LedgerError> {
         suspicions: small(row, "suspicions")?,
         alone: number(row, "alone")? != 0,
     })
+}
+
+/// The lease before the last of a chunk that was given to a second worker; the columns' names begin
+/// with `elder_`.
+pub fn elder(row: &Row) -> Result<Option<Elder>, LedgerError> {
+    let Some(name) = row.try_get::<Option<String>>("elder_worker")? else {
+        return Ok(None);
+    };
+    let until: Option<i64> = row.try_get("elder_until")?;
+    Ok(Some(Elder {
+        epoch: Epoch(number(row, "elder_epoch")?),
+        worker: WorkerId::new(name).map_err(damaged)?,
+        leased_at: time(row, "elder_leased_at")?,
+        until: until.map(LedgerTime),
+    }))
 }
 
 /// What one worker did for a job.

@@ -2,6 +2,7 @@
 
 use super::decode::*;
 use super::engine::{Connection, Row, query};
+use super::speculation::{drop_elder, drop_elders_of_job, expire_elders, renew_elder, speculate};
 use crate::chunks::sizing::Situation;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
@@ -19,19 +20,50 @@ pub struct Found {
     pub state: String,
     pub epoch: Epoch,
     pub charged: i64,
+    pub elder: Option<Elder>,
     pub row: Row,
+}
+
+impl Found {
+    /// Who may report under this lease; `None` where it has ended, or the chunk has a result.
+    pub fn holder(&self, lease: LeaseId) -> Result<Option<Holder>, LedgerError> {
+        let stands = |elder: &&Elder| elder.epoch == lease.epoch && elder.until.is_some();
+        if let Some(elder) = self.elder.as_ref().filter(stands) {
+            return Ok(Some(Holder {
+                worker: elder.worker.clone(),
+                leased_at: Some(elder.leased_at),
+                is_elder: true,
+            }));
+        }
+        if self.state != "leased" || self.epoch != lease.epoch {
+            return Ok(None);
+        }
+        let leased_at: Option<i64> = self.row.try_get("leased_at")?;
+        Ok(Some(Holder {
+            worker: worker(&self.row)?,
+            leased_at: leased_at.map(LedgerTime),
+            is_elder: false,
+        }))
+    }
 }
 
 /// One chunk.
 pub async fn find(c: &mut Connection, chunk: ChunkId) -> Result<Option<Found>, LedgerError> {
-    let row = query("SELECT * FROM chunks WHERE job = ? AND stage = ? AND first = ?")
-        .bind(chunk.job.to_string())
-        .bind(chunk.stage.0)
-        .bind(signed(chunk.first))
-        .fetch_optional(&mut *c)
-        .await?;
+    let row = query(
+        "SELECT c.*, e.epoch AS elder_epoch, e.worker AS elder_worker,
+                e.leased_at AS elder_leased_at, e.lease_until AS elder_until
+         FROM chunks c
+         LEFT JOIN elders e ON e.job = c.job AND e.stage = c.stage AND e.first = c.first
+         WHERE c.job = ? AND c.stage = ? AND c.first = ?",
+    )
+    .bind(chunk.job.to_string())
+    .bind(chunk.stage.0)
+    .bind(signed(chunk.first))
+    .fetch_optional(&mut *c)
+    .await?;
     row.map(|row| {
         Ok(Found {
+            elder: elder(&row)?,
             items: items(&row)?,
             state: row.try_get("state")?,
             epoch: Epoch(number(&row, "epoch")?),
@@ -81,6 +113,7 @@ pub async fn lease(
             problem: digest(row, "problem")?,
             definition: digest(row, "definition")?,
             alone,
+            speculative: false,
         });
     }
     if !again.is_empty() || holds_alone || request.slots == 0 {
@@ -92,6 +125,9 @@ pub async fn lease(
             Some(lease) => leases.push(lease),
             None => break,
         }
+    }
+    if leases.is_empty() && held.is_empty() {
+        leases.extend(speculate(c, now, &request).await?);
     }
     if leases.is_empty() && is_evicted(c, &request.worker).await? {
         return Err(LedgerError::Evicted(request.worker));
@@ -148,8 +184,8 @@ const CHOOSE: &str = "
 /// more than a statement.
 macro_rules! lease_writes {
     () => {
-        "UPDATE chunks SET last = ?, state = 'leased', epoch = ?, worker = ?, lease_until = ?,
-                request = ?, charged = ?
+        "UPDATE chunks SET last = ?, state = 'leased', epoch = ?, worker = ?, leased_at = ?,
+                lease_until = ?, request = ?, charged = ?
          WHERE job = ? AND stage = ? AND first = ?;
          UPDATE stages SET ready_items = ready_items - ?, ready_chunks = ready_chunks - ?,
                 leased_items = leased_items + ?, leased_chunks = leased_chunks + 1
@@ -231,6 +267,7 @@ async fn lease_one(
         .bind(signed(items.last))
         .bind(signed(epoch.0))
         .bind(request.worker.as_str())
+        .bind(now.0)
         .bind(until.0)
         .bind(request.request.as_str())
         .bind(charged)
@@ -256,6 +293,7 @@ async fn lease_one(
         problem: digest(&row, "problem")?,
         definition: stage.definition,
         alone: number(&row, "chunk_alone")? != 0,
+        speculative: false,
     }))
 }
 
@@ -314,30 +352,48 @@ pub async fn renew(
         .execute(&mut *c)
         .await?;
         renewals.push(match done {
-            0 => Renewal::Lost,
+            0 if !renew_elder(c, lease, until).await? => Renewal::Lost,
             _ => Renewal::Until(until),
         });
     }
     Ok(renewals)
 }
 
-/// The writes of an accepted chunk, as one exchange.
-const ACCEPT: &str = "
-    UPDATE chunks SET state = 'accepted', lease_until = NULL, request = NULL, charged = 0,
-           address = ?, hash = ?, cpu_micros = ?, paths_regular = ?, paths_singular = ?,
-           paths_failed = ?
-    WHERE job = ? AND stage = ? AND first = ?;
-    UPDATE stages SET leased_items = leased_items - ?, leased_chunks = leased_chunks - 1,
-           accepted_items = accepted_items + ?, accepted_chunks = accepted_chunks + 1,
-           cpu_micros = cpu_micros + ?, paths_regular = paths_regular + ?,
-           paths_singular = paths_singular + ?, paths_failed = paths_failed + ?
-    WHERE job = ? AND stage = ?;
-    UPDATE jobs SET virtual_time = virtual_time + ?, leased_chunks = leased_chunks - 1
-    WHERE job = ?;
-    UPDATE tenants SET virtual_time = virtual_time + ?
-    WHERE tenant = (SELECT tenant FROM jobs WHERE job = ?);
-    UPDATE workers SET items_done = items_done + ?, chunks_done = chunks_done + 1
-    WHERE worker = ?";
+/// The writes of an accepted chunk, as one exchange, where it was in this state.
+macro_rules! accept_writes {
+    ($state:literal, $leased_chunks:literal) => {
+        concat!(
+            "UPDATE chunks SET state = 'accepted', worker = ?, lease_until = NULL, request = NULL,
+                    charged = 0, address = ?, hash = ?, cpu_micros = ?, paths_regular = ?,
+                    paths_singular = ?, paths_failed = ?
+             WHERE job = ? AND stage = ? AND first = ?;
+             UPDATE stages SET ",
+            $state,
+            "_items = ",
+            $state,
+            "_items - ?, ",
+            $state,
+            "_chunks = ",
+            $state,
+            "_chunks - 1, accepted_items = accepted_items + ?,
+                    accepted_chunks = accepted_chunks + 1, cpu_micros = cpu_micros + ?,
+                    paths_regular = paths_regular + ?, paths_singular = paths_singular + ?,
+                    paths_failed = paths_failed + ?, held_ms = held_ms + ?,
+                    speculative_won = speculative_won + ?
+             WHERE job = ? AND stage = ?;
+             UPDATE jobs SET virtual_time = virtual_time + ?, leased_chunks = leased_chunks - ",
+            $leased_chunks,
+            " WHERE job = ?;
+             UPDATE tenants SET virtual_time = virtual_time + ?
+             WHERE tenant = (SELECT tenant FROM jobs WHERE job = ?);
+             UPDATE workers SET items_done = items_done + ?, chunks_done = chunks_done + 1
+             WHERE worker = ?"
+        )
+    };
+}
+const ACCEPT_LEASED: &str = accept_writes!("leased", "1");
+/// A chunk that the second worker lost again, and the first one reports.
+const ACCEPT_READY: &str = accept_writes!("ready", "0");
 
 async fn is_evicted(c: &mut Connection, worker: &WorkerId) -> Result<bool, LedgerError> {
     let row = query("SELECT 1 AS one FROM workers WHERE worker = ? AND evicted = 1")
@@ -350,6 +406,7 @@ async fn is_evicted(c: &mut Connection, worker: &WorkerId) -> Result<bool, Ledge
 /// Accepts a result, if the lease still stands.
 pub async fn complete(
     c: &mut Connection,
+    now: LedgerTime,
     lease: LeaseId,
     result: ResultObject,
 ) -> Result<Completion, LedgerError> {
@@ -360,38 +417,47 @@ pub async fn complete(
     if found.items != result.items {
         return Ok(Completion::Stale);
     }
-    match found.state.as_str() {
-        "leased" if found.epoch == lease.epoch => {
-            accept(c, lease, &found, &result, cpu_micros).await?;
-            Ok(Completion::Accepted)
-        }
-        "accepted" => {
-            let first = digest(&found.row, "hash")?;
-            Ok(if first != result.hash {
-                Completion::HashDiffers
-            } else if found.epoch == lease.epoch {
-                Completion::AlreadyAccepted
-            } else {
-                Completion::Stale
-            })
-        }
-        _ => Ok(Completion::Stale),
+    if found.state == "accepted" {
+        let elder = found.elder.as_ref();
+        let was_leased =
+            lease.epoch == found.epoch || elder.is_some_and(|elder| elder.epoch == lease.epoch);
+        return Ok(if digest(&found.row, "hash")? != result.hash {
+            Completion::HashDiffers
+        } else if !was_leased {
+            Completion::Stale
+        } else if found.row.try_get::<String>("address")? == result.address {
+            Completion::AlreadyAccepted
+        } else {
+            Completion::Overtaken
+        });
     }
+    let Some(holder) = found.holder(lease)? else {
+        return Ok(Completion::Stale);
+    };
+    accept(c, now, lease, &found, &holder, &result, cpu_micros).await?;
+    Ok(Completion::Accepted)
 }
 
-/// Takes the result of the worker that has the chunk.
+/// Takes the result of a worker that has the chunk.
 pub async fn accept(
     c: &mut Connection,
+    now: LedgerTime,
     lease: LeaseId,
     found: &Found,
+    holder: &Holder,
     result: &ResultObject,
     cpu_micros: i64,
 ) -> Result<(), LedgerError> {
-    let worker = worker(&found.row)?;
     let job = lease.chunk.job.to_string();
     let items = signed(result.items.len());
     let charged = cpu_micros - found.charged;
-    query(ACCEPT)
+    let has_elder = found.elder.is_some();
+    let writes = match found.state.as_str() {
+        "ready" => ACCEPT_READY,
+        _ => ACCEPT_LEASED,
+    };
+    query(writes)
+        .bind(holder.worker.as_str())
         .bind(result.address.as_str())
         .bind(result.hash.to_string())
         .bind(cpu_micros)
@@ -407,6 +473,8 @@ pub async fn accept(
         .bind(signed(result.outcomes.regular))
         .bind(signed(result.outcomes.singular))
         .bind(signed(result.outcomes.failed))
+        .bind(signed(holder.held_ms(now)))
+        .bind(i64::from(has_elder && !holder.is_elder))
         .bind(&job)
         .bind(lease.chunk.stage.0)
         .bind(charged)
@@ -414,9 +482,18 @@ pub async fn accept(
         .bind(charged)
         .bind(&job)
         .bind(items)
-        .bind(worker.as_str())
+        .bind(holder.worker.as_str())
         .execute(&mut *c)
         .await?;
+    if has_elder {
+        // It stays, so that the later report is known to be no error.
+        query("UPDATE elders SET lease_until = NULL WHERE job = ? AND stage = ? AND first = ?")
+            .bind(&job)
+            .bind(lease.chunk.stage.0)
+            .bind(signed(lease.chunk.first))
+            .execute(&mut *c)
+            .await?;
+    }
     Ok(())
 }
 
@@ -470,12 +547,14 @@ pub async fn give_back(
     lease: LeaseId,
     why: GiveBack,
 ) -> Result<(), LedgerError> {
-    match find(c, lease.chunk).await? {
-        Some(found) if found.state == "leased" && found.epoch == lease.epoch => {
-            let suspicions = u32::from(matches!(why, GiveBack::Failed { .. }));
-            release(c, lease.chunk, &found, suspicions, false).await
-        }
-        _ => Ok(()),
+    let Some(found) = find(c, lease.chunk).await? else {
+        return Ok(());
+    };
+    let suspicions = u32::from(matches!(why, GiveBack::Failed { .. }));
+    match found.holder(lease)? {
+        Some(holder) if holder.is_elder => drop_elder(c, lease.chunk, suspicions).await,
+        Some(_) => release(c, lease.chunk, &found, suspicions, false).await,
+        None => Ok(()),
     }
 }
 
@@ -503,6 +582,7 @@ pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>,
             release(c, chunk, &found, 1, true).await?;
         }
     }
+    expired.extend(expire_elders(c, now).await?);
     Ok(expired)
 }
 
@@ -518,7 +598,7 @@ pub async fn release_all(c: &mut Connection, job: JobId) -> Result<(), LedgerErr
             release(c, chunk, &found, 0, false).await?;
         }
     }
-    Ok(())
+    drop_elders_of_job(c, job).await
 }
 
 /// Remembers a worker.

@@ -9,6 +9,7 @@ mod decode;
 mod engine;
 mod file_system;
 mod leases;
+mod speculation;
 mod stewardship;
 mod writer;
 
@@ -25,12 +26,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Version of the schema that this program writes.
-pub const SCHEMA_VERSION: i64 = 2;
+pub const SCHEMA_VERSION: i64 = 3;
 
 /// What makes version n + 1 of version n; the first makes version 1 of an empty database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
     include_str!("../schema.sql"),
     include_str!("../schema_2.sql"),
+    include_str!("../schema_3.sql"),
 ];
 
 /// A ledger in a database.
@@ -277,7 +279,7 @@ impl Ledger for SqlLedger {
         result: ResultObject,
     ) -> Result<Completion, LedgerError> {
         self.writer
-            .write(move |c, _| Box::pin(leases::complete(c, lease, result)))
+            .write(move |c, now| Box::pin(leases::complete(c, now, lease, result)))
             .await
     }
 

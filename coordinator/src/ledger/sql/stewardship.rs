@@ -3,6 +3,7 @@
 use super::decode::*;
 use super::engine::{Connection, query};
 use super::leases::{insert_ready, release_all};
+use super::speculation::drop_elder;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
@@ -262,6 +263,7 @@ pub async fn split(
         .ok_or(LedgerError::NotAPartition(chunk.job))?;
     for statement in [
         "DELETE FROM votes WHERE job = ? AND stage = ? AND first = ?",
+        "DELETE FROM elders WHERE job = ? AND stage = ? AND first = ?",
         "DELETE FROM chunks WHERE job = ? AND stage = ? AND first = ?",
     ] {
         query(statement)
@@ -331,7 +333,7 @@ pub async fn condemn(
     .bind(chunk.stage.0)
     .execute(&mut *c)
     .await?;
-    Ok(())
+    drop_elder(c, chunk, 0).await
 }
 
 /// Ends a job.

@@ -1,0 +1,69 @@
+//! Speculation: when the last chunks of a stage are given to a second worker.
+//!
+//! Nothing of the stage waits, a worker has nothing to do, and another has had a chunk for clearly
+//! longer than such chunks take: it may be dead or stand still, and its lease has not ended yet. The
+//! idle one gets the chunk, too, and whoever reports first is believed: paths are pure.
+
+use serde::{Deserialize, Serialize};
+
+/// The numbers that decide when a chunk is given out a second time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Speculation {
+    /// After so many times the time that as many items took, from lease to result. Default 3: paths
+    /// of one stage differ, and a chunk with a hard one is no reason. 0: never.
+    pub times: u32,
+    /// ... and not before, in milliseconds. Default 1000: a worker that stands still costs a job
+    /// little more, and what is shorter is not worth the work of doing it twice.
+    pub least_ms: u64,
+}
+
+impl Default for Speculation {
+    fn default() -> Self {
+        Self {
+            times: 3,
+            least_ms: 1000,
+        }
+    }
+}
+
+/// What the accepted chunks of a stage took: the next will take as long.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pace {
+    /// Items that were accepted.
+    pub items: u64,
+    /// How long their chunks were with the workers that reported them, in milliseconds.
+    pub held_ms: u64,
+}
+
+impl Speculation {
+    /// Whether a chunk of so many items has been with its worker for clearly longer than it should.
+    /// While nothing is measured, none has. The ledgers on databases compute the same in SQL.
+    pub fn is_overdue(&self, held_ms: u64, items: u64, pace: Pace) -> bool {
+        let expected = f64::from(self.times) * items as f64 * pace.held_ms as f64;
+        self.times > 0 && held_ms >= self.least_ms && held_ms as f64 * pace.items as f64 > expected
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_clearly_late_is_done_twice() {
+        let rule = Speculation::default();
+        // 20 ms an item: 100 take 2 s, and are late after 6.
+        let pace = Pace {
+            items: 1000,
+            held_ms: 20_000,
+        };
+        assert!(!rule.is_overdue(6000, 100, pace));
+        assert!(rule.is_overdue(6001, 100, pace));
+        // Short ones not before a second has passed.
+        assert!(!rule.is_overdue(999, 1, pace));
+        assert!(rule.is_overdue(1000, 1, pace));
+        // Nothing is measured; or it is not wanted.
+        assert!(!rule.is_overdue(1_000_000, 1, Pace::default()));
+        let never = Speculation { times: 0, ..rule };
+        assert!(!never.is_overdue(1_000_000, 1, pace));
+    }
+}
