@@ -62,17 +62,16 @@ fn determinantal(variables: usize, declarations: &str, f: &str) -> String {
     for columns in 1u32..1 << SIZE {
         let row = columns.count_ones() as usize - 1;
         let _ = write!(text, "m{columns} = 0");
-        let mut sign = row;
-        for column in (0..SIZE).filter(|c| columns >> c & 1 == 1) {
+        let own = (0..SIZE).filter(|c| columns >> c & 1 == 1);
+        for (sign, column) in (row..).zip(own) {
             let rest = columns & !(1 << column);
             let entry = SIZE * row + column;
-            let sum = if sign % 2 == 0 { "+" } else { "-" };
+            let sum = if sign.is_multiple_of(2) { "+" } else { "-" };
             match rest {
                 0 => write!(text, " {sum} a{entry}"),
                 _ => write!(text, " {sum} a{entry}*m{rest}"),
             }
             .expect("a string takes all");
-            sign += 1;
         }
         text.push_str(";\n");
     }
