@@ -1,9 +1,10 @@
 //! Limits: which relative sizes an arithmetic can tell.
 
 use super::settings::Settings;
-use cognate_numeric::precision::{DOUBLE, unit_roundoff};
+use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, unit_roundoff};
 
-/// Newton rounds of a step on the way on the higher rungs; elsewhere two.
+/// Newton rounds of a step on the way on the higher rungs, and around 0 above double-doubles; elsewhere
+/// two.
 pub(super) const MOST_ROUNDS: usize = 3;
 /// A refinement is accepted when its last correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
@@ -23,10 +24,11 @@ pub(super) struct Limits {
 
 impl Limits {
     /// Those of doubles, but that less is taken for noise where there are more digits. Around 0
-    /// that is all: there the endgame knows which noise it can bear.
+    /// that is all: there the endgame knows which noise it can bear. (Double-doubles have so much of it
+    /// at singular ends that a third correction says nothing; sheets that they mix up go up a rung.)
     pub fn around_zero(bits: u32, settings: &Settings) -> Self {
         Self {
-            rounds: if bits > DOUBLE { MOST_ROUNDS } else { 2 },
+            rounds: if bits > DOUBLE_DOUBLE { MOST_ROUNDS } else { 2 },
             settled: 0.1 * settings.tolerance,
             refined: REFINED,
             noise: 0.01 * settings.predictor_tolerance * finer(bits),
