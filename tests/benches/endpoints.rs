@@ -4,7 +4,7 @@
 //! Endpoints are made up, with three coordinates; of each ten one is another's, moved by less than its
 //! error, and all of these must be found, and no others. What it gave: `endpoints.md`.
 
-use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Decision, Tolerances, classify};
@@ -45,22 +45,10 @@ fn endpoints(count: usize) -> Vec<Complex64> {
 
 fn result(path: usize, point: &[Complex64]) -> PathResult {
     PathResult {
-        origin: PathIndex(path as u64),
-        attempt: 0,
-        outcome: PathOutcome::Regular,
-        endpoint: Coordinates::Double(point.to_vec()),
-        t: Complex64::default(),
         residual: 1e-16,
         condition: 10.0,
         accuracy: 1e-15,
-        winding_number: None,
-        infinity_turns: Vec::new(),
-        precision_bits: 53,
-        counts: Counts::default(),
-        asked: None,
-        certification: None,
-        local_dimension: None,
-        sharpening: None,
+        ..PathResult::untracked(path as u64, 0, PathOutcome::Regular, point.to_vec())
     }
 }
 

@@ -4,6 +4,7 @@ use crate::worker_lost::{nervous, problem, quiet_answer, slow_worker};
 use cognate_tests::client::{Client, accepted, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::database::Database;
+use std::time::Duration;
 
 #[test]
 fn coordinators_and_the_server_may_be_killed() {
@@ -51,7 +52,16 @@ fn coordinators_and_the_server_may_be_killed() {
     let both = format!("{},{second_address}", cluster.address());
     let shown = cluster.command(&["results", &job, "--format", "json", "--coordinator", &both]);
     assert_eq!(shown.status.code(), Some(0), "{shown:?}");
-    cluster.restart_coordinator();
+    // It waits for a server that comes up after it.
+    server.kill();
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_secs(2));
+            server.start_again();
+        });
+        cluster.restart_coordinator();
+    });
+    assert!(cluster.client().answer(&job) == *expected);
     second.terminate();
     second.wait(cognate_tests::processes::PATIENCE);
     cluster.stop();

@@ -39,12 +39,28 @@ impl Database {
         status.expect("bash can be started").code()
     }
 
+    /// `kill -9`.
+    ///
+    /// # Panics
+    /// When it is not there.
+    pub fn kill(&self) {
+        assert_eq!(self.tell("kill"), Some(0));
+    }
+
     /// `kill -9`, then a new server on the same data.
     ///
     /// # Panics
     /// When it does not come up again.
     pub fn kill_and_start(&self) {
-        assert_eq!(self.tell("kill"), Some(0));
+        self.kill();
+        self.start_again();
+    }
+
+    /// A new server on the same data, where the last was killed.
+    ///
+    /// # Panics
+    /// When it does not come up.
+    pub fn start_again(&self) {
         assert_eq!(self.tell("start"), Some(0));
     }
 

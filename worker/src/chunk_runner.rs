@@ -257,29 +257,18 @@ fn thread_cpu_time() -> Duration {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use cognate_continuation::path_result::{Coordinates, Counts, PathIndex};
+    use cognate_continuation::path_result::PathIndex;
     use cognate_continuation::tracker::outcome::PathOutcome;
     use num_complex::Complex64;
 
     /// A result that is a function of its item alone.
     pub(crate) fn result_of(item: u64) -> PathResult {
+        let point = vec![Complex64::new(item as f64, 0.5)];
         PathResult {
-            origin: PathIndex(item),
-            attempt: 0,
-            outcome: PathOutcome::Regular,
-            endpoint: Coordinates::Double(vec![Complex64::new(item as f64, 0.5)]),
-            t: Complex64::new(0.0, 0.0),
             residual: 0.0,
             condition: 1.0,
             accuracy: 1e-15,
-            winding_number: None,
-            infinity_turns: Vec::new(),
-            precision_bits: 53,
-            counts: Counts::default(),
-            asked: None,
-            certification: None,
-            local_dimension: None,
-            sharpening: None,
+            ..PathResult::untracked(item, 0, PathOutcome::Regular, point)
         }
     }
 

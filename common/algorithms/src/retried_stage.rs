@@ -809,6 +809,31 @@ mod tests {
     }
 
     #[test]
+    fn a_path_that_became_another_one_is_found_where_both_end() {
+        // Four paths to one point; path 2 had jumped onto path 1 before.
+        let fate = |path: u64, attempt: u16| match (path, attempt) {
+            (2, 0) => Fate::Jumps(0.5, 0.1 + 1e-7),
+            _ => Fate::Jumps(0.5, 0.1 * path as f64),
+        };
+        let (stages, sets) = run(&mut solve(), fate);
+        let again = stages.iter().filter(|stage| stage.attempt == 1);
+        let again: Vec<_> = again.map(|stage| stage.start_points.clone()).collect();
+        let [StartPoints::Selected { indices, .. }] = again.as_slice() else {
+            panic!("{again:?}");
+        };
+        assert_eq!(indices, &[1, 2]);
+        let paths = &sets[0].paths;
+        assert_eq!((paths.singular, paths.failed, paths.retracked), (4, 0, 2));
+        assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 1));
+        // One that stays there is named.
+        let (_, sets) = run(&mut solve(), |path, _| fate(path, 0));
+        let paths = &sets[0].paths;
+        assert_eq!((paths.singular, paths.failed, paths.total), (3, 1, 4));
+        assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 0));
+        assert_eq!(sets[0].failed[0].path, 2);
+    }
+
+    #[test]
     fn what_does_not_come_apart_is_accounted_for() {
         let (stages, sets) = run(&mut solve(), |path, _| match path {
             1 => Fate::At(0.0),

@@ -1,7 +1,7 @@
 //! A make-believe tracker for this crate's tests: what each path does at each attempt is written down.
 
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::{BoundaryKey, NUMBERS, PathResult};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
@@ -48,6 +48,8 @@ pub enum Fate {
     At(f64),
     /// Ends singularly at this x, after so many turns.
     Turns(f64, u32),
+    /// Ends singularly at this x without a turn, where the endgame began at this number.
+    Jumps(f64, f64),
     /// Fails in a way that tracking again may help.
     Fails,
     /// Fails in a way that nothing helps.
@@ -62,31 +64,30 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
             let origin = stage.origin(item);
             let (outcome, x) = match fate(origin, stage.attempt) {
                 Fate::At(x) => (PathOutcome::Regular, x),
-                Fate::Turns(x, _) => (PathOutcome::Singular, x),
+                Fate::Turns(x, _) | Fate::Jumps(x, _) => (PathOutcome::Singular, x),
                 Fate::Fails => (PathOutcome::Failed(Failure::StepTooSmall), 0.1),
                 Fate::Hopeless => (PathOutcome::Failed(Failure::KilledItsWorker), 0.1),
             };
             let coordinates = vec![Complex64::new(1.0, 0.0), Complex64::new(x, 0.0)];
             PathResult {
-                origin: PathIndex(origin),
-                attempt: stage.attempt,
-                outcome,
-                endpoint: Coordinates::Double(coordinates),
-                t: Complex64::new(0.0, 0.0),
                 residual: 1e-16,
                 condition: 3.0,
                 accuracy: 1e-15,
                 winding_number: match fate(origin, stage.attempt) {
                     Fate::Turns(_, turns) => Some(turns),
+                    Fate::Jumps(..) => Some(1),
                     Fate::At(_) | Fate::Fails | Fate::Hopeless => None,
                 },
-                infinity_turns: Vec::new(),
-                precision_bits: 53,
-                counts: Counts::default(),
-                asked: None,
-                certification: None,
-                local_dimension: None,
-                sharpening: None,
+                boundary: match fate(origin, stage.attempt) {
+                    Fate::Turns(..) => Some(0.1 * origin as f64),
+                    Fate::Jumps(_, place) => Some(place),
+                    Fate::At(_) | Fate::Fails | Fate::Hopeless => None,
+                }
+                .map(|place| BoundaryKey {
+                    numbers: [place; NUMBERS],
+                    margin: 1e-6,
+                }),
+                ..PathResult::untracked(origin, stage.attempt, outcome, coordinates)
             }
         })
         .collect()

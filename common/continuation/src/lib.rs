@@ -6,7 +6,7 @@
 //! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left;
 //! [`asked_system`] holds it against all equations that are asked, [`local_dimension`] says
 //! whether it is isolated, [`sharpening`] brings it to more digits, [`certification`] proves what is
-//! there; these look at the [`points_at_targets`] of a stage.
+//! there; these look at the [`points_at_targets`] of a stage. [`projection`] tells points apart by numbers.
 //! `examples/two_conics.rs` is a whole solve in thirty lines.
 #![forbid(unsafe_code)]
 
@@ -20,6 +20,7 @@ pub mod path_result;
 pub mod points_at_targets;
 pub mod predictor;
 pub mod prepared_work;
+pub mod projection;
 mod refine;
 pub mod sharpening;
 pub mod stage;

@@ -7,6 +7,7 @@
 use crate::certification::Certification;
 use crate::sharpening::Sharpening;
 use crate::tracker::outcome::PathOutcome;
+use cognate_numeric::precision::DOUBLE;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +49,27 @@ pub struct Counts {
     pub exchanges: u32,
     /// Turns around the target that the endgame made.
     pub turns: u32,
+}
+
+/// How many numbers make a key.
+pub const NUMBERS: usize = 3;
+
+/// Where a path entered the endgame, as numbers that do not depend on how its point is scaled
+/// (see `projection`): what two paths that became one have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundaryKey {
+    /// Of the point at |t| = `endgame_boundary`.
+    pub numbers: [f64; NUMBERS],
+    /// How far each may be from the right one.
+    pub margin: f64,
+}
+
+impl BoundaryKey {
+    /// False where a number is none, or the margin could be anything.
+    pub fn is_sound(&self) -> bool {
+        let sound = |number: &f64| number.is_finite();
+        self.numbers.iter().all(sound) && self.margin.is_finite() && self.margin >= 0.0
+    }
 }
 
 /// How well an endpoint solves the system that is asked, where combinations of its equations
@@ -117,4 +139,36 @@ pub struct PathResult {
     pub local_dimension: Option<LocalDimension>,
     /// The point with more digits, in a stage that sharpens.
     pub sharpening: Option<Sharpening>,
+    /// Where the path entered the endgame; `None` where it did not come so far.
+    pub boundary: Option<BoundaryKey>,
+}
+
+impl PathResult {
+    /// A result without a path: this point, and nothing known of it.
+    pub fn untracked(
+        origin: u64,
+        attempt: u16,
+        outcome: PathOutcome,
+        endpoint: Vec<Complex64>,
+    ) -> Self {
+        Self {
+            origin: PathIndex(origin),
+            attempt,
+            outcome,
+            endpoint: Coordinates::Double(endpoint),
+            t: Complex64::default(),
+            residual: f64::INFINITY,
+            condition: f64::INFINITY,
+            accuracy: f64::INFINITY,
+            winding_number: None,
+            infinity_turns: Vec::new(),
+            precision_bits: DOUBLE,
+            counts: Counts::default(),
+            asked: None,
+            certification: None,
+            local_dimension: None,
+            sharpening: None,
+            boundary: None,
+        }
+    }
 }

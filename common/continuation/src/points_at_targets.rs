@@ -2,7 +2,7 @@
 //! looks at points instead of tracking paths.
 
 use crate::homotopies::HomotopyKind;
-use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use crate::path_result::PathResult;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::tracker::outcome::PathOutcome;
@@ -145,23 +145,7 @@ impl PointsAtTargets {
     /// endpoint is the point that was given, in the values of the variables.
     pub fn result(&self, item: u64) -> PathResult {
         let Item { origin, point, .. } = self.item(item);
-        PathResult {
-            origin: PathIndex(origin),
-            attempt: self.stage.attempt,
-            outcome: PathOutcome::Regular,
-            endpoint: Coordinates::Double(point.to_vec()),
-            t: Complex64::new(0.0, 0.0),
-            residual: f64::INFINITY,
-            condition: f64::INFINITY,
-            accuracy: f64::INFINITY,
-            winding_number: None,
-            infinity_turns: Vec::new(),
-            precision_bits: 53,
-            counts: Counts::default(),
-            asked: None,
-            certification: None,
-            local_dimension: None,
-            sharpening: None,
-        }
+        let attempt = self.stage.attempt;
+        PathResult::untracked(origin, attempt, PathOutcome::Regular, point.to_vec())
     }
 }

@@ -11,6 +11,7 @@ use crate::start_systems::linear_product::{LinearProduct, SOLVING_STEPS};
 use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
 use crate::start_systems::total_degree::TotalDegree;
+use crate::tracker::boundary::Boundary;
 use crate::tracker::observer::{Recorder, StepEvent};
 use crate::tracker::rooms;
 use crate::tracker::settings::Settings;
@@ -95,6 +96,7 @@ pub struct PreparedStage {
     /// The equations that are asked, where combinations of them are tracked.
     asked: Option<AskedSystem>,
     points: Points,
+    boundary: Boundary,
     stage: Stage,
     /// Number of start points of the stage that first started the paths.
     starts: u64,
@@ -435,7 +437,9 @@ impl PreparedStage {
             first_chart: checked.first_chart,
             homotopy: OnceLock::new(),
         });
+        let exchange = stage.start_points.exchange();
         Ok(Self {
+            boundary: Boundary::new(homotopy.chart(), exchange, stage.seed),
             homotopy,
             beyond,
             asked: checked.asked,
@@ -491,6 +495,11 @@ impl PreparedStage {
     /// Whether paths may leave the chart where they begin.
     pub(crate) fn has_beyond(&self) -> bool {
         self.beyond.is_some()
+    }
+
+    /// By which paths are known where they enter the endgame.
+    pub(crate) fn boundary(&self) -> &Boundary {
+        &self.boundary
     }
 
     pub(crate) fn settings(&self) -> &Settings {

@@ -9,7 +9,7 @@
 
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::path_result::{
-    AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
+    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, NUMBERS, PathIndex, PathResult,
 };
 use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::Digest;
@@ -28,6 +28,7 @@ mod tag {
     pub const LOCAL_DIMENSION: u8 = 4;
     pub const SHARPENED: u8 = 5;
     pub const UNSHARPENED: u8 = 6;
+    pub const BOUNDARY: u8 = 7;
 }
 
 /// Bytes that hold no records.
@@ -139,6 +140,7 @@ impl Writer {
             certification,
             local_dimension,
             sharpening,
+            boundary,
         } = result;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -236,6 +238,11 @@ impl Writer {
                     Unsharpened::NewtonLeaves => 3,
                 });
             }
+        }
+        if let Some(BoundaryKey { numbers, margin }) = boundary {
+            self.0.push(tag::BOUNDARY);
+            numbers.iter().for_each(|&number| self.f64(number));
+            self.f64(*margin);
         }
     }
 }
@@ -406,6 +413,7 @@ impl<'a> Reader<'a> {
             certification: None,
             local_dimension: None,
             sharpening: None,
+            boundary: None,
         };
         let mut last = 0;
         while self.at < end {
@@ -466,6 +474,17 @@ impl<'a> Reader<'a> {
                         _ => return Err(self.damaged("a reason that this version does not know")),
                     };
                     result.sharpening = Some(Sharpening::Unsharpened(reason));
+                }
+                tag::BOUNDARY => {
+                    let mut numbers = [0.0; NUMBERS];
+                    for number in &mut numbers {
+                        *number = self.f64()?;
+                    }
+                    let margin = self.f64()?;
+                    result.boundary = Some(BoundaryKey { numbers, margin })
+                        .filter(BoundaryKey::is_sound)
+                        .map(Some)
+                        .ok_or_else(|| self.damaged("a key that is none"))?;
                 }
                 _ => return Err(self.damaged("a fact that this version does not know")),
             }

@@ -45,6 +45,8 @@ fn image(result: &PathResult, paths: u64, exchange: &Exchange, shape: &PointShap
         origin: PathIndex(result.origin.0 + paths),
         endpoint: Coordinates::Double(endpoint),
         infinity_turns: affine.iter().filter_map(turns_of).collect(),
+        // A path and its image have one key.
+        boundary: None,
         ..result.clone()
     }
 }

@@ -1,14 +1,15 @@
-//! Path crossings: two paths with one regular endpoint, so that one of them has jumped.
+//! Path crossings: two paths that became one, so that one of them has jumped.
 //!
-//! To a regular solution leads exactly one path, finite or at infinity. All
-//! paths that meet in one are tracked again, with the same gamma and tighter
-//! settings. [`CrossingBook`] remembers which meetings were seen and whether
-//! they came apart.
+//! To a regular solution leads exactly one path, finite or at infinity; where
+//! many paths end, at a singular point or at infinity, each comes from elsewhere
+//! at the boundary of the endgame ([`BoundaryKey`]). All paths that meet are
+//! tracked again, with the same gamma and tighter settings. [`CrossingBook`]
+//! remembers which meetings were seen and whether they came apart.
 
 use crate::classification::{Decision, Tolerances, Verdict, error_bound};
 use crate::point_shape::PointShape;
-use crate::unique_points::{Neighbourhood, clusters};
-use cognate_continuation::path_result::PathResult;
+use crate::unique_points::{Neighbourhood, clusters, joined};
+use cognate_continuation::path_result::{BoundaryKey, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +48,31 @@ pub fn coincidences(
         .collect()
 }
 
-/// Groups of two or more paths, by their places, that end at one regular point.
+/// By which a path is told from others where its end does not: the key of the boundary for paths
+/// that end at a singular point or run to infinity.
+pub fn boundary_key(result: &PathResult, verdict: Verdict) -> Option<BoundaryKey> {
+    let kept = match result.outcome {
+        PathOutcome::Singular | PathOutcome::Diverging => verdict != Verdict::Failed,
+        PathOutcome::Regular | PathOutcome::Failed(_) => false,
+    };
+    result.boundary.filter(|_| kept)
+}
+
+/// Groups of two or more of these keys, by their places, that may be of one point.
+pub fn meetings(keys: &[BoundaryKey]) -> Vec<Vec<usize>> {
+    let reach = |key: &BoundaryKey| (key.numbers[0] - key.margin, key.numbers[0] + key.margin);
+    let meet = |a: usize, b: usize| {
+        let mut numbers = keys[a].numbers.iter().zip(keys[b].numbers);
+        let margin = keys[a].margin + keys[b].margin;
+        numbers.all(|(a, b)| (a - b).abs() <= margin)
+    };
+    let mut all = joined(keys.iter().map(reach), meet);
+    all.retain(|members| members.len() > 1);
+    all
+}
+
+/// Groups of two or more paths, by their places, that end at one regular point, or came to the
+/// endgame at one point.
 pub fn crossings(
     results: &[PathResult],
     decisions: &[Decision],
@@ -59,6 +84,14 @@ pub fn crossings(
         results[k].outcome == PathOutcome::Regular && decisions[k].verdict != Verdict::Failed
     });
     all.retain(|members| members.len() > 1);
+    let (places, keys): (Vec<usize>, Vec<BoundaryKey>) = results
+        .iter()
+        .zip(decisions)
+        .enumerate()
+        .filter_map(|(k, (result, decision))| Some((k, boundary_key(result, decision.verdict)?)))
+        .unzip();
+    let before = meetings(&keys).into_iter();
+    all.extend(before.map(|members| members.into_iter().map(|m| places[m]).collect()));
     all
 }
 
@@ -141,6 +174,39 @@ mod tests {
             .collect();
         let found = crossings(&results, &decisions, &shape, &tolerances, 1);
         assert_eq!(found, [vec![0, 2], vec![5, 6]]);
+    }
+
+    #[test]
+    fn where_many_paths_end_the_boundary_tells_them_apart() {
+        let shape = affine_shape(1);
+        let tolerances = Tolerances::default();
+        let at = |result, place: f64, margin| PathResult {
+            boundary: Some(BoundaryKey {
+                numbers: [0.5, place, 1.5],
+                margin,
+            }),
+            ..result
+        };
+        let away = |path| singular(path, &[(1e-15, 0.0), (1.0, 0.0)], 2, &[1]);
+        let double = |path| singular(path, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0]);
+        let results = [
+            at(away(0), 0.1, 1e-6),
+            at(away(1), 0.2, 1e-6),
+            // As near as the less certain of two allows.
+            at(double(2), 0.100_03, 3e-5),
+            at(double(3), 0.3, 1e-6),
+            at(failed(4), 0.3, 1e-6),
+            // A regular end belongs to one path, wherever others were.
+            at(regular(5, &[(1.0, 0.0), (0.7, 0.0)]), 0.3, 1e-6),
+            away(6),
+            away(7),
+        ];
+        let decisions: Vec<Decision> = results
+            .iter()
+            .map(|r| classify(r, &shape, &tolerances))
+            .collect();
+        let found = crossings(&results, &decisions, &shape, &tolerances, 1);
+        assert_eq!(found, [vec![0, 2]]);
     }
 
     #[test]

@@ -1,19 +1,19 @@
 //! Plain paths: ends that are understood without any other, so that a large solve need not hold them.
 //!
 //! A path is plain when it ends clearly at infinity, or at a regular point with no other regular end near
-//! it. Of its end a key is kept, 24 bytes; the end itself is read again from where results are stored when
-//! it is asked for. All others are held, and treated as in a solve that holds everything. As nearly all
+//! it. Of its end a key is kept, 24 bytes, or 40 of where it entered the endgame when it ends at infinity; the
+//! end itself is read again from where results are stored when it is asked for. All others are held, and treated as in a solve that holds everything. As nearly all
 //! paths of a good solve are plain, memory grows with the number of paths by their keys only.
 
 use crate::classification::{Tolerances, Verdict, classify};
 use crate::involution::Involution;
-use crate::path_crossing::radius;
+use crate::path_crossing::{boundary_key, meetings, radius};
 use crate::point_shape::PointShape;
 use crate::real::is_real;
 use crate::solution::Solution;
 use crate::solution_set::SolutionSet;
-use crate::unique_points::projection::Projection;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::path_result::{BoundaryKey, PathResult};
+use cognate_continuation::projection::Projection;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -73,7 +73,7 @@ impl Sieve {
     ) -> Self {
         let shape = PointShape::of(system);
         Self {
-            projection: Projection::new(&shape, seed),
+            projection: shape.projection(seed),
             tolerances: tolerances.clone(),
             involution: Involution::of(system, parameters).ok(),
             variables: system.variables.clone(),
@@ -109,7 +109,7 @@ impl Sieve {
             return None;
         }
         let point = result.endpoint.to_double();
-        let value = self.projection.value(&self.shape, point);
+        let value = self.projection.value(point);
         let margin =
             self.projection.slope() * radius(result, &self.tolerances) + self.projection.rounding();
         Some(Key {
@@ -117,6 +117,14 @@ impl Sieve {
             to: value + margin,
             path: result.origin.0,
         })
+    }
+
+    /// Where a path came to the endgame, if others might have come there, too.
+    fn boundary(&self, result: &PathResult) -> Option<BoundaryKey> {
+        boundary_key(
+            result,
+            classify(result, &self.shape, &self.tolerances).verdict,
+        )
     }
 
     fn is_real(&self, result: &PathResult) -> Option<bool> {
@@ -175,6 +183,9 @@ pub struct Crowd {
     /// Sorted once all are seen.
     keys: Vec<Key>,
     widest: f64,
+    /// Of paths that the boundary of the endgame tells apart, and their numbers.
+    boundaries: Vec<BoundaryKey>,
+    owners: Vec<u64>,
     special: Vec<u64>,
 }
 
@@ -187,6 +198,8 @@ impl Crowd {
             // A vector that grows by doubling would hold three times as much for a moment.
             keys: Vec::with_capacity(usize::try_from(paths).unwrap_or(0)),
             widest: 0.0,
+            boundaries: Vec::new(),
+            owners: Vec::new(),
             special: Vec::new(),
         }
     }
@@ -211,6 +224,10 @@ impl Crowd {
         if let Some(key) = self.sieve.key(result) {
             self.widest = self.widest.max(key.to - key.from);
             self.keys.push(key);
+        }
+        if let Some(key) = self.sieve.boundary(result) {
+            self.boundaries.push(key);
+            self.owners.push(result.origin.0);
         }
     }
 
@@ -259,6 +276,8 @@ impl Crowd {
             }
             first = end;
         }
+        let met = meetings(&self.boundaries);
+        held.extend(met.iter().flatten().map(|&place| self.owners[place]));
         held.sort_unstable();
         held.dedup();
         held
@@ -276,9 +295,14 @@ impl Crowd {
     /// Drops the keys of these paths: they are held, and were counted out before.
     pub fn forget(&mut self, held: impl Fn(u64) -> bool) {
         self.keys.retain(|key| !held(key.path));
+        let mut owners = self.owners.iter();
+        self.boundaries
+            .retain(|_| owners.next().is_some_and(|&path| !held(path)));
+        self.owners.retain(|&path| !held(path));
     }
 
-    /// The plain paths, ascending, whose ends may be at the ends of these others.
+    /// The plain paths, ascending, whose ends may be at the ends of these others, or that came to the
+    /// endgame where these did.
     pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
         let mut found = Vec::new();
         for key in others.iter().filter_map(|result| self.sieve.key(result)) {
@@ -286,6 +310,15 @@ impl Crowd {
             let reached = self.keys[first..].iter();
             let reached = reached.take_while(|old| old.from <= key.to);
             found.extend(reached.filter(|old| old.to >= key.from).map(|old| old.path));
+        }
+        let own = self.boundaries.len();
+        let mut all = self.boundaries.clone();
+        all.extend(others.iter().filter_map(|r| self.sieve.boundary(r)));
+        if all.len() > own {
+            let met = meetings(&all).into_iter();
+            let met = met.filter(|members| members.iter().any(|&place| place >= own));
+            let plain = met.flatten().filter_map(|place| self.owners.get(place));
+            found.extend(plain);
         }
         found.sort_unstable();
         found.dedup();
@@ -324,6 +357,7 @@ mod tests {
     use super::*;
     use crate::solution_set::History;
     use crate::test_results::{failed, regular, singular};
+    use cognate_continuation::path_result::PathIndex;
     use cognate_numeric::random::{Purpose, RandomStream};
     use cognate_systems::system::VariableGroup;
 
@@ -360,11 +394,27 @@ mod tests {
             .map(|k| match k % 23 {
                 3 => failed(k),
                 5 => singular(k, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0]),
-                7 => singular(k, &[(1e-15, 0.0), (1.0, 0.0)], 1, &[1]),
+                7 => away(k),
                 9 => regular(k, &[(1e-17, 0.0), (1.0, 0.0)]),
                 _ => regular(k, &[(1.0, 0.0), place(k)]),
             })
             .collect()
+    }
+
+    /// To infinity; some came to the endgame where another did.
+    fn away(k: u64) -> PathResult {
+        let place = if k.is_multiple_of(5) {
+            0.5
+        } else {
+            k as f64 / 1e3
+        };
+        PathResult {
+            boundary: Some(BoundaryKey {
+                numbers: [0.25, place, 1.0],
+                margin: 1e-5,
+            }),
+            ..singular(k, &[(1e-15, 0.0), (1.0, 0.0)], 1, &[1])
+        }
     }
 
     fn whole(results: &[PathResult], history: &History) -> SolutionSet {
@@ -405,6 +455,21 @@ mod tests {
                 assert_eq!(found, expected);
             }
         }
+    }
+
+    #[test]
+    fn who_came_to_the_endgame_with_another_is_held_whenever_that_shows() {
+        let results: Vec<PathResult> = (0..300).map(away).collect();
+        let (mut crowd, held) = crowd(&results);
+        let held: Vec<u64> = held.iter().map(|result| result.origin.0).collect();
+        assert!(held.iter().copied().eq((0..300).step_by(5)));
+        let late = PathResult {
+            origin: PathIndex(70),
+            ..away(17)
+        };
+        assert_eq!(crowd.near(std::slice::from_ref(&late)), [17]);
+        crowd.take_back(&[away(17)]);
+        assert_eq!(crowd.near(&[late]), [] as [u64; 0]);
     }
 
     #[test]

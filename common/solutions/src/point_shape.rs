@@ -3,6 +3,7 @@
 //! Endpoints come in homogeneous coordinates, group after group (see
 //! `Coordinates`); this is the one place that knows how to read them.
 
+use cognate_continuation::projection::Projection;
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
@@ -62,6 +63,11 @@ impl PointShape {
             start += length;
             Span { range, group }
         })
+    }
+
+    /// A number for each point, by which points are sorted.
+    pub fn projection(&self, seed: u64) -> Projection {
+        Projection::new(self.spans().map(|span| span.range.len()), seed, 0)
     }
 
     /// The value of each variable: affine groups divided by their homogenising

@@ -1,7 +1,7 @@
 //! Synthetic results for this crate's tests.
 
 use crate::point_shape::PointShape;
-use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
@@ -20,28 +20,12 @@ pub fn affine_shape(variables: usize) -> PointShape {
 
 /// A regular endpoint.
 pub fn regular(path: u64, point: &[(f64, f64)]) -> PathResult {
+    let point = point.iter().map(|&(re, im)| Complex64::new(re, im));
     PathResult {
-        origin: PathIndex(path),
-        attempt: 0,
-        outcome: PathOutcome::Regular,
-        endpoint: Coordinates::Double(
-            point
-                .iter()
-                .map(|&(re, im)| Complex64::new(re, im))
-                .collect(),
-        ),
-        t: Complex64::new(0.0, 0.0),
         residual: 1e-16,
         condition: 10.0,
         accuracy: 1e-15,
-        winding_number: None,
-        infinity_turns: Vec::new(),
-        precision_bits: 53,
-        counts: Counts::default(),
-        asked: None,
-        certification: None,
-        local_dimension: None,
-        sharpening: None,
+        ..PathResult::untracked(path, 0, PathOutcome::Regular, point.collect())
     }
 }
 

@@ -75,7 +75,9 @@ fn code(error: &CoordinatorError) -> Code {
         CoordinatorError::NoResult { .. } => Code::FailedPrecondition,
         CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
         CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
-        CoordinatorError::Ledger(LedgerError::Storage(_) | LedgerError::Closed)
+        CoordinatorError::Ledger(
+            LedgerError::Storage(_) | LedgerError::Unreachable(_) | LedgerError::Closed,
+        )
         | CoordinatorError::Store(StoreError::Storage(_) | StoreError::Folder { .. }) => {
             Code::Unavailable
         }

@@ -8,7 +8,7 @@
 use super::leasing::Policy;
 use crate::ledger::identity::ItemRange;
 use crate::ledger::rows::{ChunkRow, Piece};
-use cognate_continuation::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::Stage;
 use num_complex::Complex64;
@@ -53,23 +53,10 @@ pub fn sentence(chunk: &ChunkRow, policy: &Policy) -> Sentence {
 
 /// The result of a path that no worker survived.
 pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
+    let failed = PathOutcome::Failed(Failure::KilledItsWorker);
     PathResult {
-        origin: PathIndex(stage.origin(item)),
-        attempt: stage.attempt,
-        outcome: PathOutcome::Failed(Failure::KilledItsWorker),
-        endpoint: Coordinates::Double(Vec::new()),
         t: Complex64::new(1.0, 0.0),
-        residual: f64::INFINITY,
-        condition: f64::INFINITY,
-        accuracy: f64::INFINITY,
-        winding_number: None,
-        infinity_turns: Vec::new(),
-        precision_bits: 53,
-        counts: Counts::default(),
-        asked: None,
-        certification: None,
-        local_dimension: None,
-        sharpening: None,
+        ..PathResult::untracked(stage.origin(item), stage.attempt, failed, Vec::new())
     }
 }
 

@@ -61,6 +61,9 @@ pub enum LedgerError {
     /// The storage engine failed.
     #[error("the ledger's storage failed: {0}")]
     Storage(String),
+    /// The database server is not there, or not ready: it may be a moment later.
+    #[error("the ledger's database is not reached: {0}")]
+    Unreachable(String),
     /// The ledger has been closed.
     #[error("the ledger is closed")]
     Closed,

@@ -373,29 +373,16 @@ fn unpack(address: &Address, bytes: &[u8]) -> Result<(Digest, Vec<u8>), StoreErr
 mod tests {
     use super::*;
     use crate::ledger::identity::{ChunkId, Epoch, JobId};
-    use cognate_continuation::path_result::{Coordinates, Counts, PathIndex};
     use cognate_continuation::tracker::outcome::PathOutcome;
     use cognate_continuation::work::StageId;
     use num_complex::Complex64;
 
     fn results(count: u64, value: f64) -> Vec<PathResult> {
+        let point = |k| vec![Complex64::new(value, k as f64); 3];
         let result = |k| PathResult {
-            origin: PathIndex(k),
-            attempt: 0,
-            outcome: PathOutcome::Regular,
-            endpoint: Coordinates::Double(vec![Complex64::new(value, k as f64); 3]),
-            t: Complex64::new(0.0, 0.0),
             residual: 1e-16,
-            condition: f64::INFINITY,
             accuracy: 1e-15,
-            winding_number: None,
-            infinity_turns: vec![],
-            precision_bits: 53,
-            counts: Counts::default(),
-            asked: None,
-            certification: None,
-            local_dimension: None,
-            sharpening: None,
+            ..PathResult::untracked(k, 0, PathOutcome::Regular, point(k))
         };
         (0..count).map(result).collect()
     }

@@ -110,7 +110,7 @@ impl Edge {
 }
 
 /// Paths that can be tracked together: of one edge, one way, and equally tight.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Wanted {
     pub edge: usize,
     pub way: Way,

@@ -94,10 +94,7 @@ const FIRST: usize = 0;
 /// What an open stage is for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Batch {
-    edge: usize,
-    way: Way,
-    attempt: u16,
-    sources: Vec<u32>,
+    wanted: Wanted,
     /// Its stage, once it is open.
     stage: Option<StageId>,
     results: Option<Vec<PathResult>>,
@@ -305,15 +302,14 @@ impl MonodromySolve {
         Next::Open(Box::new(opening))
     }
 
-    /// The stage of a batch of the present round.
-    fn opening(&self, batch: &Batch) -> Opening {
-        let Batch {
+    /// The stage that tracks these paths.
+    fn opening(&self, wanted: &Wanted) -> Opening {
+        let Wanted {
             edge,
             way,
             attempt,
             ref sources,
-            ..
-        } = *batch;
+        } = *wanted;
         let e = &self.graph.edges[edge];
         let (from, to) = (e.source(way), e.target(way));
         let seed = match way {
@@ -421,21 +417,10 @@ impl MonodromySolve {
             self.add_loops();
             open = self.graph.wanted(self.expected());
         }
-        let batches = open.into_iter().map(|wanted| {
-            let Wanted {
-                edge,
-                way,
-                attempt,
-                sources,
-            } = wanted;
-            Batch {
-                edge,
-                way,
-                attempt,
-                sources,
-                stage: None,
-                results: None,
-            }
+        let batches = open.into_iter().map(|wanted| Batch {
+            wanted,
+            stage: None,
+            results: None,
         });
         self.phase = Phase::Loops(batches.collect());
     }
@@ -636,26 +621,29 @@ impl MonodromySolve {
     /// All batches of a round are back.
     fn settle(&mut self, batches: Vec<Batch>) {
         let mut arrivals = Vec::new();
-        for batch in batches {
-            let results = batch.results.expect("the round is complete");
-            for (&source, result) in batch.sources.iter().zip(&results) {
+        for Batch {
+            wanted, results, ..
+        } in batches
+        {
+            let results = results.expect("the round is complete");
+            for (&source, result) in wanted.sources.iter().zip(&results) {
                 let end = self.arrival_of(result);
                 // What nothing can help is not tried again.
                 let attempt = if end.is_some() || can_be_helped(result.outcome) {
-                    batch.attempt
+                    wanted.attempt
                 } else {
                     self.max_retries
                 };
                 arrivals.push(Arrival {
-                    edge: batch.edge,
-                    way: batch.way,
+                    edge: wanted.edge,
+                    way: wanted.way,
                     source,
                     attempt,
                     end,
                 });
             }
-            if batch.edge == FIRST {
-                for (&source, result) in batch.sources.iter().zip(results) {
+            if wanted.edge == FIRST {
+                for (&source, result) in wanted.sources.iter().zip(results) {
                     let place = source as usize;
                     if place < self.first_results.len() {
                         self.first_results[place] = result;
@@ -867,8 +855,8 @@ impl PathAlgorithm for MonodromySolve {
                 Phase::Loops(batches) => {
                     let planned = batches.iter().position(|batch| batch.stage.is_none());
                     if let Some(place) = planned {
-                        let batch = batches[place].clone();
-                        let opening = self.opening(&batch);
+                        let wanted = batches[place].wanted.clone();
+                        let opening = self.opening(&wanted);
                         if let Phase::Loops(batches) = &mut self.phase {
                             batches[place].stage = Some(opening.stage.id);
                         }

@@ -289,15 +289,12 @@ fn an_edge_leads_back_to_where_it_came_from() {
         panic!("it is a monodromy solve")
     };
     let partners = |solved: &MonodromySolve, edge: usize, way: Way| -> Vec<usize> {
-        let batch = Batch {
+        let opening = solved.opening(&Wanted {
             edge,
             way,
             attempt: 0,
             sources: (0..9).collect(),
-            stage: None,
-            results: None,
-        };
-        let opening = solved.opening(&batch);
+        });
         let find = |_: Digest| opening.objects.first().cloned();
         let prepared = PreparedStage::new(&system, &opening.stage, &find).unwrap();
         let ends = prepared.track(0..9, 8).into_iter();

@@ -5,7 +5,7 @@ use super::local_dimension;
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
 use crate::homotopies::HomotopyKind;
-use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use crate::path_result::PathResult;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::tracker::outcome::PathOutcome;
@@ -108,22 +108,10 @@ impl PreparedLocalDimension {
             chart.normalize(&mut endpoint);
         }
         PathResult {
-            origin: PathIndex(item),
-            attempt: 0,
-            outcome: PathOutcome::Singular,
-            endpoint: Coordinates::Double(endpoint),
-            t: Complex64::default(),
             residual: 0.0,
-            condition: f64::INFINITY,
             accuracy: candidate.question.accuracy,
-            winding_number: None,
-            infinity_turns: Vec::new(),
-            precision_bits: 53,
-            counts: Counts::default(),
-            asked: None,
-            certification: None,
             local_dimension: found,
-            sharpening: None,
+            ..PathResult::untracked(item, 0, PathOutcome::Singular, endpoint)
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::digits::Digits;
 use super::survey::Series;
-use crate::predictor::hermite::POINTS;
+use crate::predictor::hermite::{POINTS, weights};
 use cognate_numeric::scalar::{Complex, Mask, Real};
 use num_complex::Complex64;
 
@@ -89,6 +89,29 @@ impl<R: Real> Batch<R> {
             .map(|age| self.slot(age))
             .find(|&slot| self.known[slot].lane(lane))
             .expect("the path has moved")
+    }
+
+    /// A path's point at real `t` between its points here and behind, by their polynomial.
+    pub fn between(&self, lane: usize, t: f64) -> Vec<Complex64> {
+        let native = |z: Complex64| Complex { re: z.re, im: z.im };
+        let slots: [usize; POINTS] = std::array::from_fn(|age| self.slot(age));
+        let known: [bool; POINTS - 1] =
+            std::array::from_fn(|k| self.known[slots[k + 1]].lane(lane));
+        let times = std::array::from_fn(|age| native(self.t[slots[age]].lane(lane)));
+        let w = weights::<f64>(&times, &Complex { re: t, im: 0.0 }, &known);
+        let weight = |z: &Complex<f64>| Complex64::new(z.re, z.im);
+        let mut point = vec![Complex64::default(); self.here().len()];
+        for (age, &slot) in slots.iter().enumerate() {
+            if age > 0 && !known[age - 1] {
+                continue;
+            }
+            let (value, slope) = (weight(&w.point[age]), weight(&w.tangent[age]));
+            let both = self.x[slot].iter().zip(&self.tangent[slot]);
+            for (sum, (x, tangent)) in point.iter_mut().zip(both) {
+                *sum += value * x.lane(lane) + slope * tangent.lane(lane);
+            }
+        }
+        point
     }
 
     /// The points behind a lane no longer belong to where it goes.

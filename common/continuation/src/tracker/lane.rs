@@ -2,6 +2,7 @@
 
 use super::digits::Digits;
 use crate::endgames::cauchy::Cauchy;
+use crate::path_result::BoundaryKey;
 
 /// Where a path is in its life. The order is that of the life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -77,6 +78,8 @@ pub(crate) struct Lane {
     /// The same of the last turns whose first point stood firmly.
     pub last_turn: Option<(f64, Vec<Digits>)>,
     pub cauchy: Cauchy,
+    /// Where it last came past the boundary of the endgame.
+    pub boundary: Option<BoundaryKey>,
 }
 
 impl Lane {
@@ -87,6 +90,7 @@ impl Lane {
         self.effort = 0;
         (self.highest_bits, self.climbs, self.began_with) = (0, 0, 0);
         self.cauchy.clear();
+        self.boundary = None;
     }
 
     /// The path begins again at its start point in this arithmetic, and goes down no more.

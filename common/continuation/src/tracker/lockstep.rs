@@ -386,6 +386,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
         batch.h.set(&h);
         let refining = batch.refine;
         batch.may_grow = moved.or(refining);
+        let boundary = control(settings.endgame_boundary);
+        let before = &batch.t[newest].re;
+        let entering = moved.and(t.re.less_equal(&boundary));
+        let entering = entering.and(before.less_equal(&boundary).not());
 
         // Move: what stays where it is stands in the new slot, and no longer in the old one.
         let stays = accepted.not();
@@ -424,6 +428,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 path.steps += 1;
                 path.steps_here += 1;
                 (path.starved, path.last_rejected) = (0, f64::INFINITY);
+                if entering.lane(lane) {
+                    let (keys, chart) = (self.stage.boundary(), homotopy.chart());
+                    let at = (lane, self.settings.endgame_boundary);
+                    let corrections = [step.predictor_error, step.correction];
+                    path.boundary = keys.key(&self.batch, chart, at, corrections);
+                }
             } else {
                 path.rejections += 1;
                 // A correction that neither Newton's method nor a shorter step makes smaller is
@@ -961,6 +971,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             certification: None,
             local_dimension: None,
             sharpening: None,
+            boundary: path.boundary,
         };
         self.ended.results.push((path.item, result));
     }

@@ -4,6 +4,7 @@
 //! [`lane`] is what one of them knows of itself between steps.
 
 mod batch;
+pub(crate) mod boundary;
 mod digits;
 pub(crate) mod lane;
 mod limits;

@@ -8,7 +8,7 @@ use crate::v1;
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{
-    AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
+    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, NUMBERS, PathIndex, PathResult,
 };
 use cognate_continuation::sharpening::{MOST_DIGITS, Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
@@ -258,6 +258,25 @@ fn degrees(field: &str, degrees: &[u32], least: u32) -> Result<(), ProtocolError
     Ok(())
 }
 
+fn boundary_key(m: &v1::BoundaryKey) -> Result<BoundaryKey, ProtocolError> {
+    let wrong = |value: &dyn std::fmt::Display| {
+        ProtocolError::invalid(
+            "boundary",
+            value,
+            format!("{NUMBERS} finite numbers and a margin"),
+        )
+    };
+    let numbers = m.numbers.as_slice().try_into();
+    let key = BoundaryKey {
+        numbers: numbers.map_err(|_| wrong(&m.numbers.len()))?,
+        margin: m.margin,
+    };
+    match key.is_sound() {
+        true => Ok(key),
+        false => Err(wrong(&m.margin)),
+    }
+}
+
 /// The result of one path.
 ///
 /// What is known of a failed path may be anything; the endpoint of any other
@@ -327,6 +346,7 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             .map(sharpening)
             .transpose()
             .map_err(|e| e.within("sharpening"))?,
+        boundary: m.boundary.as_ref().map(boundary_key).transpose()?,
     })
 }
 

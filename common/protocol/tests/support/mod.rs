@@ -4,7 +4,7 @@
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{
-    AskedFit, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
+    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
 };
 use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
@@ -450,6 +450,10 @@ impl Draw {
                 margin: draw.number().abs(),
             }),
             sharpening: None,
+            boundary: self.some(|draw| BoundaryKey {
+                numbers: std::array::from_fn(|_| draw.number()),
+                margin: draw.number().abs(),
+            }),
         }
     }
 }

@@ -1,15 +1,12 @@
 //! UniquePoints: which endpoints are one point, to within their own errors.
 //!
 //! In n log n: each point gets one number that does not change with its
-//! scaling ([`projection`]); points are sorted by it and only neighbours are
+//! scaling (`projection`); points are sorted by it and only neighbours are
 //! compared in full. The answer depends on the points alone, not on how they
 //! were split among workers.
 
-pub mod projection;
-
 use crate::point_shape::PointShape;
 use num_complex::Complex64;
-use projection::Projection;
 
 /// A point and how near another must be to be the same.
 #[derive(Clone, Copy, Debug)]
@@ -23,32 +20,39 @@ pub struct Neighbourhood<'a> {
 /// Puts points that coincide together. Every point is in exactly one cluster;
 /// members are ascending, and so are the clusters by their first members.
 pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> Vec<Vec<usize>> {
-    let projection = Projection::new(shape, seed);
+    let projection = shape.projection(seed);
+    let reaches = points.iter().map(|p| {
+        let value = projection.value(p.point);
+        let margin = projection.slope() * p.radius + projection.rounding();
+        (value - margin, value + margin)
+    });
+    joined(reaches, |a, b| {
+        let (one, two) = (&points[a], &points[b]);
+        shape.distance(one.point, two.point) <= one.radius + two.radius
+    })
+}
+
+/// The same for any things: `reaches` says between which numbers each lies, `meet` whether two
+/// are one; of those that are one, each lies between the numbers of another.
+pub(crate) fn joined(
+    reaches: impl Iterator<Item = (f64, f64)>,
+    meet: impl Fn(usize, usize) -> bool,
+) -> Vec<Vec<usize>> {
     // Sorted as they are, not by way of their places: a million of them do not fit in a cache.
-    let mut sorted: Vec<Reach> = points
-        .iter()
+    let mut sorted: Vec<Reach> = reaches
         .enumerate()
-        .map(|(place, p)| {
-            let value = projection.value(shape, p.point);
-            let margin = projection.slope() * p.radius + projection.rounding();
-            Reach {
-                from: value - margin,
-                to: value + margin,
-                place,
-            }
-        })
+        .map(|(place, (from, to))| Reach { from, to, place })
         .collect();
     sorted.sort_unstable_by(|a, b| a.from.total_cmp(&b.from).then(a.place.cmp(&b.place)));
 
-    let mut sets = DisjointSets::new(points.len());
-    // One point of each cluster whose interval may still meet the next ones'.
+    let mut sets = DisjointSets::new(sorted.len());
+    // One of each cluster whose interval may still meet the next ones'.
     let mut open: Vec<Reach> = Vec::new();
     for new in sorted {
         open.retain(|old| old.to >= new.from);
         let mut met = None;
         for (at, old) in open.iter().enumerate() {
-            let (one, two) = (&points[old.place], &points[new.place]);
-            if shape.distance(one.point, two.point) <= one.radius + two.radius {
+            if meet(old.place, new.place) {
                 sets.join(old.place, new.place);
                 met.get_or_insert(at);
             }
@@ -63,7 +67,7 @@ pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> 
     sets.clusters()
 }
 
-/// Where the number of a point may lie.
+/// Between which numbers a thing lies.
 #[derive(Clone, Copy)]
 struct Reach {
     from: f64,

@@ -29,6 +29,7 @@ const STATEMENT_MS: &str = "30000";
 const ANSWER: Duration = Duration::from_secs(40);
 
 /// Where the database is, and whose clock counts.
+#[derive(Clone)]
 pub enum Engine {
     /// A file, and this process's clock.
     Sqlite(SqliteConnectOptions, Arc<dyn Clock>),
@@ -302,7 +303,7 @@ impl Engine {
 }
 
 fn no_answer() -> LedgerError {
-    LedgerError::Storage("the database server does not answer".into())
+    LedgerError::Unreachable("the server does not answer".into())
 }
 
 const SERVER_TIME: &str =

@@ -24,6 +24,12 @@ use async_trait::async_trait;
 use cognate_continuation::work::StageId;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long a database server that is not reached is waited for when the ledger is opened ...
+const PATIENCE: Duration = Duration::from_secs(30);
+/// ... and how long between two attempts.
+const PAUSE: Duration = Duration::from_millis(500);
 
 /// Version of the schema that this program writes.
 pub const SCHEMA_VERSION: i64 = 3;
@@ -43,7 +49,24 @@ pub struct SqlLedger {
 
 impl From<sqlx::Error> for LedgerError {
     fn from(error: sqlx::Error) -> Self {
-        Self::Storage(error.to_string())
+        match is_out_of_reach(&error) {
+            true => Self::Unreachable(error.to_string()),
+            false => Self::Storage(error.to_string()),
+        }
+    }
+}
+
+/// Whether the database server is not there, goes down or comes up, or has ended the session.
+fn is_out_of_reach(error: &sqlx::Error) -> bool {
+    match error {
+        sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut => true,
+        sqlx::Error::Database(error) => {
+            // PostgreSQL, Error Codes: connection exceptions, operator intervention, too many
+            // connections, a session that stood still in a transaction.
+            let code = error.code().unwrap_or_default();
+            code.starts_with("08") || code.starts_with("57P") || code == "53300" || code == "25P03"
+        }
+        _ => false,
     }
 }
 
@@ -62,9 +85,20 @@ impl SqlLedger {
 
     /// Opens the ledger in the database of this URL (`postgres://user@host/database`), or makes it
     /// there; brings an older one up to date. Deadlines are by the server's clock, or by `clock`
-    /// where a test has one.
+    /// where a test has one. A server that is not reached is waited for, 30 seconds long: it may be
+    /// starting, too.
     pub async fn postgres(url: &str, clock: Option<Arc<dyn Clock>>) -> Result<Self, LedgerError> {
-        Self::open(Engine::postgres(url, clock)?).await
+        let engine = Engine::postgres(url, clock)?;
+        let end = Instant::now() + PATIENCE;
+        loop {
+            match Self::open(engine.clone()).await {
+                Err(LedgerError::Unreachable(why)) if Instant::now() < end => {
+                    tracing::warn!(%why, "waiting for the ledger's database");
+                    tokio::time::sleep(PAUSE).await;
+                }
+                opened => return opened,
+            }
+        }
     }
 
     async fn open(engine: Engine) -> Result<Self, LedgerError> {

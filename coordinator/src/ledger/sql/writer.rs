@@ -52,9 +52,14 @@ impl Writer {
             let running = operation(connection, now);
             Box::pin(async move {
                 match running.await {
-                    Err(error @ (LedgerError::Storage(_) | LedgerError::Damaged(_))) => {
+                    Err(
+                        error @ (LedgerError::Storage(_)
+                        | LedgerError::Unreachable(_)
+                        | LedgerError::Damaged(_)),
+                    ) => {
                         let copy = match &error {
                             LedgerError::Damaged(why) => LedgerError::Damaged(why.clone()),
+                            LedgerError::Unreachable(why) => LedgerError::Unreachable(why.clone()),
                             other => LedgerError::Storage(other.to_string()),
                         };
                         // Whoever asked may have gone; the group is rolled back all the same.
@@ -100,7 +105,7 @@ async fn run(engine: Engine, connection: Connection, mut queue: mpsc::Receiver<M
                         Ok(connection) => connected = Some(connection),
                         // Whoever wrote hears that it was not done, and asks again.
                         Err(error) => {
-                            tracing::error!(%error, "the ledger's database is not reached");
+                            tracing::error!(%error, "nothing is written");
                             continue;
                         }
                     }
