@@ -76,7 +76,8 @@ fn robust_steps_keep_their_sheets() {
 }
 
 /// Newton's method that may leave an error of a hundredth behind predictions that may be off by half:
-/// then paths jump, and robust mode takes no step that could.
+/// then paths jump, some onto paths to infinity, where ends do not show it. All are found where paths
+/// enter the endgame, and come apart when they are tracked again; robust mode takes no step that jumps.
 #[test]
 fn robust_steps_do_not_jump_where_others_do() {
     let coarse = Settings {
@@ -85,23 +86,30 @@ fn robust_steps_do_not_jump_where_others_do() {
         tolerance: 1e-2,
         ..Settings::default()
     };
-    let jumps_and_lost = |settings: &Settings| {
+    let crossings_and_lost = |settings: &Settings, max_retries: u16| {
         let mut of_all = (0, 0);
         for seed in SEEDS {
             let options = PlanOptions {
                 seed,
                 start: StartChoice::TotalDegree,
                 settings: settings.clone(),
+                max_retries,
                 ..PlanOptions::default()
             };
             let (_, sets) = solve(&cyclic(5).system, &options, &|_| None);
-            assert_eq!((sets[0].paths.total, sets[0].paths.sum()), (120, 120));
-            of_all.0 += sets[0].paths.crossings_found;
-            of_all.1 += 70 - sets[0].counts.nonsingular;
+            let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+            assert_eq!((paths.total, paths.sum()), (120, 120));
+            let lost = 70 - counts.nonsingular;
+            // What is missing is among the paths that are named.
+            assert!(lost <= paths.failed, "seed {seed}: {lost} lost in silence");
+            of_all.0 += paths.crossings_found;
+            of_all.1 += lost;
         }
         of_all
     };
-    let (jumps, lost) = jumps_and_lost(&coarse);
-    assert!(jumps > 0 && lost > 0, "{jumps} crossings, {lost} lost");
-    assert_eq!(jumps_and_lost(&coarse.robust()), (0, 0));
+    let (found, lost) = crossings_and_lost(&coarse, 0);
+    assert!(found > 0 && lost > 0, "{found} crossings, {lost} lost");
+    let (found, lost) = crossings_and_lost(&coarse, 3);
+    assert!(found > 0 && lost == 0, "{found} crossings, {lost} lost");
+    assert_eq!(crossings_and_lost(&coarse.robust(), 0), (0, 0));
 }

@@ -58,10 +58,9 @@ impl CertifiedSolve {
 
 impl PathAlgorithm for CertifiedSolve {
     fn next(&mut self) -> Next {
-        match &self.certification {
-            Some(stage) if stage.is_done() => Next::Done,
-            Some(_) => Next::Wait,
-            None => match self.solve.next() {
+        match (&self.certification, &mut self.solve) {
+            (Some(own), _) => own.next(),
+            (None, solve) => match solve.next() {
                 Next::Done => self.open(),
                 other => other,
             },

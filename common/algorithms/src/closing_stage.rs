@@ -1,6 +1,6 @@
 //! ClosingStage: after a solve one more stage, which looks at its finite endpoints.
 
-use crate::{Opening, Progress, StageProgress};
+use crate::{Next, Opening, Progress, StageProgress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
@@ -115,6 +115,14 @@ impl<Fact> ClosingStage<Fact> {
             objects: vec![stored],
         };
         (closing, Some(Box::new(opening)))
+    }
+
+    /// What is wanted once it is open, or was left out.
+    pub fn next(&self) -> Next {
+        match self.is_done() {
+            true => Next::Done,
+            false => Next::Wait,
+        }
     }
 
     /// Takes the results of the stage.

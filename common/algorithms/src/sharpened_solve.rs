@@ -72,10 +72,9 @@ impl SharpenedSolve {
 
 impl PathAlgorithm for SharpenedSolve {
     fn next(&mut self) -> Next {
-        match &self.sharpening {
-            Some(stage) if stage.is_done() => Next::Done,
-            Some(_) => Next::Wait,
-            None => match self.solve.next() {
+        match (&self.sharpening, &mut self.solve) {
+            (Some(own), _) => own.next(),
+            (None, solve) => match solve.next() {
                 Next::Done => self.open(),
                 other => other,
             },

@@ -205,10 +205,9 @@ impl Coordinator {
                 driven = &mut stepping => return driven.map(Some),
                 () = sleep_until(*renewed + every) => {}
             }
-            let right = self.ledger.steward(job, &self.who, self.policy.steward_ms);
-            match right.await {
-                Ok(Some(right)) if right == epoch => {}
-                Ok(_) => {
+            match tools.renew_right(job, epoch).await {
+                Ok(true) => {}
+                Ok(false) => {
                     self.changed(job);
                     return Ok(None);
                 }
@@ -234,7 +233,7 @@ impl Coordinator {
         let mut renewed = Instant::now();
         while !stop.is_cancelled() {
             if renewed.elapsed() >= renewal {
-                if !drive.renew(&tools).await? {
+                if !tools.renew_right(job, drive.epoch()).await? {
                     return Ok(());
                 }
                 renewed = Instant::now();

@@ -33,6 +33,15 @@ pub struct Tools<'a> {
     pub policy: &'a Policy,
 }
 
+impl Tools<'_> {
+    /// Keeps the right to drive a job; false once it is lost.
+    pub async fn renew_right(&self, job: JobId, epoch: Epoch) -> Result<bool, LedgerError> {
+        let duration = self.policy.steward_ms;
+        let right = self.ledger.steward(job, self.who, duration).await?;
+        Ok(right == Some(epoch))
+    }
+}
+
 /// Why a step was not made.
 #[derive(Debug, thiserror::Error)]
 pub enum DriveError {
@@ -178,13 +187,6 @@ impl Drive {
             }
             Err(error) => std::panic::resume_unwind(error.into_panic()),
         }
-    }
-
-    /// Keeps the right to drive; false once it is lost.
-    pub async fn renew(&self, tools: &Tools<'_>) -> Result<bool, DriveError> {
-        let duration = tools.policy.steward_ms;
-        let epoch = tools.ledger.steward(self.job, tools.who, duration).await?;
-        Ok(epoch == Some(self.epoch))
     }
 
     /// Ends the right to drive, so that another may begin at once.

@@ -448,18 +448,7 @@ impl Ledger for MemoryLedger {
                 worker: request.worker.clone(),
                 until,
             };
-            again.push(Lease {
-                lease: LeaseId {
-                    chunk: id,
-                    epoch: chunk.row.epoch,
-                },
-                items: chunk.row.items,
-                until,
-                problem,
-                definition,
-                alone: chunk.row.alone,
-                speculative: false,
-            });
+            again.push(chunk.row.lease(until, problem, definition));
         }
         if !again.is_empty() || holds_alone {
             return Ok(again);

@@ -304,6 +304,25 @@ pub struct ChunkRow {
     pub alone: bool,
 }
 
+impl ChunkRow {
+    /// Its last lease, which stands until then: what of the job's problem and of the stage a worker
+    /// needs to begin.
+    pub fn lease(&self, until: LedgerTime, problem: Digest, definition: Digest) -> Lease {
+        Lease {
+            lease: LeaseId {
+                chunk: self.chunk,
+                epoch: self.epoch,
+            },
+            items: self.items,
+            until,
+            problem,
+            definition,
+            alone: self.alone,
+            speculative: false,
+        }
+    }
+}
+
 /// The object that holds a chunk's results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ResultObject {

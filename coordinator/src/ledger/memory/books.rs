@@ -307,18 +307,7 @@ impl Books {
             stage.insert(row);
         }
         job.row.started.get_or_insert(now);
-        let lease = Lease {
-            lease: LeaseId {
-                chunk: id,
-                epoch: chunk.epoch,
-            },
-            items: chunk.items,
-            until,
-            problem: job.row.asked.problem,
-            definition: counts.definition,
-            alone: chunk.alone,
-            speculative: false,
-        };
+        let lease = chunk.lease(until, job.row.asked.problem, counts.definition);
         self.charge(id.job, charged);
         self.leases
             .entry(request.worker.clone())

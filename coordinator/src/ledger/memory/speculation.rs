@@ -132,16 +132,8 @@ impl Books {
         chunk.request = Some(request.request.clone());
         chunk.charged += charged;
         let lease = Lease {
-            lease: LeaseId {
-                chunk: id,
-                epoch: chunk.row.epoch,
-            },
-            items: chunk.row.items,
-            until,
-            problem,
-            definition,
-            alone: chunk.row.alone,
             speculative: true,
+            ..chunk.row.lease(until, problem, definition)
         };
         self.charge(id.job, charged);
         self.elders.insert(id, elder);

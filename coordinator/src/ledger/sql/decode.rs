@@ -245,3 +245,15 @@ pub fn from_hex(text: &str) -> Result<Vec<u8>, LedgerError> {
         .collect::<Option<_>>()
         .ok_or_else(|| damaged("a job's options are no hexadecimal text"))
 }
+
+/// The lease of this row, of a chunk or of an elder, which has ended: one suspicion more.
+pub fn expired_lease(row: &Row) -> Result<Expired, LedgerError> {
+    Ok(Expired {
+        lease: LeaseId {
+            chunk: chunk_id(row)?,
+            epoch: Epoch(number(row, "epoch")?),
+        },
+        worker: worker(row)?,
+        suspicions: small(row, "suspicions")? + 1,
+    })
+}

@@ -570,14 +570,7 @@ pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>,
     let mut expired = Vec::with_capacity(rows.len());
     for row in rows {
         let chunk = chunk_id(&row)?;
-        expired.push(Expired {
-            lease: LeaseId {
-                chunk,
-                epoch: Epoch(number(&row, "epoch")?),
-            },
-            worker: worker(&row)?,
-            suspicions: small(&row, "suspicions")? + 1,
-        });
+        expired.push(expired_lease(&row)?);
         if let Some(found) = find(c, chunk).await? {
             release(c, chunk, &found, 1, true).await?;
         }

@@ -197,16 +197,8 @@ pub async fn expire_elders(
     .await?;
     let mut expired = Vec::with_capacity(rows.len());
     for row in rows {
-        let chunk = chunk_id(&row)?;
-        expired.push(Expired {
-            lease: LeaseId {
-                chunk,
-                epoch: Epoch(number(&row, "epoch")?),
-            },
-            worker: worker(&row)?,
-            suspicions: small(&row, "suspicions")? + 1,
-        });
-        drop_elder(c, chunk, 1).await?;
+        expired.push(expired_lease(&row)?);
+        drop_elder(c, chunk_id(&row)?, 1).await?;
     }
     Ok(expired)
 }
