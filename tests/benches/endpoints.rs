@@ -2,13 +2,14 @@
 //!
 //! `cargo bench -p cognate-tests --bench endpoints -- [COUNT...]`; without counts 10^4, 10^5 and 10^6.
 //! Endpoints are made up, with three coordinates; of each ten one is another's, moved by less than its
-//! error, and all of these must be found, and no others. What it gave: `endpoints.md`.
+//! error, and all of these must be found, and no others. Then as many keys of where paths entered the
+//! endgame, as uncertain as those of real paths can be. What it gave: `endpoints.md`.
 
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::path_result::{BoundaryKey, NUMBERS, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Decision, Tolerances, classify};
-use cognate_solutions::path_crossing::crossings;
+use cognate_solutions::path_crossing::{crossings, meetings};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::unique_points::{Neighbourhood, clusters};
 use cognate_systems::named::katsura;
@@ -43,6 +44,27 @@ fn endpoints(count: usize) -> Vec<Complex64> {
     flat
 }
 
+/// How uncertain a number of a key is at most, by default settings: a twentieth of the largest error of a
+/// prediction, times the slope of four coordinates.
+const MARGIN: f64 = 0.05 * 1e-4 * 4.0;
+
+/// Keys of the boundary: numbers in [0, 1].
+fn keys(count: usize) -> Vec<BoundaryKey> {
+    let mut random = RandomStream::new(count as u64, Purpose::Test, 1);
+    let mut keys: Vec<BoundaryKey> = Vec::with_capacity(count);
+    for k in 0..count {
+        let numbers = match k % TWICE == TWICE - 1 {
+            true => keys[k - 1].numbers.map(|number| number + MARGIN),
+            false => std::array::from_fn::<f64, NUMBERS, _>(|_| random.uniform()),
+        };
+        keys.push(BoundaryKey {
+            numbers,
+            margin: MARGIN,
+        });
+    }
+    keys
+}
+
 fn result(path: usize, point: &[Complex64]) -> PathResult {
     PathResult {
         residual: 1e-16,
@@ -63,8 +85,8 @@ fn main() -> Result<(), Failure> {
     let shape = PointShape::of(&katsura(2).system);
     assert_eq!(shape.coordinates(), COORDINATES);
     println!(
-        "{:>10} {:>10} {:>9} {:>16} {:>9} {:>11} {:>9}",
-        "endpoints", "points", "s", "ns/(n log2 n)", "crossings", "s", "peak MiB"
+        "{:>10} {:>10} {:>9} {:>16} {:>9} {:>11} {:>9} {:>9} {:>9}",
+        "endpoints", "points", "s", "ns/(n log2 n)", "crossings", "s", "keys met", "s", "peak MiB"
     );
     for count in counts {
         let flat = endpoints(count);
@@ -102,12 +124,22 @@ fn main() -> Result<(), Failure> {
             }
             crossed = (found.len().to_string(), format!("{seconds:.3}"));
         }
+        let keys = keys(count);
+        let began = Instant::now();
+        let met = meetings(&keys);
+        let at_boundary = began.elapsed().as_secs_f64();
+        // Of so many some are as near as that by chance.
+        let known = |pair: &&Vec<usize>| pair.iter().any(|place| place % TWICE == TWICE - 1);
+        if met.iter().filter(known).count() != expected {
+            return Err(format!("{} keys met, not {expected}", met.len()).into());
+        }
         let n = count as f64;
         let per = seconds * 1e9 / (n * f64::from(count.ilog2()));
         println!(
-            "{count:>10} {distinct:>10} {seconds:>9.3} {per:>16.1} {:>9} {:>11} {:>9}",
+            "{count:>10} {distinct:>10} {seconds:>9.3} {per:>16.1} {:>9} {:>11} {:>9} {at_boundary:>9.3} {:>9}",
             crossed.0,
             crossed.1,
+            met.len(),
             memory_bytes("self", "VmHWM")? >> 20
         );
     }
