@@ -8,7 +8,7 @@
 
 use crate::classification::{Decision, Tolerances, Verdict, error_bound};
 use crate::point_shape::PointShape;
-use crate::unique_points::{Neighbourhood, clusters, joined};
+use crate::unique_points::{Neighbourhood, Reach, clusters, joined};
 use cognate_continuation::path_result::{BoundaryKey, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use serde::{Deserialize, Serialize};
@@ -66,7 +66,12 @@ pub fn meetings(keys: &[BoundaryKey]) -> Vec<Vec<usize>> {
         let margin = keys[a].margin + keys[b].margin;
         numbers.all(|(a, b)| (a - b).abs() <= margin)
     };
-    let mut all = joined(keys.iter().map(reach), meet);
+    let within = |one: &BoundaryKey, other: &BoundaryKey| {
+        let mut numbers = one.numbers.iter().zip(other.numbers);
+        numbers.all(|(a, b)| (a - b).abs() + other.margin <= one.margin)
+    };
+    let stands_for = |one: &Reach, other: &Reach| within(&keys[one.place], &keys[other.place]);
+    let mut all = joined(keys.iter().map(reach), meet, stands_for);
     all.retain(|members| members.len() > 1);
     all
 }
@@ -154,6 +159,7 @@ mod tests {
     use super::*;
     use crate::classification::classify;
     use crate::test_results::{affine_shape, failed, regular, singular};
+    use cognate_numeric::random::{Purpose, RandomStream};
 
     #[test]
     fn only_regular_endpoints_cross() {
@@ -207,6 +213,29 @@ mod tests {
             .collect();
         let found = crossings(&results, &decisions, &shape, &tolerances, 1);
         assert_eq!(found, [vec![0, 2]]);
+    }
+
+    #[test]
+    fn no_meeting_is_missed_in_a_crowd() {
+        let mut random = RandomStream::new(1, Purpose::Test, 3);
+        let key = |_| BoundaryKey {
+            numbers: std::array::from_fn(|_| random.uniform()),
+            margin: 0.1 * random.uniform() * random.uniform(),
+        };
+        let keys: Vec<BoundaryKey> = (0..400).map(key).collect();
+        let found = meetings(&keys);
+        let together = |a, b| found.iter().any(|all| all.contains(&a) && all.contains(&b));
+        let mut pairs = 0;
+        for (a, one) in keys.iter().enumerate() {
+            for (b, two) in keys.iter().enumerate().take(a) {
+                let mut numbers = one.numbers.iter().zip(two.numbers);
+                if numbers.all(|(x, y)| (x - y).abs() <= one.margin + two.margin) {
+                    assert!(together(a, b), "{a} {b}");
+                    pairs += 1;
+                }
+            }
+        }
+        assert!(pairs > 100, "{pairs}");
     }
 
     #[test]

@@ -26,17 +26,20 @@ pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> 
         let margin = projection.slope() * p.radius + projection.rounding();
         (value - margin, value + margin)
     });
-    joined(reaches, |a, b| {
+    let meet = |a: usize, b: usize| {
         let (one, two) = (&points[a], &points[b]);
         shape.distance(one.point, two.point) <= one.radius + two.radius
-    })
+    };
+    // Whoever meets one of a cluster meets nearly any: the one that reaches further stands for it.
+    joined(reaches, meet, |one, other| one.to >= other.to)
 }
 
 /// The same for any things: `reaches` says between which numbers each lies, `meet` whether two
-/// are one; of those that are one, each lies between the numbers of another.
+/// are one, and `stands_for` of two that are one whether the first is met by whatever meets the second.
 pub(crate) fn joined(
     reaches: impl Iterator<Item = (f64, f64)>,
     meet: impl Fn(usize, usize) -> bool,
+    stands_for: impl Fn(&Reach, &Reach) -> bool,
 ) -> Vec<Vec<usize>> {
     // Sorted as they are, not by way of their places: a million of them do not fit in a cache.
     let mut sorted: Vec<Reach> = reaches
@@ -46,22 +49,24 @@ pub(crate) fn joined(
     sorted.sort_unstable_by(|a, b| a.from.total_cmp(&b.from).then(a.place.cmp(&b.place)));
 
     let mut sets = DisjointSets::new(sorted.len());
-    // One of each cluster whose interval may still meet the next ones'.
+    // Those that the next ones may still meet, or others that stand for them.
     let mut open: Vec<Reach> = Vec::new();
     for new in sorted {
-        open.retain(|old| old.to >= new.from);
-        let mut met = None;
-        for (at, old) in open.iter().enumerate() {
-            if meet(old.place, new.place) {
-                sets.join(old.place, new.place);
-                met.get_or_insert(at);
+        let mut needed = true;
+        open.retain(|old| {
+            if old.to < new.from {
+                return false;
             }
-        }
-        match met {
-            // The one that reaches further goes on to stand for the cluster.
-            Some(at) if open[at].to < new.to => open[at] = new,
-            Some(_) => {}
-            None => open.push(new),
+            if !meet(old.place, new.place) {
+                return true;
+            }
+            sets.join(old.place, new.place);
+            let stands = stands_for(old, &new);
+            needed &= !stands;
+            stands || !stands_for(&new, old)
+        });
+        if needed {
+            open.push(new);
         }
     }
     sets.clusters()
@@ -69,10 +74,10 @@ pub(crate) fn joined(
 
 /// Between which numbers a thing lies.
 #[derive(Clone, Copy)]
-struct Reach {
-    from: f64,
-    to: f64,
-    place: usize,
+pub(crate) struct Reach {
+    pub from: f64,
+    pub to: f64,
+    pub place: usize,
 }
 
 /// Sets that only ever grow together.
