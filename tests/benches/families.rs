@@ -39,7 +39,11 @@ fn solved(
     let mut planned = plan(&family.system, options)?;
     let find = |wanted| starts.filter(|s| s.digest() == wanted).cloned();
     let sets = run_locally(&planned.system, &mut planned.algorithm, &find, WIDTH)?;
-    Ok((planned.paths, sets, cpu_seconds()? - before))
+    Ok((
+        planned.paths.unwrap_or_default(),
+        sets,
+        cpu_seconds()? - before,
+    ))
 }
 
 /// The regular solutions of a set, coordinates in the order of the variables.

@@ -63,7 +63,7 @@ fn main() -> Result<(), Failure> {
         return Err("no first stage".into());
     };
     let mut stage = opening.stage;
-    let total = planned.paths;
+    let total = planned.paths.ok_or("its paths are not counted yet")?;
     let mut stream = RandomStream::new(seed, Purpose::Test, 0);
     let mut indices = BTreeSet::new();
     if let Some(list) = listed {

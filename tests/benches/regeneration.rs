@@ -109,7 +109,7 @@ fn compare(seed: u64, max_retries: u16) -> Result<bool, Failure> {
     let expected = points(&other[0]);
     println!(
         "by its axes: {} paths, {} regular solutions, {} failed",
-        planned.paths,
+        other[0].paths.total,
         expected.len(),
         other[0].paths.failed
     );

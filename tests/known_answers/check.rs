@@ -46,7 +46,10 @@ pub fn solve(
         Err(error) => panic!("{error}"),
     };
     match run_locally(&plan.system, &mut plan.algorithm, objects, WIDTH) {
-        Ok(sets) => (plan.paths, sets),
+        Ok(sets) => {
+            let total = || sets.iter().map(|set| set.paths.total).sum();
+            (plan.paths.unwrap_or_else(total), sets)
+        }
         Err(error) => panic!("{error}"),
     }
 }

@@ -9,6 +9,7 @@ mod digits;
 mod full_disk;
 mod late_chunk;
 mod lease_expired;
+mod mixed_cells;
 mod monodromy;
 mod nine_points;
 mod postgres;

@@ -24,6 +24,8 @@ pub struct CoordinatorOptions {
     pub within: Vec<String>,
     /// So many MiB must be free in /dev/shm for workers to use it.
     pub least_free_mib: Option<u64>,
+    /// Planning counts mixed cells in so many operations at most.
+    pub counting_operations: Option<u64>,
 }
 
 impl CoordinatorOptions {
@@ -32,10 +34,13 @@ impl CoordinatorOptions {
         // Tests run where little is free, too.
         let mib = self.least_free_mib.unwrap_or(16);
         let mut text = format!("shared_memory_least_free_mib = {mib}\n");
+        text += "[rules]\n";
         if let Some(lease) = self.lease {
             let seconds = lease.as_secs_f64();
-            text +=
-                &format!("[rules]\nlease_seconds = {seconds:?}\nexpiry_interval_seconds = 0.1\n");
+            text += &format!("lease_seconds = {seconds:?}\nexpiry_interval_seconds = 0.1\n");
+        }
+        if let Some(operations) = self.counting_operations {
+            text += &format!("counting_operations = {operations}\n");
         }
         if let Some(paths) = self.chunk_paths {
             // As much work as nobody has, but no more paths than these.

@@ -149,8 +149,11 @@ impl ChunkTracker for PreparedWork {
         match self {
             Self::Track(stage) if stage.homotopy().dimension() <= SIXTEEN_LANES_UP_TO => 16,
             Self::Track(_) => 8,
-            // One point after the other.
-            Self::Certify(_) | Self::LocalDimension(_) | Self::Sharpen(_) => 1,
+            // One point or branch after the other.
+            Self::Certify(_)
+            | Self::LocalDimension(_)
+            | Self::Sharpen(_)
+            | Self::CountMixedCells(_) => 1,
         }
     }
 }

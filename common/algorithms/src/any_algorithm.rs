@@ -17,7 +17,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 10;
+const VERSION: u8 = 11;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -177,6 +177,9 @@ impl PathAlgorithm for AnyAlgorithm {
     }
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
         self.get_mut().absorb(stage, results);
+    }
+    fn failure(&self) -> Option<String> {
+        self.get().failure()
     }
     fn progress(&self) -> Progress {
         self.get().progress()

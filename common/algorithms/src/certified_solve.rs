@@ -76,6 +76,9 @@ impl PathAlgorithm for CertifiedSolve {
 
     fn progress(&self) -> Progress {
         let before = self.solve.progress();
+        if self.solve.failure().is_some() {
+            return before; // nothing is looked at
+        }
         ClosingStage::progress(self.certification.as_ref(), before, |items| {
             format!("certifying {items} solutions")
         })
@@ -97,6 +100,10 @@ impl PathAlgorithm for CertifiedSolve {
             certify(set, system, parameters, &attempt, own.seed());
         }
         sets
+    }
+
+    fn failure(&self) -> Option<String> {
+        self.solve.failure()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {

@@ -56,6 +56,10 @@ pub trait PathAlgorithm: Send {
     fn next(&mut self) -> Next;
     /// Takes the results of one stage, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>);
+    /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
+    fn failure(&self) -> Option<String> {
+        None
+    }
     /// How far it is.
     fn progress(&self) -> Progress;
     /// The whole state, to be restored where another process goes on

@@ -11,14 +11,15 @@ use crate::retried_stage::MAX_RETRIES;
 use crate::set_structures::set_names;
 use crate::sharpened_solve::SharpenedSolve;
 use crate::start_costs::{
-    HALVED, SETS_ARE_GIVEN, StartKind, Starts, check_equations, checked_degrees, mixed_volume,
+    HALVED, SETS_ARE_GIVEN, StartKind, Starts, cell_supports, check_equations, checked_degrees,
 };
 use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::start_systems::linear_product::SetStructure;
-use cognate_continuation::start_systems::polyhedral::generic::SOLVING_OPERATIONS;
+use cognate_continuation::start_systems::polyhedral::branches::CellBranches;
+use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_continuation::start_systems::slices;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
@@ -36,6 +37,10 @@ pub const MAX_PLAIN_PATHS: u64 = 40_000_000;
 
 /// Most operations that choosing a start spends on a mixed volume: about a second.
 const CHOOSING_OPERATIONS: u64 = 500_000_000;
+
+/// Most operations that planning a polyhedral start spends on a mixed volume: a few seconds. Workers
+/// count what takes longer.
+pub const PLANNING_OPERATIONS: u64 = 2_000_000_000;
 
 /// Which start is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -101,6 +106,9 @@ pub struct PlanOptions {
     /// Sets of variables for a linear-product start, for each equation as many as its degree;
     /// without them they are guessed. With them [`StartChoice::Auto`] is that start.
     pub sets: Option<SetStructure>,
+    /// Most operations that planning a polyhedral start spends on counting mixed cells, about one for
+    /// each multiplication; what takes more is counted by workers.
+    pub counting_operations: u64,
 }
 
 impl Default for PlanOptions {
@@ -119,6 +127,7 @@ impl Default for PlanOptions {
             digits: DIGITS_OF_DOUBLES,
             deflate: false,
             sets: None,
+            counting_operations: PLANNING_OPERATIONS,
         }
     }
 }
@@ -134,8 +143,8 @@ pub struct Plan {
     pub algorithm: AnyAlgorithm,
     /// How its paths begin.
     pub start: StartKind,
-    /// Number of paths of the first stage.
-    pub paths: u64,
+    /// Number of paths of the first stage that tracks some; `None` where workers count them.
+    pub paths: Option<u64>,
     /// Why this start.
     pub why: String,
 }
@@ -167,10 +176,10 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         plan.algorithm = AnyAlgorithm::Sharpened(Box::new(solve));
     }
     if options.certify {
-        if plan.paths > MAX_PATHS {
+        if plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
             return Err(PlanError::TooManyPaths {
                 start: plan.start,
-                number: Some(plan.paths),
+                number: plan.paths,
             });
         }
         plan.algorithm = AnyAlgorithm::Certified(Box::new(CertifiedSolve::new(plan.algorithm)));
@@ -321,25 +330,22 @@ fn plan_polyhedral(
 ) -> Result<Plan, PlanError> {
     checked_degrees(system)?;
     check_equations(system)?;
-    let start = StartKind::Polyhedral;
-    let volume = mixed_volume(system, SOLVING_OPERATIONS).map_err(PlanError::NoMixedCells)?;
-    match volume {
-        0 => {
-            let why = "the mixed volume is 0: a system with these monomials has no isolated \
-                       solution unless its coefficients are special";
-            return Err(PlanError::NoMixedCells(why.into()));
-        }
-        number if number > MAX_PATHS => {
-            let number = Some(number);
-            return Err(PlanError::TooManyPaths { start, number });
-        }
-        _ => {}
-    }
+    let supports = cell_supports(system).map_err(PlanError::NoMixedCells)?;
+    // As workers enumerate them: with this lifting it can be done.
+    let volume = match mixed_cells(&supports, options.seed, options.counting_operations) {
+        Ok(found) => Some(checked_volume(found.mixed_volume)?),
+        // Workers take wider liftings, which have no ties.
+        Err(MixedCellsError::TooLong | MixedCellsError::NoLifting) => None,
+        Err(error) => return Err(PlanError::NoMixedCells(error.to_string())),
+    };
     let first = Stage {
         id: StageId(0),
         work: Work::Track,
         homotopy: HomotopyKind::Toric,
-        start_points: StartPoints::MixedCells { count: volume },
+        start_points: StartPoints::MixedCells {
+            count: volume.unwrap_or_default(),
+            branches: volume.is_none().then(|| CellBranches::uncounted(0)),
+        },
         settings: options.settings.clone(),
         seed: options.seed,
         attempt: 0,
@@ -349,10 +355,29 @@ fn plan_polyhedral(
     Ok(Plan {
         system: system.clone(),
         algorithm: AnyAlgorithm::Polyhedral(Box::new(solve)).with_max_retries(options.max_retries),
-        start,
+        start: StartKind::Polyhedral,
         paths: volume,
-        why,
+        why: match volume {
+            Some(_) => why,
+            None => format!("{why}; the mixed cells are counted by workers"),
+        },
     })
+}
+
+/// A mixed volume, where as many paths can be followed.
+pub(crate) fn checked_volume(volume: u64) -> Result<u64, PlanError> {
+    match volume {
+        0 => {
+            let why = "the mixed volume is 0: a system with these monomials has no isolated \
+                       solution unless its coefficients are special";
+            Err(PlanError::NoMixedCells(why.into()))
+        }
+        number if number > MAX_PATHS => Err(PlanError::TooManyPaths {
+            start: StartKind::Polyhedral,
+            number: Some(number),
+        }),
+        number => Ok(number),
+    }
 }
 
 /// Equation by equation, the lower degrees first.
@@ -384,7 +409,7 @@ fn plan_regeneration(
         algorithm: AnyAlgorithm::Regeneration(Box::new(solve))
             .with_max_retries(options.max_retries),
         start: StartKind::Regeneration,
-        paths,
+        paths: Some(paths),
         why: format!(
             "asked for; equation by equation, at most {bound} paths on a level; solutions that \
              are singular, or become so on the way, may be missed"
@@ -513,7 +538,7 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
     } else {
         options.target_parameters.clone()
     };
-    let paths = start.count;
+    let paths = Some(start.count);
     let solve = MonodromySolve::new(
         system,
         start,
@@ -550,9 +575,8 @@ fn finish(
         seed: options.seed,
         attempt: 0,
     };
-    let paths = first
-        .items()
-        .expect("the number of paths is under the limit");
+    let paths = first.items();
+    assert!(paths.is_some(), "the number of paths is under the limit");
     let tolerances = options.tolerances.clone();
     let algorithm = if several {
         AnyAlgorithm::Parameter(ParameterSolve::new(first, &system, tolerances))
@@ -629,11 +653,14 @@ mod tests {
         let chosen = plan(&bilinear(), &PlanOptions::default()).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
-            (StartKind::Multihomogeneous, 2)
+            (StartKind::Multihomogeneous, Some(2))
         );
         assert_eq!(chosen.system.groups.len(), 2);
         let total = plan(&bilinear(), &with_start(StartChoice::TotalDegree)).unwrap();
-        assert_eq!((total.start, total.paths), (StartKind::TotalDegree, 4));
+        assert_eq!(
+            (total.start, total.paths),
+            (StartKind::TotalDegree, Some(4))
+        );
         assert_eq!(total.system.groups.len(), 1, "groups are merged");
         assert_eq!(total.algorithm.progress().stages, []);
         let tie =
@@ -641,19 +668,22 @@ mod tests {
         let chosen = plan(&tie, &PlanOptions::default()).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
-            (StartKind::Multihomogeneous, 2)
+            (StartKind::Multihomogeneous, Some(2))
         );
         let one = bertini("variable_group x, y; function f, g; f = x*y - 1; g = x^3 + y;");
         let chosen = plan(&one, &PlanOptions::default()).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
-            (StartKind::Multihomogeneous, 4)
+            (StartKind::Multihomogeneous, Some(4))
         );
         assert_eq!(chosen.system.groups.len(), 2, "groups were found");
         let dense =
             bertini("variable_group x, y; function f, g; f = x^2 + y^2 - 1; g = x^3 + y^3;");
         let chosen = plan(&dense, &PlanOptions::default()).unwrap();
-        assert_eq!((chosen.start, chosen.paths), (StartKind::TotalDegree, 6));
+        assert_eq!(
+            (chosen.start, chosen.paths),
+            (StartKind::TotalDegree, Some(6))
+        );
     }
 
     #[test]
@@ -683,7 +713,10 @@ mod tests {
     fn homogeneous_groups_lose_one_unknown() {
         let conics = "function f, g; f = x^2 + y^2 - z^2; g = x*y - z^2;";
         let projective = bertini(&format!("hom_variable_group x, y, z; {conics}"));
-        assert_eq!(plan(&projective, &PlanOptions::default()).unwrap().paths, 4);
+        assert_eq!(
+            plan(&projective, &PlanOptions::default()).unwrap().paths,
+            Some(4)
+        );
         let affine = bertini(&format!("variable_group x, y, z; {conics}"));
         assert!(matches!(
             refusal(&affine, &PlanOptions::default()),
@@ -756,7 +789,10 @@ mod tests {
             ..PlanOptions::default()
         };
         let chosen = plan(&system, &options).unwrap();
-        assert_eq!((chosen.start, chosen.paths), (StartKind::LinearProduct, 4));
+        assert_eq!(
+            (chosen.start, chosen.paths),
+            (StartKind::LinearProduct, Some(4))
+        );
         assert!(chosen.why.starts_with("the sets are given"));
         options.start = StartChoice::Polyhedral;
         assert_eq!(
@@ -800,14 +836,14 @@ mod tests {
             target_parameters: vec![number(2.0)],
             ..PlanOptions::default()
         };
-        assert_eq!(plan(&system, &options).unwrap().paths, 3);
+        assert_eq!(plan(&system, &options).unwrap().paths, Some(3));
         options.target_parameters.push(number(3.0));
         assert_eq!(refusal(&system, &options), PlanError::SeveralTargets(2));
         options.start_parameters = Some(number(1.0));
         assert_eq!(refusal(&system, &options), PlanError::StartParametersAlone);
         options.start_points = given(1).start_points;
         let chosen = plan(&system, &options).unwrap();
-        assert_eq!((chosen.start, chosen.paths), (StartKind::Given, 6));
+        assert_eq!((chosen.start, chosen.paths), (StartKind::Given, Some(6)));
         options.target_parameters[1].push(Complex64::new(0.0, 0.0));
         assert!(matches!(
             refusal(&system, &options),
@@ -853,7 +889,7 @@ mod tests {
         );
         let mut options = given(1);
         let chosen = plan(&system, &options).unwrap();
-        assert_eq!((chosen.start, chosen.paths), (StartKind::Given, 3));
+        assert_eq!((chosen.start, chosen.paths), (StartKind::Given, Some(3)));
         options.start = StartChoice::TotalDegree;
         assert!(plan(&system, &options).is_err());
     }

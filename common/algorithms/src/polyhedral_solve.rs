@@ -1,6 +1,7 @@
 //! All isolated solutions of one system by a polyhedral homotopy, in two legs.
 //!
-//! First from the mixed cells to all solutions of the generic system with the
+//! Where there may be too many mixed cells to be counted in planning, workers count them first,
+//! branch by branch. Then from the mixed cells to all solutions of the generic system with the
 //! same monomials (toric homotopy), then from those to the system that is
 //! asked. Each leg is a retried stage with its own crossing check; a path that
 //! does not arrive in the first is named as failed in the end, so that the
@@ -9,14 +10,22 @@
 use crate::any_algorithm::AnyAlgorithm;
 use crate::closing_stage::FiniteEndpoints;
 use crate::opening::Opening;
-use crate::progress::VerdictCounts;
+use crate::plan::checked_volume;
+use crate::plan_error::PlanError;
+use crate::progress::{StageProgress, VerdictCounts};
 use crate::retried_stage::RetriedStage;
 use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{PathIndex, PathResult};
-use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
+use cognate_continuation::start_systems::polyhedral::branches::{
+    BRANCHES, BranchCount, CellBranches,
+};
+use cognate_continuation::start_systems::polyhedral::mixed_cells::{
+    MOST_LIFTINGS, MixedCellsError,
+};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
-use cognate_continuation::work::{Stage, StageId};
+use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -24,9 +33,20 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// The stages that count mixed cells: one, and another for each lifting that is not generic.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Counting {
+    stages: Vec<StageProgress>,
+    /// The lifting that is next, or being counted.
+    lifting: u32,
+    outcome: Option<Result<(), String>>,
+}
+
 /// Mixed cells to a generic system, the generic system to the target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PolyhedralSolve {
+    /// `None` where the cells were counted in planning.
+    counting: Option<Counting>,
     generic: RetriedStage,
     /// `None` until all paths of the first leg have ended.
     target: Option<RetriedStage>,
@@ -38,7 +58,8 @@ pub struct PolyhedralSolve {
 }
 
 impl PolyhedralSolve {
-    /// The solve that begins with this stage, a toric homotopy.
+    /// The solve that begins with this stage, a toric homotopy; where its start points are not
+    /// counted yet, with stages that do.
     ///
     /// # Panics
     /// When the stage is none.
@@ -52,7 +73,19 @@ impl PolyhedralSolve {
             matches!(first.homotopy, HomotopyKind::Toric),
             "a polyhedral solve begins in mixed cells"
         );
+        let counting = match &first.start_points {
+            StartPoints::MixedCells {
+                branches: Some(branches),
+                ..
+            } if branches.volumes.is_empty() => Some(Counting {
+                stages: Vec::new(),
+                lifting: branches.lifting,
+                outcome: None,
+            }),
+            _ => None,
+        };
         Self {
+            counting,
             generic: RetriedStage::new(first, system, tolerances, 1),
             target: None,
             arrived: Vec::new(),
@@ -65,6 +98,40 @@ impl PolyhedralSolve {
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.generic = self.generic.with_max_retries(max_retries);
         self
+    }
+
+    /// Takes the counts of all branches: the first leg has as many paths, or another lifting is
+    /// counted, or it ends here.
+    fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        let counting = self.counting.as_mut().expect("it is counting");
+        let own = counting
+            .stages
+            .iter_mut()
+            .find(|own| own.id == stage && !own.absorbed)
+            .expect("only an open stage is absorbed");
+        own.absorbed = true;
+        let counts: Vec<Option<BranchCount>> = results.map(|result| result.mixed_cells).collect();
+        assert_eq!(
+            counts.len() as u64,
+            own.items,
+            "a stage is absorbed as a whole"
+        );
+        match sum(&counts, counting.lifting) {
+            Ok(Some((count, branches))) => {
+                counting.outcome = Some(Ok(()));
+                let first = Stage {
+                    id: StageId(stage.0 + 1),
+                    start_points: StartPoints::MixedCells {
+                        count,
+                        branches: Some(branches),
+                    },
+                    ..self.generic.first().clone()
+                };
+                self.generic = self.generic.with_first(first);
+            }
+            Ok(None) => counting.lifting += 1,
+            Err(reason) => counting.outcome = Some(Err(reason)),
+        }
     }
 
     /// The second leg, from what the first one found; `None` where it found nothing.
@@ -142,8 +209,82 @@ fn regular(result: &PathResult) -> bool {
     result.outcome == PathOutcome::Regular
 }
 
+impl Counting {
+    /// What is wanted next; `None` when all is counted.
+    fn next(&mut self, first: &Stage) -> Option<Next> {
+        match &self.outcome {
+            Some(Ok(())) => return None,
+            Some(Err(_)) => return Some(Next::Done),
+            None if self.stages.iter().any(|stage| !stage.absorbed) => return Some(Next::Wait),
+            None => {}
+        }
+        let stage = Stage {
+            id: StageId(first.id.0 + self.stages.len() as u32),
+            work: Work::CountMixedCells,
+            start_points: StartPoints::MixedCells {
+                count: 0,
+                branches: Some(CellBranches::uncounted(self.lifting)),
+            },
+            ..first.clone()
+        };
+        self.stages.push(StageProgress {
+            id: stage.id,
+            work: stage.work,
+            attempt: stage.attempt,
+            items: BRANCHES,
+            absorbed: false,
+        });
+        Some(Next::Open(Box::new(stage.into())))
+    }
+
+    fn failure(&self) -> Option<&String> {
+        self.outcome.as_ref()?.as_ref().err()
+    }
+}
+
+/// The mixed volume and its branches by the counts of all; `None` where the lifting is not generic,
+/// and the next one is to be counted.
+fn sum(
+    counts: &[Option<BranchCount>],
+    lifting: u32,
+) -> Result<Option<(u64, CellBranches)>, String> {
+    let refused = |error: MixedCellsError| PlanError::NoMixedCells(error.to_string()).to_string();
+    if counts.contains(&Some(BranchCount::Tie)) {
+        return match lifting + 1 < MOST_LIFTINGS {
+            true => Ok(None),
+            false => Err(refused(MixedCellsError::NoLifting)),
+        };
+    }
+    let mut branches = CellBranches::uncounted(lifting);
+    let mut volume = 0u64;
+    for (branch, count) in counts.iter().enumerate() {
+        match count {
+            Some(BranchCount::Counted(counted)) => {
+                let sum = volume.checked_add(counted.volume);
+                volume = sum.ok_or_else(|| refused(MixedCellsError::TooLarge))?;
+                branches.volumes.push(counted.volume);
+                branches.time_exponent = branches.time_exponent.max(counted.time_exponent);
+            }
+            Some(BranchCount::Tie | BranchCount::TooLarge) => {
+                return Err(refused(MixedCellsError::TooLarge));
+            }
+            None => {
+                let why = format!("branch {branch} of the mixed cells ended every worker");
+                return Err(PlanError::NoMixedCells(why).to_string());
+            }
+        }
+    }
+    let volume = checked_volume(volume).map_err(|error| error.to_string())?;
+    Ok(Some((volume, branches)))
+}
+
 impl PathAlgorithm for PolyhedralSolve {
     fn next(&mut self) -> Next {
+        if let Some(counting) = &mut self.counting
+            && let Some(next) = counting.next(self.generic.first())
+        {
+            return next;
+        }
         if let Some(target) = &mut self.target {
             return target.next_stage();
         }
@@ -157,6 +298,9 @@ impl PathAlgorithm for PolyhedralSolve {
     }
 
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        if self.counting.as_ref().is_some_and(|c| c.outcome.is_none()) {
+            return self.counted(stage, results);
+        }
         match &mut self.target {
             Some(target) => target.absorb(stage, results),
             None => self.generic.absorb(stage, results),
@@ -164,9 +308,24 @@ impl PathAlgorithm for PolyhedralSolve {
     }
 
     fn progress(&self) -> Progress {
-        let first = self
+        let counting = self.counting.as_ref();
+        if let Some(counting) = counting.filter(|counting| counting.outcome != Some(Ok(()))) {
+            return Progress {
+                description: match counting.failure() {
+                    Some(reason) => reason.clone(),
+                    None => "counting mixed cells".into(),
+                },
+                stages: counting.stages.clone(),
+                paths: VerdictCounts::default(),
+                done: counting.outcome.is_some(),
+            };
+        }
+        let mut first = self
             .generic
             .progress("a generic system with the same monomials");
+        if let Some(counting) = counting {
+            first.stages.splice(0..0, counting.stages.iter().copied());
+        }
         match &self.target {
             None => Progress {
                 // Nothing is known of the system that is asked.
@@ -186,6 +345,10 @@ impl PathAlgorithm for PolyhedralSolve {
 
     fn snapshot(&self) -> Vec<u8> {
         AnyAlgorithm::Polyhedral(Box::new(self.clone())).to_bytes()
+    }
+
+    fn failure(&self) -> Option<String> {
+        self.counting.as_ref()?.failure().cloned()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
@@ -214,5 +377,252 @@ impl PathAlgorithm for PolyhedralSolve {
             history.crossings_resolved += first.crossings_resolved;
         }
         vec![last.set_of(system, &self.parameters, &results, &history)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::StartChoice;
+    use crate::run_locally::run_locally;
+    use crate::{Plan, PlanOptions, plan};
+    use cognate_continuation::prepared_work::PreparedWork;
+    use cognate_continuation::start_systems::polyhedral::branches::CountedCells;
+    use cognate_systems::named::cyclic;
+    use std::collections::HashMap;
+
+    fn options(counting_operations: u64) -> PlanOptions {
+        PlanOptions {
+            start: StartChoice::Polyhedral,
+            seed: 3,
+            counting_operations,
+            ..PlanOptions::default()
+        }
+    }
+
+    /// A plan in which workers count.
+    fn counted_by_workers(system: &System) -> Plan {
+        let plan = plan(system, &options(10)).expect("a plan");
+        assert_eq!(plan.paths, None);
+        assert!(plan.why.contains("counted by workers"), "{}", plan.why);
+        plan
+    }
+
+    /// Coordinates to a few digits, sorted.
+    fn values(sets: &[SolutionSet]) -> Vec<Vec<(i64, i64)>> {
+        let digits = |z: Complex64| ((z.re * 1e8).round() as i64, (z.im * 1e8).round() as i64);
+        let of =
+            |s: &cognate_solutions::solution::Solution| s.variables.values().map(digits).collect();
+        let mut all: Vec<_> = sets[0].solutions.iter().map(of).collect();
+        all.sort();
+        all
+    }
+
+    /// The results of a stage, as a worker has them.
+    fn worked(system: &System, opening: &Opening, width: usize) -> Vec<PathResult> {
+        let find = |wanted| opening.object(wanted);
+        let prepared = PreparedWork::new(system, &opening.stage, &find).expect("a stage");
+        prepared.run(0..prepared.items(), width)
+    }
+
+    fn next_opening(algorithm: &mut AnyAlgorithm) -> Box<Opening> {
+        match algorithm.next() {
+            Next::Open(opening) => opening,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn solutions_are_the_same_whoever_counts_also_after_every_restart() {
+        let system = cyclic(6).system;
+        let mut planned = plan(&system, &options(u64::MAX)).expect("a plan");
+        assert_eq!(planned.paths, Some(156));
+        let sets = run_locally(&planned.system, &mut planned.algorithm, &|_| None, 8);
+        let sets = sets.expect("solution sets");
+        let Plan {
+            mut algorithm,
+            system,
+            ..
+        } = counted_by_workers(&system);
+        let mut open: Option<Box<Opening>> = None;
+        let mut stages = Vec::new();
+        loop {
+            algorithm = AnyAlgorithm::restore(&algorithm.snapshot()).expect("a snapshot");
+            match algorithm.next() {
+                Next::Open(opening) => {
+                    let stage = &opening.stage;
+                    stages.push((stage.id.0, stage.work, stage.items().unwrap_or_default()));
+                    let description = algorithm.progress().description;
+                    let counts = stage.work == Work::CountMixedCells;
+                    assert_eq!(
+                        description == "counting mixed cells",
+                        counts,
+                        "{description}"
+                    );
+                    open = Some(opening);
+                }
+                Next::Wait => {
+                    let opening = open.take().expect("an open stage");
+                    let mut results = worked(&system, &opening, 8).into_iter();
+                    algorithm.absorb(opening.stage.id, &mut results);
+                }
+                Next::Done => break,
+            }
+        }
+        let expected = [
+            (0, Work::CountMixedCells, BRANCHES),
+            (1, Work::Track, 156),
+            (2, Work::Track, 156),
+        ];
+        assert_eq!(stages, expected);
+        let progress = algorithm.progress();
+        assert!(progress.done && algorithm.failure().is_none());
+        let numbers: Vec<u32> = progress.stages.iter().map(|stage| stage.id.0).collect();
+        assert_eq!(numbers, [0, 1, 2]);
+        let counted = algorithm.solution_sets(&system);
+        assert_eq!(
+            (counted[0].paths.total, counted[0].paths.finite),
+            (156, 156)
+        );
+        assert!(counted[0].settled(), "{:?}", counted[0].warnings);
+        assert_eq!(values(&counted), values(&sets));
+    }
+
+    #[test]
+    fn a_lifting_with_a_tie_is_followed_by_another() {
+        let Plan {
+            mut algorithm,
+            system,
+            ..
+        } = counted_by_workers(&cyclic(5).system);
+        let first = next_opening(&mut algorithm);
+        let mut results = worked(&system, &first, 1);
+        results[77].mixed_cells = Some(BranchCount::Tie);
+        algorithm.absorb(first.stage.id, &mut results.into_iter());
+        let second = next_opening(&mut algorithm);
+        let StartPoints::MixedCells { count: 0, branches } = &second.stage.start_points else {
+            panic!("{:?}", second.stage.start_points);
+        };
+        assert_eq!(branches, &Some(CellBranches::uncounted(1)));
+        assert_eq!(algorithm.next(), Next::Wait);
+        let results = worked(&system, &second, 1);
+        algorithm.absorb(second.stage.id, &mut results.into_iter());
+        let toric = next_opening(&mut algorithm);
+        assert_eq!((toric.stage.id.0, toric.stage.items()), (2, Some(70)));
+        let results = worked(&system, &toric, 8);
+        assert!(results.iter().all(regular));
+        algorithm.absorb(toric.stage.id, &mut results.into_iter());
+        let generic = next_opening(&mut algorithm);
+        assert_eq!((generic.stage.id.0, generic.stage.items()), (3, Some(70)));
+    }
+
+    /// Paths of any branches, tracked again.
+    #[test]
+    fn a_few_paths_are_tracked_again_from_where_they_began() {
+        let Plan {
+            mut algorithm,
+            system,
+            ..
+        } = counted_by_workers(&cyclic(6).system);
+        let counting = next_opening(&mut algorithm);
+        let mut results = worked(&system, &counting, 1).into_iter();
+        algorithm.absorb(counting.stage.id, &mut results);
+        let toric = next_opening(&mut algorithm);
+        let results = worked(&system, &toric, 16);
+        let lost = [3usize, 40, 41, 155];
+        let mut failed = results.clone();
+        for path in lost {
+            failed[path].outcome = PathOutcome::Failed(Failure::TooManySteps);
+        }
+        algorithm.absorb(toric.stage.id, &mut failed.into_iter());
+        let again = next_opening(&mut algorithm);
+        assert_eq!((again.stage.id.0, again.stage.attempt), (2, 1));
+        let found = worked(&system, &again, 8);
+        assert_eq!(found.len(), lost.len());
+        for (path, result) in lost.into_iter().zip(&found) {
+            assert_eq!(result.origin.0, path as u64);
+            let (a, b) = (&results[path].endpoint, &result.endpoint);
+            let apart = a.to_double().iter().zip(b.to_double());
+            let apart: f64 = apart.map(|(a, b)| (a - b).norm_sqr()).sum();
+            assert!(regular(result) && apart < 1e-16, "path {path}: {apart}");
+        }
+        algorithm.absorb(again.stage.id, &mut found.into_iter());
+        assert_eq!(next_opening(&mut algorithm).stage.items(), Some(156));
+    }
+
+    #[test]
+    fn what_cannot_be_followed_ends_the_solve_with_its_reason() {
+        let system = cyclic(5).system;
+        let told = |change: &dyn Fn(&mut Vec<PathResult>)| {
+            let mut options = options(10);
+            options.certify = true;
+            let mut algorithm = plan(&system, &options).expect("a plan").algorithm;
+            let mut stages = 0;
+            loop {
+                match algorithm.next() {
+                    Next::Open(opening) => {
+                        stages += 1;
+                        let mut results = worked(&system, &opening, 1);
+                        change(&mut results);
+                        algorithm.absorb(opening.stage.id, &mut results.into_iter());
+                    }
+                    Next::Wait => panic!("no stage is open"),
+                    Next::Done => break,
+                }
+            }
+            assert_eq!(algorithm.next(), Next::Done);
+            assert!(algorithm.progress().done);
+            let restored = AnyAlgorithm::restore(&algorithm.snapshot()).expect("a snapshot");
+            assert_eq!(restored.failure(), algorithm.failure());
+            (stages, algorithm.failure().expect("a reason"))
+        };
+        let all = |count: Option<BranchCount>| {
+            move |results: &mut Vec<PathResult>| {
+                results.iter_mut().for_each(|r| r.mixed_cells = count);
+            }
+        };
+        let of_volume = |volume| {
+            let cells = 1;
+            all(Some(BranchCount::Counted(CountedCells {
+                cells,
+                volume,
+                time_exponent: 1,
+            })))
+        };
+        let reasons = HashMap::from([
+            ("ties", told(&all(Some(BranchCount::Tie)))),
+            (
+                "large",
+                told(&|results: &mut Vec<PathResult>| {
+                    results[9].mixed_cells = Some(BranchCount::TooLarge);
+                }),
+            ),
+            ("sum", told(&of_volume(u64::MAX / 2))),
+            ("many", told(&of_volume(4000))),
+            ("none", told(&of_volume(0))),
+            (
+                "killed",
+                told(&|results: &mut Vec<PathResult>| {
+                    results[9].mixed_cells = None;
+                }),
+            ),
+        ]);
+        let is = |name: &str, stages: u32, part: &str| {
+            let (found, reason) = &reasons[name];
+            assert!(
+                *found == stages && reason.contains(part),
+                "{found}: {reason}"
+            );
+        };
+        is("ties", MOST_LIFTINGS, "no generic lifting");
+        is("large", 1, "64 bits");
+        is("sum", 1, "64 bits");
+        is("many", 1, "has 4096000 paths, more than the limit");
+        is("none", 1, "the mixed volume is 0");
+        is(
+            "killed",
+            1,
+            "branch 9 of the mixed cells ended every worker",
+        );
     }
 }

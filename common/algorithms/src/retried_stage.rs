@@ -121,6 +121,15 @@ impl RetriedStage {
         self
     }
 
+    /// The same with another first stage, for one target, where none is open yet.
+    pub fn with_first(&self, first: Stage) -> Self {
+        Self {
+            paths_per_target: first.items().unwrap_or_default(),
+            first,
+            ..self.clone()
+        }
+    }
+
     /// The stage that comes first.
     pub fn first(&self) -> &Stage {
         &self.first

@@ -40,6 +40,9 @@ pub fn run_locally(
         let prepared = PreparedWork::new(system, &opening.stage, &find)?;
         Ok(prepared.run(0..prepared.items(), width))
     })?;
+    if let Some(reason) = algorithm.failure() {
+        return Err(PrepareError::StartPoints(reason));
+    }
     Ok(algorithm.solution_sets(system))
 }
 

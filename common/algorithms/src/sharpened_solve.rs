@@ -90,6 +90,9 @@ impl PathAlgorithm for SharpenedSolve {
 
     fn progress(&self) -> Progress {
         let before = self.solve.progress();
+        if self.solve.failure().is_some() {
+            return before; // nothing is looked at
+        }
         ClosingStage::progress(self.sharpening.as_ref(), before, |items| {
             format!("bringing {items} solutions to {} digits", self.digits)
         })
@@ -110,6 +113,10 @@ impl PathAlgorithm for SharpenedSolve {
             sharpen(set, self.digits, &attempt);
         }
         sets
+    }
+
+    fn failure(&self) -> Option<String> {
+        self.solve.failure()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {

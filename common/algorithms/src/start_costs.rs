@@ -8,7 +8,7 @@ use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::start_systems::grouping::best_grouping;
 use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
-use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
+use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_solutions::plain::Sieve;
 use cognate_systems::expression::Node;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, degrees_by_form, supports};
@@ -423,6 +423,19 @@ impl StartCosts {
 
 /// The mixed volume that bounds the isolated solutions in C^n, or why it is not known.
 pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, String> {
+    let found = mixed_cells(&cell_supports(system)?, 0, operations);
+    found
+        .map(|found| found.mixed_volume)
+        .map_err(|error| match error {
+            MixedCellsError::TooLong => {
+                format!("{error} here; the start `polyhedral` counts on the workers")
+            }
+            other => other.to_string(),
+        })
+}
+
+/// The supports whose mixed cells a polyhedral start has, or why there are none.
+pub(crate) fn cell_supports(system: &System) -> Result<Vec<Vec<Vec<i64>>>, String> {
     if system.groups.iter().any(|group| group.homogeneous) {
         return Err("not counted for homogeneous groups".into());
     }
@@ -430,13 +443,7 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
         return Err("not counted for combinations of equations".into());
     }
     let supports = supports(system).ok_or_else(|| not_multiplied_out(system))?;
-    mixed_cells(
-        &affine_supports(&supports, &nonzero_variables(system)),
-        0,
-        operations,
-    )
-    .map(|found| found.mixed_volume)
-    .map_err(|error| error.to_string())
+    Ok(affine_supports(&supports, &nonzero_variables(system)))
 }
 
 /// Why the monomials of a system are not known: the equation that may have the most of them, by its

@@ -133,7 +133,8 @@ mod tests {
         let mut plan = plan(&system, &options).expect("a plan");
         let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
         assert!(plan.algorithm.progress().done);
-        (plan.paths, sets.expect("paths").remove(0))
+        let paths = plan.paths.expect("they are counted in planning");
+        (paths, sets.expect("paths").remove(0))
     }
 
     fn values(set: &SolutionSet) -> Vec<Vec<Complex64>> {

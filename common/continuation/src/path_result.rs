@@ -6,6 +6,7 @@
 
 use crate::certification::Certification;
 use crate::sharpening::Sharpening;
+use crate::start_systems::polyhedral::branches::BranchCount;
 use crate::tracker::outcome::PathOutcome;
 use cognate_numeric::precision::DOUBLE;
 use num_complex::Complex64;
@@ -141,6 +142,8 @@ pub struct PathResult {
     pub sharpening: Option<Sharpening>,
     /// Where the path entered the endgame; `None` where it did not come so far.
     pub boundary: Option<BoundaryKey>,
+    /// The mixed cells of a branch, in a stage that counts them; its `origin` is the branch.
+    pub mixed_cells: Option<BranchCount>,
 }
 
 impl PathResult {
@@ -169,6 +172,7 @@ impl PathResult {
             local_dimension: None,
             sharpening: None,
             boundary: None,
+            mixed_cells: None,
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::path_result::PathResult;
 use crate::sharpening::SharpeningStage;
 use crate::stage::{PrepareError, PreparedStage};
 use crate::start_points::{Digest, StoredPoints};
+use crate::start_systems::polyhedral::counting::CountingStage;
 use crate::work::{Stage, Work};
 use cognate_systems::system::System;
 use std::ops::Range;
@@ -22,6 +23,8 @@ pub enum PreparedWork {
     LocalDimension(Box<PreparedLocalDimension>),
     /// Points to sharpen.
     Sharpen(Box<SharpeningStage>),
+    /// Branches whose mixed cells are counted.
+    CountMixedCells(Box<CountingStage>),
 }
 
 impl PreparedWork {
@@ -44,7 +47,23 @@ impl PreparedWork {
             Work::Sharpen { digits } => Self::Sharpen(Box::new(SharpeningStage::new(
                 system, stage, digits, objects,
             )?)),
+            Work::CountMixedCells => {
+                Self::CountMixedCells(Box::new(CountingStage::new(system, stage)?))
+            }
         })
+    }
+
+    /// Whether [`Self::new`] would succeed for a stage that a solve begins with, without what
+    /// takes long.
+    pub fn check(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<(), PrepareError> {
+        match stage.work {
+            Work::CountMixedCells => CountingStage::check(system, stage),
+            _ => PreparedStage::check(system, stage, objects),
+        }
     }
 
     /// Number of items.
@@ -54,6 +73,7 @@ impl PreparedWork {
             Self::Certify(stage) => stage.items(),
             Self::LocalDimension(stage) => stage.items(),
             Self::Sharpen(stage) => stage.items(),
+            Self::CountMixedCells(stage) => stage.items(),
         }
     }
 
@@ -65,6 +85,7 @@ impl PreparedWork {
             Self::Certify(stage) => stage.run(items),
             Self::LocalDimension(stage) => stage.run(items),
             Self::Sharpen(stage) => stage.run(items),
+            Self::CountMixedCells(stage) => stage.run(items),
         }
     }
 }

@@ -334,12 +334,15 @@ impl<'a> Checked<'a> {
                 }
                 Points::Stored(stored)
             }
-            StartPoints::MixedCells { count } => {
+            StartPoints::MixedCells { count, branches } => {
                 let generic = generic.clone().filter(|_| toric).ok_or_else(|| {
                     PrepareError::StartPoints("mixed cells start a toric homotopy".into())
                 })?;
-                let start = ToricStart::new(generic, stage.seed)
-                    .map_err(|error| PrepareError::StartPoints(error.to_string()))?;
+                let start = match branches {
+                    Some(counted) => ToricStart::branched(generic, stage.seed, counted),
+                    None => ToricStart::new(generic, stage.seed),
+                };
+                let start = start.map_err(|error| PrepareError::StartPoints(error.to_string()))?;
                 if start.count() != *count {
                     return Err(PrepareError::StartPoints(format!(
                         "the mixed volume is {}, not {count}",
@@ -517,10 +520,8 @@ impl PreparedStage {
             HomotopyKind::Parameter { .. } | HomotopyKind::Slide { .. } => {
                 (origin, origin / self.starts)
             }
-            HomotopyKind::Toric => match &self.points {
-                Points::Made(StartSystem::Toric(s)) => (origin, s.cell(origin) as u64),
-                _ => (origin, 0),
-            },
+            // Its cell is found by the path.
+            HomotopyKind::Toric => (origin, origin),
             _ => (origin, 0),
         }
     }
@@ -532,7 +533,7 @@ impl PreparedStage {
             Points::Made(StartSystem::TotalDegree(s)) => s.point(chart, origin),
             Points::Made(StartSystem::Multihomogeneous(s)) => s.point(chart, origin),
             Points::Made(StartSystem::LinearProduct(s)) => s.point(chart, origin),
-            Points::Made(StartSystem::Toric(s)) => chart.from_variables(&s.point(origin)),
+            Points::Made(StartSystem::Toric(s)) => chart.from_variables(&s.point(origin)?),
             Points::Made(StartSystem::Generic(_)) => None,
             Points::Stored(points) => {
                 let index = usize::try_from(origin % self.starts).ok()?;
@@ -612,7 +613,7 @@ fn in_order(system: &System) -> bool {
 }
 
 /// The generic system with the monomials of a square one in affine groups.
-fn generic_system(
+pub(crate) fn generic_system(
     system: &System,
     overdetermined: bool,
     seed: u64,

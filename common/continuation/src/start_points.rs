@@ -3,6 +3,7 @@
 use crate::start_systems::exchange::Exchange;
 use crate::start_systems::linear_product::SetStructure;
 use crate::start_systems::multihomogeneous::Choices;
+use crate::start_systems::polyhedral::branches::CellBranches;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -56,8 +57,10 @@ pub enum StartPoints {
     },
     /// The solutions of the binomial systems of the mixed cells: made from the index.
     MixedCells {
-        /// The mixed volume.
+        /// The mixed volume; 0 while it is counted.
         count: u64,
+        /// The branches that the cells are enumerated in; `None` where it is done as a whole.
+        branches: Option<CellBranches>,
     },
 }
 
@@ -188,7 +191,7 @@ impl StartPoints {
                 choices.map(|choices| choices.count())
             }
             Self::Stored { count, .. }
-            | Self::MixedCells { count }
+            | Self::MixedCells { count, .. }
             | Self::LinearProduct { count, .. } => Some(*count),
             Self::Selected { indices, .. } => Some(indices.len() as u64),
         }

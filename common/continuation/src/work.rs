@@ -4,6 +4,7 @@
 
 use crate::homotopies::HomotopyKind;
 use crate::start_points::StartPoints;
+use crate::start_systems::polyhedral::branches::BRANCHES;
 use crate::tracker::settings::Settings;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +27,9 @@ pub enum Work {
         /// From 1 to [`crate::sharpening::MOST_DIGITS`].
         digits: u32,
     },
+    /// Count the mixed cells of each branch (see `start_systems::polyhedral::branches`); the items
+    /// are the branches of the start points.
+    CountMixedCells,
 }
 
 /// One kind of work over the start points of one homotopy.
@@ -50,8 +54,10 @@ pub struct Stage {
 impl Stage {
     /// How many items the stage has; `None` when they are more than fit in 64 bits.
     pub fn items(&self) -> Option<u64> {
-        if self.work == Work::LocalDimension {
-            return self.start_points.count();
+        match self.work {
+            Work::LocalDimension => return self.start_points.count(),
+            Work::CountMixedCells => return Some(BRANCHES),
+            Work::Track | Work::Certify | Work::Sharpen { .. } => {}
         }
         match (&self.homotopy, &self.start_points) {
             // An item of a repetition is named by its index among all targets and starts.

@@ -13,6 +13,7 @@ use cognate_continuation::path_result::{
 };
 use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::Digest;
+use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, CountedCells};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_numeric::exact_text::{exact_text, read_exact};
 use cognate_numeric::rational::{ComplexRational, Rational};
@@ -29,6 +30,8 @@ mod tag {
     pub const SHARPENED: u8 = 5;
     pub const UNSHARPENED: u8 = 6;
     pub const BOUNDARY: u8 = 7;
+    pub const MIXED_CELLS: u8 = 8;
+    pub const UNCOUNTED: u8 = 9;
 }
 
 /// Bytes that hold no records.
@@ -141,6 +144,7 @@ impl Writer {
             local_dimension,
             sharpening,
             boundary,
+            mixed_cells,
         } = result;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -243,6 +247,22 @@ impl Writer {
             self.0.push(tag::BOUNDARY);
             numbers.iter().for_each(|&number| self.f64(number));
             self.f64(*margin);
+        }
+        match mixed_cells {
+            None => {}
+            Some(BranchCount::Counted(counted)) => {
+                let CountedCells {
+                    cells,
+                    volume,
+                    time_exponent,
+                } = counted;
+                self.0.push(tag::MIXED_CELLS);
+                self.u64(*cells);
+                self.u64(*volume);
+                self.u32(*time_exponent);
+            }
+            Some(BranchCount::Tie) => self.0.extend_from_slice(&[tag::UNCOUNTED, 1]),
+            Some(BranchCount::TooLarge) => self.0.extend_from_slice(&[tag::UNCOUNTED, 2]),
         }
     }
 }
@@ -414,6 +434,7 @@ impl<'a> Reader<'a> {
             local_dimension: None,
             sharpening: None,
             boundary: None,
+            mixed_cells: None,
         };
         let mut last = 0;
         while self.at < end {
@@ -485,6 +506,20 @@ impl<'a> Reader<'a> {
                         .filter(BoundaryKey::is_sound)
                         .map(Some)
                         .ok_or_else(|| self.damaged("a key that is none"))?;
+                }
+                tag::MIXED_CELLS => {
+                    result.mixed_cells = Some(BranchCount::Counted(CountedCells {
+                        cells: self.u64()?,
+                        volume: self.u64()?,
+                        time_exponent: self.u32()?,
+                    }));
+                }
+                tag::UNCOUNTED => {
+                    result.mixed_cells = Some(match self.array::<1>()?[0] {
+                        1 => BranchCount::Tie,
+                        2 => BranchCount::TooLarge,
+                        _ => return Err(self.damaged("a reason that this version does not know")),
+                    });
                 }
                 _ => return Err(self.damaged("a fact that this version does not know")),
             }

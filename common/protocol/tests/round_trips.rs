@@ -3,6 +3,10 @@
 mod support;
 
 use cognate_continuation::path_result::{Coordinates, PathResult};
+use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::start_systems::polyhedral::branches::{
+    BRANCHES, BranchCount, CellBranches, CountedCells,
+};
 use cognate_continuation::work::{Stage, Work};
 use cognate_protocol::submission::{Source, Submission};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
@@ -46,7 +50,22 @@ proptest! {
     fn stages_come_back(seed: u64) {
         let mut draw = Draw::new(seed);
         let sharpening = Stage { work: Work::Sharpen { digits: 50 }, ..draw.stage() };
-        for stage in [draw.stage(), draw.later_stage(), sharpening] {
+        let of_cells = |count, branches| StartPoints::MixedCells { count, branches: Some(branches) };
+        let counting = Stage {
+            work: Work::CountMixedCells,
+            start_points: of_cells(0, CellBranches::uncounted(2)),
+            ..draw.stage()
+        };
+        let branches = CellBranches {
+            lifting: 1,
+            volumes: (0..BRANCHES).collect(),
+            time_exponent: 3,
+        };
+        let counted = Stage {
+            start_points: of_cells(BRANCHES * (BRANCHES - 1) / 2, branches),
+            ..draw.stage()
+        };
+        for stage in [draw.stage(), draw.later_stage(), sharpening, counting, counted] {
             let message: v1::Stage = sent(&to_proto::path::stage(&stage));
             prop_assert_eq!(from_proto::path::stage(&message).unwrap(), stage);
         }
@@ -57,6 +76,11 @@ proptest! {
         let mut draw = Draw::new(seed);
         let mut results: Vec<PathResult> = (0..draw.below(5)).map(|_| draw.path_result()).collect();
         results.push(draw.sharpened_result());
+        let counted = BranchCount::Counted(CountedCells { cells: seed, volume: 7, time_exponent: 4 });
+        results.extend([counted, BranchCount::Tie, BranchCount::TooLarge].map(|count| PathResult {
+            mixed_cells: Some(count),
+            ..draw.path_result()
+        }));
         for result in &results {
             let message: v1::PathResult = sent(&to_proto::path::path_result(result));
             let back = from_proto::path::path_result(&message).unwrap();

@@ -88,6 +88,7 @@ fn progress(progress: JobProgress, warnings: Vec<String>) -> v1::JobProgress {
                 accepted: stage.accepted,
                 failed: stage.failed,
                 purpose: stage.purpose,
+                mixed_cells: stage.mixed_cells,
             })
             .collect(),
         outcomes: vec![

@@ -4,6 +4,7 @@ use super::sizing::Sizing;
 use super::speculation::Speculation;
 use crate::ledger::identity::{RequestId, WorkerId};
 use crate::ledger::rows::LeaseRequest;
+use cognate_algorithms::plan::PLANNING_OPERATIONS;
 
 /// The numbers by which chunks are leased, renewed and taken back.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,6 +32,9 @@ pub struct Policy {
     /// Of a stage of more paths than these only the ends are held in memory that matter to others (see
     /// `solutions::plain`). Default 100,000, which take about 100 MB.
     pub held_paths: u64,
+    /// Planning a polyhedral start counts mixed cells in at most so many operations, about one for each
+    /// multiplication; what takes more is counted by workers. Default 2,000,000,000: a few seconds.
+    pub counting_operations: u64,
     /// How large chunks are.
     pub sizing: Sizing,
     /// When the last chunks of a stage are given to a second worker.
@@ -48,6 +52,7 @@ impl Default for Policy {
             in_flight_limit: 20_000,
             audit_percent: 0,
             held_paths: 100_000,
+            counting_operations: PLANNING_OPERATIONS,
             sizing: Sizing::default(),
             speculation: Speculation::default(),
         }

@@ -72,6 +72,7 @@ tables! {
         speculation_times: u32,
         speculation_least_seconds: f64,
         held_paths: u64,
+        counting_operations: u64,
     }
     /// The fields of `Sizing`.
     ChunksTable {
@@ -145,6 +146,7 @@ impl ConfigFile {
                 )?,
                 audit_percent: r.audit_percent.unwrap_or(policy.audit_percent).min(100),
                 held_paths: r.held_paths.unwrap_or(policy.held_paths),
+                counting_operations: r.counting_operations.unwrap_or(policy.counting_operations),
                 speculation: Speculation {
                     times: r.speculation_times.unwrap_or(policy.speculation.times),
                     least_ms: in_ms(

@@ -1,6 +1,7 @@
 //! What clients ask: progress, results, lists, explanations.
 
 use super::{Coordinator, CoordinatorError, job_row};
+use crate::jobs::large_stage;
 use crate::jobs::planning::{Planned, STATE};
 use crate::jobs::progress::JobProgress;
 use crate::ledger::identity::JobId;
@@ -10,6 +11,7 @@ use cognate_algorithms::AnyAlgorithm;
 use cognate_algorithms::monodromy::estimate::percent;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
@@ -52,6 +54,7 @@ fn purpose(stage: &Stage) -> String {
         (Work::Certify, _) => "certifying".to_owned(),
         (Work::Sharpen { digits }, _) => format!("bringing solutions to {digits} digits"),
         (Work::LocalDimension, _) => "whether singular endpoints are isolated".to_owned(),
+        (Work::CountMixedCells, _) => "counting mixed cells".to_owned(),
         (Work::Track, 0) if stage.homotopy == HomotopyKind::Toric => {
             "tracking to a generic system".to_owned()
         }
@@ -68,12 +71,46 @@ impl Coordinator {
         let mut purposes = HashMap::new();
         for stage in &stages {
             let definition = self.stage_of(stage.definition).await?;
-            purposes.insert(stage.stage, purpose(&definition));
+            let cells = match definition.work {
+                Work::CountMixedCells => Some(self.cells_so_far(job, stage.stage).await?),
+                _ => None,
+            };
+            purposes.insert(stage.stage, (purpose(&definition), cells));
         }
         let now = self.ledger.now().await?;
         Ok(JobProgress::new(&row, &stages, now, |stage: &StageRow| {
             purposes.get(&stage.stage).cloned().unwrap_or_default()
         }))
+    }
+
+    /// The mixed cells that were found in the finished chunks of a stage that counts them.
+    async fn cells_so_far(&self, job: JobId, stage: StageId) -> Result<u64, CoordinatorError> {
+        let known = self.cells.get(&(job, stage)).unwrap_or_default();
+        let mut counts = HashMap::clone(&known);
+        let mut from = 0;
+        loop {
+            let objects = large_stage::page(&*self.ledger, job, stage, from).await?;
+            let Some(last) = objects.last() else { break };
+            from = last.items.last;
+            for object in objects {
+                if counts.contains_key(&object.items.first) {
+                    continue;
+                }
+                let results = self.store.results(&object).await?;
+                let cells = results.iter().map(|result| match result.mixed_cells {
+                    Some(BranchCount::Counted(counted)) => counted.cells,
+                    Some(BranchCount::Tie | BranchCount::TooLarge) | None => 0,
+                });
+                counts.insert(object.items.first, cells.sum());
+            }
+        }
+        let sum = counts
+            .values()
+            .fold(0, |sum: u64, n| sum.saturating_add(*n));
+        if counts.len() > known.len() {
+            self.cells.keep((job, stage), Arc::new(counts));
+        }
+        Ok(sum)
     }
 
     /// A job's progress: at once, then after every change; the last is the end.
@@ -256,6 +293,9 @@ impl Coordinator {
             JobState::Solved => Some(self.summary(job).await?.0),
             _ => None,
         };
+        // Where workers count mixed cells, how many paths there are is known after that.
+        let tracked = progress.stages.iter().find(|s| s.mixed_cells.is_none());
+        let paths = planned.paths.or(tracked.map(|stage| stage.total));
         let mut lines = vec![
             format!("job {job}: {} ({})", planned.name, row.state.name()),
             format!(
@@ -264,7 +304,10 @@ impl Coordinator {
             ),
             format!(
                 "start {}: {}; {} paths, seed {}",
-                planned.start, planned.why, planned.paths, planned.seed
+                planned.start,
+                planned.why,
+                paths.map_or("an unknown number of".to_owned(), |n| n.to_string()),
+                planned.seed
             ),
         ];
         if !progress.message.is_empty() {
@@ -365,10 +408,12 @@ impl Coordinator {
             .stages
             .iter()
             .map(|stage| {
+                // How many paths there are is not known while their cells are counted.
+                let paths = stage.mixed_cells.is_none().then_some(stage.total);
                 json!({
-                    "stage": stage.stage.0, "purpose": stage.purpose, "paths": stage.total,
+                    "stage": stage.stage.0, "purpose": stage.purpose, "paths": paths,
                     "ready": stage.ready, "leased": stage.leased, "accepted": stage.accepted,
-                    "failed": stage.failed,
+                    "failed": stage.failed, "mixed_cells": stage.mixed_cells,
                 })
             })
             .collect();
@@ -380,7 +425,7 @@ impl Coordinator {
             "problem": planned.problem.to_string(),
             "start": planned.start,
             "why": planned.why,
-            "paths": planned.paths,
+            "paths": paths,
             "seed": planned.seed,
             "stages": stages,
             "speculative_leases": late,

@@ -13,6 +13,8 @@ pub(crate) mod simulation;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_of_counting;
+#[cfg(test)]
 mod tests_of_limits;
 mod work;
 
@@ -88,6 +90,8 @@ pub struct Coordinator {
     stages: Recent<Digest, Stage>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
+    /// Of stages that count mixed cells: those of each finished chunk, by its first item.
+    cells: Recent<(JobId, StageId), HashMap<u64, u64>>,
 }
 
 impl Coordinator {
@@ -112,6 +116,7 @@ impl Coordinator {
             stages: Recent::new(KEPT),
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),
+            cells: Recent::new(KEPT),
         })
     }
 
@@ -161,8 +166,10 @@ impl Coordinator {
             (None, _) => None,
         };
         // Counting the paths of some starts takes long; it must not hold up the runtime.
+        let counting_operations = self.policy.counting_operations;
         let planning = tokio::task::spawn_blocking(move || {
-            let plan = plan_job(&system, &options, start_solutions.as_deref());
+            let start_solutions = start_solutions.as_deref();
+            let plan = plan_job(&system, &options, start_solutions, counting_operations);
             (system, options, plan)
         });
         let (system, options, plan) = match planning.await {
@@ -195,7 +202,7 @@ impl Coordinator {
         let submitted = self.ledger.submit(request, job).await?;
         if submitted.is_new {
             tracing::info!(job = %submitted.job, name = planned.name, start = planned.start,
-                paths = planned.paths, "a job is submitted");
+                paths = ?planned.paths, "a job is submitted");
         }
         self.unattended.notify_one();
         self.changed(submitted.job);

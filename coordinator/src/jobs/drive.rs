@@ -302,6 +302,12 @@ impl Drive {
 
     async fn finish(&mut self, tools: &Tools<'_>) -> Result<(), DriveError> {
         let Tools { ledger, store, .. } = tools;
+        if let Some(reason) = self.steward().failure() {
+            tracing::warn!(job = %self.job, reason, "the job has no answer");
+            return Ok(ledger
+                .finish(self.job, self.epoch, JobEnd::Failed { reason })
+                .await?);
+        }
         let mut sets = self.at_work(|steward| steward.solution_sets()).await;
         let row = ledger.job(self.job).await?;
         let row = row.ok_or(LedgerError::UnknownJob(self.job))?;

@@ -9,8 +9,9 @@ use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::{Next, PathAlgorithm, PlanError};
+use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::sharpening::MOST_DIGITS;
-use cognate_continuation::stage::{PrepareError, PreparedStage};
+use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
 use cognate_protocol::submission::{Options, PrecisionChoice, StartKind, StartSolutions};
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
@@ -33,8 +34,8 @@ pub struct Planned {
     pub start: String,
     /// Why they begin so.
     pub why: String,
-    /// Number of paths of the first stage.
-    pub paths: u64,
+    /// Number of paths of the first stage that tracks some; `None` where workers count them.
+    pub paths: Option<u64>,
     /// Seed of everything random.
     pub seed: u64,
     /// The algorithm's first state, as an object.
@@ -52,7 +53,7 @@ pub const STATE: RecordKind = RecordKind(b"CGNALG01");
 pub struct UnreadablePlan(String);
 
 /// Version of the encoding of [`Planned`].
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 
 impl Planned {
     /// The bytes that the ledger keeps.
@@ -149,13 +150,18 @@ fn digits_of(bits: u32) -> u32 {
     digits.clamp(DIGITS_OF_DOUBLES, MOST_DIGITS)
 }
 
-/// The plan of a system, whose first stage a worker can prepare.
+/// The plan of a system, whose first stage a worker can prepare. Workers count the mixed cells that are
+/// not counted in so many operations.
 pub fn plan_job(
     system: &System,
     options: &Options,
     start_solutions: Option<&[u8]>,
+    counting_operations: u64,
 ) -> Result<Plan, PlanningError> {
-    let options = plan_options(options, start_solutions)?;
+    let options = PlanOptions {
+        counting_operations,
+        ..plan_options(options, start_solutions)?
+    };
     let plan = plan(system, &options)?;
     let points = start_solutions.map(StoredPoints::from_bytes).transpose()?;
     let given = options.start_points.map(|start| start.object).zip(points);
@@ -166,7 +172,7 @@ pub fn plan_job(
     };
     if let Next::Open(opening) = plan.algorithm.clone().next() {
         let find = |wanted: Digest| opening.object(wanted).or_else(|| find(wanted));
-        PreparedStage::check(&plan.system, &opening.stage, &find)?;
+        PreparedWork::check(&plan.system, &opening.stage, &find)?;
     }
     Ok(plan)
 }

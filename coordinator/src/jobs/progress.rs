@@ -39,15 +39,19 @@ pub struct StageProgress {
     pub failed: u64,
     /// What the stage is for, in words.
     pub purpose: String,
+    /// Where items are branches of mixed cells, which are counted before it is known how many paths
+    /// there are: the cells of the accepted ones.
+    pub mixed_cells: Option<u64>,
 }
 
 impl JobProgress {
-    /// From the ledger's rows; `purpose` says what a stage is for.
+    /// From the ledger's rows; `purpose` says what a stage is for, and how many mixed cells it has
+    /// counted where it does.
     pub fn new(
         job: &JobRow,
         stages: &[StageRow],
         now: LedgerTime,
-        purpose: impl Fn(&StageRow) -> String,
+        purpose: impl Fn(&StageRow) -> (String, Option<u64>),
     ) -> Self {
         let mut outcomes = Outcomes::default();
         let stages = stages.iter().map(|row| {
@@ -57,6 +61,7 @@ impl JobProgress {
                 "every item of a stage is in exactly one place"
             );
             outcomes.add(row.outcomes);
+            let (purpose, mixed_cells) = purpose(row);
             StageProgress {
                 stage: row.stage,
                 total: row.items,
@@ -64,7 +69,8 @@ impl JobProgress {
                 leased: row.leased.items,
                 accepted: row.accepted.items,
                 failed: row.failed.items,
-                purpose: purpose(row),
+                purpose,
+                mixed_cells,
             }
         });
         let stages = stages.collect();

@@ -161,6 +161,11 @@ impl Steward {
         })
     }
 
+    /// Why there is no answer, once all is done; `None` where there is one.
+    pub fn failure(&self) -> Option<String> {
+        self.algorithm.failure()
+    }
+
     /// What is done at the moment, in a few words.
     pub fn description(&self) -> String {
         self.algorithm.progress().description

@@ -184,8 +184,9 @@ impl Outcomes {
     /// Counts the outcomes of some results.
     pub fn of(results: &[PathResult]) -> Self {
         let mut outcomes = Self::default();
-        // What was certified is no path that ended.
-        for result in results.iter().filter(|r| r.certification.is_none()) {
+        // What was certified is no path that ended, and what was counted is none.
+        let is_path = |r: &&PathResult| r.certification.is_none() && r.mixed_cells.is_none();
+        for result in results.iter().filter(is_path) {
             match result.outcome {
                 PathOutcome::Regular => outcomes.regular += 1,
                 PathOutcome::Singular | PathOutcome::Diverging => outcomes.singular += 1,

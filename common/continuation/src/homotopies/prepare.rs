@@ -55,7 +55,7 @@ pub struct Homotopy {
     start: Vec<Complex64>,
     /// Parameters of the program at t = 0, for each target.
     targets: Vec<Vec<Complex64>>,
-    /// Where paths begin in mixed cells: a target is the path's cell.
+    /// Where paths begin in mixed cells: a target is the path itself.
     toric: Option<Arc<ToricStart>>,
     /// Degree of each row of the program in each group; none where residuals are taken as they
     /// are, wherever in its patch a point lies.
@@ -501,10 +501,10 @@ impl Homotopy {
     }
 
     /// `a` and `b` of p(t) = a + phi(t) b on the way to this target; of a toric homotopy
-    /// coefficients and weights, and the target is the path's cell.
+    /// coefficients and weights, and the target is the path itself, in its cell.
     pub(crate) fn ends(&self, target: u64) -> (IntoIter<Complex64>, IntoIter<Complex64>) {
         if let Some(toric) = &self.toric {
-            let weights = toric.weights(target as usize).into_iter();
+            let weights = toric.weights(target).into_iter();
             let weights: Vec<_> = weights.map(|w| Complex64::new(w, 0.0)).collect();
             return (self.start.clone().into_iter(), weights.into_iter());
         }

@@ -972,6 +972,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             local_dimension: None,
             sharpening: None,
             boundary: path.boundary,
+            mixed_cells: None,
         };
         self.ended.results.push((path.item, result));
     }

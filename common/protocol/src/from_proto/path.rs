@@ -13,6 +13,9 @@ use cognate_continuation::path_result::{
 use cognate_continuation::sharpening::{MOST_DIGITS, Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::exchange::Exchange;
+use cognate_continuation::start_systems::polyhedral::branches::{
+    BRANCHES, BranchCount, CellBranches, CountedCells, MOST_TIME_EXPONENT,
+};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
@@ -36,6 +39,7 @@ pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
             }
             Work::Sharpen { digits: m.digits }
         }
+        Ok(v1::Work::CountMixedCells) => Work::CountMixedCells,
         Ok(v1::Work::Unspecified) | Err(_) => {
             return Err(ProtocolError::invalid(
                 "work",
@@ -198,7 +202,27 @@ fn start_points(m: &v1::StartPoints) -> Result<StartPoints, ProtocolError> {
                 count: p.count,
             }
         }
-        Kind::MixedCells(p) => StartPoints::MixedCells { count: p.count },
+        Kind::MixedCells(p) => {
+            let branches = p.branches.as_ref().map(|branches| CellBranches {
+                lifting: branches.lifting,
+                volumes: branches.volumes.clone(),
+                time_exponent: branches.time_exponent,
+            });
+            if branches.as_ref().is_some_and(|b| !b.is_sound(p.count)) {
+                return Err(ProtocolError::invalid(
+                    "mixed_cells.branches",
+                    format!(
+                        "{} volumes",
+                        p.branches.iter().flat_map(|b| &b.volumes).count()
+                    ),
+                    format!("none, or {BRANCHES} that add up to the mixed volume"),
+                ));
+            }
+            StartPoints::MixedCells {
+                count: p.count,
+                branches,
+            }
+        }
         Kind::Selected(p) => {
             let base = required("selected.base", p.base.as_deref())?;
             // A selection of a selection would let a message recurse as deep as it likes.
@@ -347,6 +371,41 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             .transpose()
             .map_err(|e| e.within("sharpening"))?,
         boundary: m.boundary.as_ref().map(boundary_key).transpose()?,
+        mixed_cells: m
+            .mixed_cells
+            .as_ref()
+            .map(branch_count)
+            .transpose()
+            .map_err(|e| e.within("mixed_cells"))?,
+    })
+}
+
+fn branch_count(m: &v1::BranchCount) -> Result<BranchCount, ProtocolError> {
+    use v1::branch_count::Outcome;
+    Ok(match required("outcome", m.outcome.as_ref())? {
+        Outcome::Counted(m) => {
+            if !(1..=MOST_TIME_EXPONENT).contains(&m.time_exponent) {
+                let expected = format!("1 to {MOST_TIME_EXPONENT}");
+                let field = "counted.time_exponent";
+                return Err(ProtocolError::invalid(field, m.time_exponent, expected));
+            }
+            BranchCount::Counted(CountedCells {
+                cells: m.cells,
+                volume: m.volume,
+                time_exponent: m.time_exponent,
+            })
+        }
+        Outcome::Uncounted(reason) => match v1::Uncounted::try_from(*reason) {
+            Ok(v1::Uncounted::Tie) => BranchCount::Tie,
+            Ok(v1::Uncounted::TooLarge) => BranchCount::TooLarge,
+            Ok(v1::Uncounted::Unspecified) | Err(_) => {
+                return Err(ProtocolError::invalid(
+                    "uncounted",
+                    *reason,
+                    "a reason that this version knows",
+                ));
+            }
+        },
     })
 }
 

@@ -9,6 +9,7 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::sharpening::{Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, Work};
 use cognate_numeric::exact_text::exact_text;
@@ -23,6 +24,7 @@ pub fn stage(stage: &Stage) -> v1::Stage {
             Work::Certify => v1::Work::Certify,
             Work::LocalDimension => v1::Work::LocalDimension,
             Work::Sharpen { .. } => v1::Work::Sharpen,
+            Work::CountMixedCells => v1::Work::CountMixedCells,
         }
         .into(),
         homotopy: Some(homotopy(&stage.homotopy)),
@@ -34,7 +36,7 @@ pub fn stage(stage: &Stage) -> v1::Stage {
         attempt: stage.attempt.into(),
         digits: match stage.work {
             Work::Sharpen { digits } => digits,
-            Work::Track | Work::Certify | Work::LocalDimension => 0,
+            Work::Track | Work::Certify | Work::LocalDimension | Work::CountMixedCells => 0,
         },
     }
 }
@@ -135,7 +137,14 @@ fn start_points(points: &StartPoints) -> v1::StartPoints {
                 equations: equation_sets(sets),
                 count: *count,
             }),
-            StartPoints::MixedCells { count } => Kind::MixedCells(v1::MixedCells { count: *count }),
+            StartPoints::MixedCells { count, branches } => Kind::MixedCells(v1::MixedCells {
+                count: *count,
+                branches: branches.as_ref().map(|branches| v1::CellBranches {
+                    lifting: branches.lifting,
+                    volumes: branches.volumes.clone(),
+                    time_exponent: branches.time_exponent,
+                }),
+            }),
             StartPoints::Selected { base, indices } => Kind::Selected(Box::new(v1::Selected {
                 base: Some(Box::new(start_points(base))),
                 indices: indices.clone(),
@@ -180,6 +189,22 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             numbers: key.numbers.to_vec(),
             margin: key.margin,
         }),
+        mixed_cells: r.mixed_cells.map(|count| v1::BranchCount {
+            outcome: Some(branch_count(count)),
+        }),
+    }
+}
+
+fn branch_count(count: BranchCount) -> v1::branch_count::Outcome {
+    use v1::branch_count::Outcome;
+    match count {
+        BranchCount::Counted(counted) => Outcome::Counted(v1::CountedCells {
+            cells: counted.cells,
+            volume: counted.volume,
+            time_exponent: counted.time_exponent,
+        }),
+        BranchCount::Tie => Outcome::Uncounted(v1::Uncounted::Tie.into()),
+        BranchCount::TooLarge => Outcome::Uncounted(v1::Uncounted::TooLarge.into()),
     }
 }
 

@@ -306,7 +306,10 @@ impl Draw {
     /// A stage that passes the checks.
     pub fn stage(&mut self) -> Stage {
         let base = match self.below(4) {
-            3 => StartPoints::MixedCells { count: 1000 },
+            3 => StartPoints::MixedCells {
+                count: 1000,
+                branches: None,
+            },
             0 => StartPoints::TotalDegree {
                 degrees: vec![2, 3, 1 + self.index(9)],
             },
@@ -454,6 +457,7 @@ impl Draw {
                 numbers: std::array::from_fn(|_| draw.number()),
                 margin: draw.number().abs(),
             }),
+            mixed_cells: None,
         }
     }
 }

@@ -11,12 +11,15 @@ use crate::client::output::text::{Columns, Look, complex, count, magnitude, real
 use crate::client::problem;
 use crate::intake;
 use crate::jobs::planning::plan_job;
+use cognate_algorithms::plan::PLANNING_OPERATIONS;
 use cognate_algorithms::{Next, PathAlgorithm};
 use cognate_continuation::path_result::PathResult;
+use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PreparedStage;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::observer::StepEvent;
 use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_continuation::work::Work;
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_systems::system::System;
@@ -98,20 +101,34 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
     };
     let taken = intake::take(prepared.submission.clone()).map_err(|e| wrong(&e))?;
     let start = taken.start_solutions.as_deref();
-    let mut plan = plan_job(&taken.system, &taken.options, start).map_err(|e| wrong(&e))?;
-    if index >= plan.paths {
+    let mut plan = plan_job(&taken.system, &taken.options, start, PLANNING_OPERATIONS)
+        .map_err(|e| wrong(&e))?;
+    let opening = loop {
+        let Next::Open(opening) = plan.algorithm.next() else {
+            let why = plan.algorithm.failure();
+            let why = why.unwrap_or_else(|| "the plan begins without paths".into());
+            return Err(ClientError::Local(why));
+        };
+        if opening.stage.work != Work::CountMixedCells {
+            break opening;
+        }
+        // Its paths are not numbered before all mixed cells are counted.
+        let counting =
+            PreparedWork::new(&plan.system, &opening.stage, &|_| None).map_err(|e| wrong(&e))?;
+        let mut counts = counting.run(0..counting.items(), 1).into_iter();
+        plan.algorithm.absorb(opening.stage.id, &mut counts);
+    };
+    let paths = plan.paths.or(opening.stage.items()).unwrap_or_default();
+    if index >= paths {
         return Err(ClientError::Input {
             origin: "--index".into(),
             message: format!(
                 "there is no path {index}: the {} start has paths 0 to {}",
                 plan.start,
-                plan.paths - 1
+                paths.saturating_sub(1)
             ),
         });
     }
-    let Next::Open(opening) = plan.algorithm.next() else {
-        return Err(ClientError::Local("the plan begins without paths".into()));
-    };
     let points = match start {
         None => None,
         Some(bytes) => Some(Arc::new(
@@ -129,7 +146,7 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
     let values = finite.then(|| shape.to_variables(result.endpoint.to_double()));
     Ok(Traced {
         start: plan.start.to_string(),
-        paths: plan.paths,
+        paths,
         system: plan.system,
         result,
         steps,

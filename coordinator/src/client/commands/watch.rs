@@ -92,6 +92,18 @@ pub fn ended(state: v1::JobState) -> bool {
 /// What the display shows of a job's progress.
 pub fn standing(p: &v1::JobProgress) -> Standing {
     let open = p.stages.iter().rfind(|s| s.accepted + s.failed < s.total);
+    // Branches whose mixed cells are counted are no paths: how many there will be is not known.
+    let counting = open.or(p.stages.last());
+    if let Some((stage, cells)) = counting.and_then(|s| Some((s, s.mixed_cells?))) {
+        return Standing {
+            phase: format!("{}, {} so far", stage.purpose, text::counted(cells, "cell")),
+            done: stage.accepted,
+            total: stage.total,
+            failed: stage.failed,
+            unit: "part",
+        };
+    }
+    let paths = || p.stages.iter().filter(|s| s.mixed_cells.is_none());
     let phase = match (p.state(), open) {
         (v1::JobState::Queued, _) => "waiting".to_string(),
         (_, Some(stage)) if !stage.purpose.is_empty() => stage.purpose.clone(),
@@ -100,9 +112,10 @@ pub fn standing(p: &v1::JobProgress) -> Standing {
     };
     Standing {
         phase,
-        done: p.stages.iter().map(|s| s.accepted).sum(),
-        total: p.stages.iter().map(|s| s.total).sum(),
-        failed: p.stages.iter().map(|s| s.failed).sum(),
+        done: paths().map(|s| s.accepted).sum(),
+        total: paths().map(|s| s.total).sum(),
+        failed: paths().map(|s| s.failed).sum(),
+        unit: "path",
     }
 }
 

@@ -44,6 +44,7 @@ pub fn progress(p: &v1::JobProgress, exit: u8) -> String {
             json!({
                 "stage": s.stage, "purpose": s.purpose, "total": s.total, "ready": s.ready,
                 "leased": s.leased, "accepted": s.accepted, "failed": s.failed,
+                "mixed_cells": s.mixed_cells,
             })
         })
         .collect();

@@ -18,6 +18,8 @@ pub struct Standing {
     pub total: u64,
     /// Paths in chunks that failed so far.
     pub failed: u64,
+    /// What is counted, like "path".
+    pub unit: &'static str,
 }
 
 /// How progress is shown.
@@ -128,12 +130,13 @@ fn plain_line(standing: &Standing, elapsed: Duration) -> String {
         "{}: {} of {}",
         standing.phase,
         count(standing.done),
-        counted(standing.total, "path")
+        counted(standing.total, standing.unit)
     );
     if standing.done > 0 && elapsed > 0.0 {
         line.push_str(&format!(
-            ", {} paths/s",
-            rate(standing.done as f64 / elapsed)
+            ", {} {}s/s",
+            rate(standing.done as f64 / elapsed),
+            standing.unit
         ));
     }
     if standing.failed > 0 {
@@ -154,10 +157,22 @@ mod tests {
             done: 12_000,
             total: 143_360,
             failed: 3,
+            unit: "path",
         };
         assert_eq!(
             plain_line(&standing, Duration::from_secs(60)),
             "tracking: 12,000 of 143,360 paths, 200 paths/s, 3 failed, 1 min 00 s"
+        );
+        let counting = Standing {
+            phase: "counting mixed cells, 7 cells so far".into(),
+            done: 12,
+            total: 1024,
+            failed: 0,
+            unit: "part",
+        };
+        assert_eq!(
+            plain_line(&counting, Duration::from_secs(12)),
+            "counting mixed cells, 7 cells so far: 12 of 1,024 parts, 1 parts/s, 12.0 s"
         );
     }
 

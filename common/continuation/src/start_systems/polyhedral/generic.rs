@@ -6,7 +6,8 @@
 //! modulus is ever taken.
 
 use super::affine_supports;
-use super::mixed_cells::{MixedCellsError, MixedSubdivision, mixed_cells};
+use super::branches::{BranchedCells, CellBranches, time_exponent};
+use super::mixed_cells::{MixedCell, MixedCellsError, mixed_cells};
 use crate::chart::exact;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::roots_of_unity::on_the_circle;
@@ -15,8 +16,10 @@ use cognate_systems::polynomial::Polynomial;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use rug::Integer;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// Most operations that are spent on the mixed cells of a system that is solved.
+/// Most operations that are spent on the mixed cells of a system that is solved, where they were
+/// not counted in branches.
 pub const SOLVING_OPERATIONS: u64 = 20_000_000_000;
 
 /// A system with the same supports as another and generic coefficients.
@@ -43,6 +46,11 @@ impl GenericSystem {
             })
             .collect();
         Self { supports, angles }
+    }
+
+    /// The supports: `supports[equation][term][variable]`.
+    pub fn supports(&self) -> &[Vec<Vec<i64>>] {
+        &self.supports
     }
 
     /// The coefficients, equation after equation.
@@ -148,33 +156,163 @@ impl GenericSystem {
     }
 }
 
+/// Mixed cells, ascending, each with the index of its first start point.
+#[derive(Debug)]
+struct CellList {
+    cells: Vec<MixedCell>,
+    offsets: Vec<u64>,
+    /// The index after the last.
+    end: u64,
+}
+
+impl CellList {
+    /// The first start point of all has the index `first`.
+    fn new(cells: Vec<MixedCell>, first: u64) -> Self {
+        let mut end = first;
+        let offsets = cells.iter().map(|cell| {
+            let offset = end;
+            end = end.saturating_add(cell.volume);
+            offset
+        });
+        Self {
+            offsets: offsets.collect(),
+            cells,
+            end,
+        }
+    }
+
+    /// The cell of a start point, and its number in it.
+    fn locate(&self, index: u64) -> Option<(&MixedCell, u64)> {
+        let place = self.offsets.partition_point(|&offset| offset <= index);
+        let place = place.checked_sub(1)?;
+        (index < self.end).then(|| (&self.cells[place], index - self.offsets[place]))
+    }
+
+    /// About as much memory as this, in bytes.
+    fn size(&self) -> usize {
+        let of_cell = |cell: &MixedCell| {
+            size_of::<(MixedCell, u64)>() + size_of_val(&*cell.edges) + size_of_val(&*cell.normal)
+        };
+        self.cells.first().map_or(0, of_cell) * self.cells.len()
+    }
+}
+
+/// Branches are held while the cells of all that are take less than this, in bytes; the one that
+/// is used is held anyway.
+const HELD_BYTES: usize = 64 << 20;
+
+/// A branch that is held, or being enumerated; `None` where its cells are not those that were
+/// counted.
+type Held = Arc<OnceLock<Option<CellList>>>;
+
+/// A subdivision in branches, which are enumerated when their start points are asked for.
+#[derive(Debug)]
+struct Branched {
+    cells: BranchedCells,
+    /// Index of the first start point of each branch, and the number of all.
+    offsets: Vec<u64>,
+    time_exponent: u32,
+    /// The most recently used last.
+    held: Mutex<Vec<(u64, Held)>>,
+}
+
+impl Branched {
+    /// The branch of a start point. Threads that ask for the same one wait for one of them.
+    fn list(&self, index: u64) -> Option<Held> {
+        let branch = self.offsets.partition_point(|&offset| offset <= index);
+        let branch = branch.checked_sub(1)?;
+        let (first, end) = (self.offsets[branch], *self.offsets.get(branch + 1)?);
+        let branch = branch as u64;
+        let list = {
+            let mut held = self.lock();
+            let known = held.iter().rposition(|(number, _)| *number == branch);
+            let list = known.map_or_else(Held::default, |place| held.remove(place).1);
+            held.push((branch, Arc::clone(&list)));
+            list
+        };
+        if list.get().is_none() {
+            list.get_or_init(|| {
+                let list = CellList::new(self.cells.cells(branch)?, first);
+                (list.end == end).then_some(list)
+            });
+            self.make_room(HELD_BYTES);
+        }
+        Some(list)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(u64, Held)>> {
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets go of the branches that were not used for the longest time, where all take more bytes.
+    fn make_room(&self, most: usize) {
+        let mut held = self.lock();
+        let mut size = 0;
+        let mut fits = |(_, list): &(u64, Held)| {
+            size += list
+                .get()
+                .and_then(Option::as_ref)
+                .map_or(0, CellList::size);
+            size <= most
+        };
+        let kept = held
+            .iter()
+            .rev()
+            .take_while(|held| fits(held))
+            .count()
+            .max(1);
+        let excess = held.len().saturating_sub(kept);
+        held.drain(..excess);
+    }
+}
+
 /// The mixed cells of a generic system: where its toric homotopy begins.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ToricStart {
     generic: GenericSystem,
-    subdivision: MixedSubdivision,
-    /// Index of the first start point of each cell.
-    offsets: Vec<u64>,
+    cells: Cells,
+}
+
+/// All cells, or where they are found.
+#[derive(Debug)]
+enum Cells {
+    Whole {
+        list: CellList,
+        lifting: Vec<Vec<i64>>,
+    },
+    Branched(Branched),
 }
 
 impl ToricStart {
     /// Enumerates the cells; a function of supports and seed alone.
     pub fn new(generic: GenericSystem, seed: u64) -> Result<Self, MixedCellsError> {
-        let subdivision = mixed_cells(&generic.supports, seed, SOLVING_OPERATIONS)?;
-        let offsets = subdivision
-            .cells
-            .iter()
-            .scan(0, |sum, cell| {
-                let offset = *sum;
-                *sum += cell.volume;
-                Some(offset)
-            })
-            .collect();
-        Ok(Self {
-            generic,
-            subdivision,
+        let found = mixed_cells(&generic.supports, seed, SOLVING_OPERATIONS)?;
+        let cells = Cells::Whole {
+            list: CellList::new(found.cells, 0),
+            lifting: found.lifting,
+        };
+        Ok(Self { generic, cells })
+    }
+
+    /// The same for cells that were counted in branches: they are found when they are asked for.
+    pub fn branched(
+        generic: GenericSystem,
+        seed: u64,
+        counted: &CellBranches,
+    ) -> Result<Self, MixedCellsError> {
+        let cells = BranchedCells::new(&generic.supports, seed, counted.lifting)?;
+        let mut offsets = vec![0u64];
+        for volume in &counted.volumes {
+            let end = offsets[offsets.len() - 1].checked_add(*volume);
+            offsets.push(end.ok_or(MixedCellsError::TooLarge)?);
+        }
+        let cells = Cells::Branched(Branched {
+            cells: cells.ok_or(MixedCellsError::NoLifting)?,
             offsets,
-        })
+            time_exponent: counted.time_exponent,
+            held: Mutex::default(),
+        });
+        Ok(Self { generic, cells })
     }
 
     /// The system whose solutions the toric homotopy finds.
@@ -184,79 +322,79 @@ impl ToricStart {
 
     /// Number of start points: the mixed volume.
     pub fn count(&self) -> u64 {
-        self.subdivision.mixed_volume
-    }
-
-    /// Number of cells.
-    pub fn cell_count(&self) -> usize {
-        self.subdivision.cells.len()
-    }
-
-    /// The cell of a start point.
-    pub fn cell(&self, index: u64) -> usize {
-        self.offsets.partition_point(|&offset| offset <= index) - 1
-    }
-
-    /// The exponent of s at every term of the toric homotopy of a cell, equation
-    /// after equation: 0 at the ends of the cell's edges, elsewhere at least 1,
-    /// and 1 at one term at least (where the cell is not all there is).
-    pub fn weights(&self, cell: usize) -> Vec<f64> {
-        let cell = &self.subdivision.cells[cell];
-        let volume = i128::from(cell.volume);
-        // Volume times the height above the cell, exactly.
-        let mut heights = Vec::new();
-        for (i, support) in self.generic.supports.iter().enumerate() {
-            let height = |term: usize| {
-                let lifted = volume * i128::from(self.subdivision.lifting[i][term]);
-                let along: i128 = support[term]
-                    .iter()
-                    .zip(&cell.normal)
-                    .map(|(&a, &v)| i128::from(a) * v)
-                    .sum();
-                lifted + along
-            };
-            let base = height(cell.edges[i][0] as usize);
-            heights.extend((0..support.len()).map(|term| height(term) - base));
+        match &self.cells {
+            Cells::Whole { list, .. } => list.end,
+            Cells::Branched(branched) => branched.offsets.last().copied().unwrap_or(0),
         }
-        let least = heights.iter().copied().filter(|&h| h > 0).min();
-        let least = least.unwrap_or(1) as f64;
-        heights.iter().map(|&h| h as f64 / least).collect()
     }
 
-    /// The power q of `s = 1 - t^q` that spreads all weights over t: the number
-    /// of decimal places of the largest one, at most 4.
+    /// What `with` makes of the cell of a start point and of its number there; `None` where its
+    /// branch has other cells than were counted.
+    fn at<T>(&self, index: u64, with: impl FnOnce(&MixedCell, u64) -> T) -> Option<T> {
+        let held;
+        let list = match &self.cells {
+            Cells::Whole { list, .. } => list,
+            Cells::Branched(branched) => {
+                held = branched.list(index)?;
+                held.get()?.as_ref()?
+            }
+        };
+        let (cell, number) = list.locate(index)?;
+        Some(with(cell, number))
+    }
+
+    /// The weights of the cell of a start point (see [`MixedCell::weights`]).
+    pub fn weights(&self, index: u64) -> Vec<f64> {
+        let lifting = match &self.cells {
+            Cells::Whole { lifting, .. } => lifting,
+            Cells::Branched(branched) => branched.cells.lifting(),
+        };
+        let supports = &self.generic.supports;
+        let weights = self.at(index, |cell, _| cell.weights(supports, lifting));
+        // Where there is no cell there is no start point either.
+        weights.unwrap_or_else(|| vec![0.0; supports.iter().map(Vec::len).sum()])
+    }
+
+    /// The power that suits the weights of all cells (see [`time_exponent`]).
     pub fn time_exponent(&self) -> u32 {
-        let largest = (0..self.cell_count())
-            .flat_map(|cell| self.weights(cell))
-            .fold(1.0, f64::max);
-        (1..4)
-            .find(|&q| largest <= 10f64.powi(q))
-            .unwrap_or(4)
-            .unsigned_abs()
+        match &self.cells {
+            Cells::Whole { list, lifting } => {
+                let cells = list.cells.iter();
+                let weights = cells.flat_map(|cell| cell.weights(&self.generic.supports, lifting));
+                time_exponent(weights.fold(1.0, f64::max))
+            }
+            Cells::Branched(branched) => branched.time_exponent,
+        }
     }
 
-    /// Start point number `index`: a solution of the binomial system of its cell.
-    pub fn point(&self, index: u64) -> Vec<Complex64> {
-        let number = self.cell(index);
-        let cell = &self.subdivision.cells[number];
-        let n = self.generic.supports.len();
+    /// Start point number `index`: a solution of the binomial system of its cell; `None` where its
+    /// branch has other cells than were counted.
+    pub fn point(&self, index: u64) -> Option<Vec<Complex64>> {
+        self.at(index, |cell, number| self.generic.point(cell, number))
+    }
+}
+
+impl GenericSystem {
+    /// Solution number `number` of the binomial system of a mixed cell.
+    fn point(&self, cell: &MixedCell, number: u64) -> Vec<Complex64> {
+        let n = self.supports.len();
         let mut matrix = Vec::with_capacity(n);
         let mut right = Vec::with_capacity(n);
         for (i, &[a, b]) in cell.edges.iter().enumerate() {
             let (a, b) = (a as usize, b as usize);
-            let support = &self.generic.supports[i];
+            let support = &self.supports[i];
             matrix.push(
                 (0..n)
                     .map(|j| Integer::from(support[b][j] - support[a][j]))
                     .collect::<Vec<Integer>>(),
             );
             // x^(b-a) = -c_a / c_b.
-            let angles = &self.generic.angles[i];
+            let angles = &self.angles[i];
             right.push(angles[a].wrapping_sub(angles[b]).wrapping_add(1 << 127));
         }
         let transform = hermite(&mut matrix);
         // In z with x = z^transform the system is triangular: one root after the other.
-        let mut rest = index - self.offsets[number];
+        let mut rest = number;
         let mut z: Vec<Integer> = Vec::with_capacity(n);
         let turn = Integer::from(1) << 128;
         for i in 0..n {
@@ -340,17 +478,27 @@ mod tests {
     use crate::homotopies::HomotopyKind;
     use crate::stage::{PrepareError, PreparedStage};
     use crate::start_points::StartPoints;
-    use crate::tracker::outcome::PathOutcome;
+    use crate::start_systems::polyhedral::branches::BranchCount;
+    use crate::start_systems::polyhedral::counting::CountingStage;
+    use crate::tracker::outcome::{Failure, PathOutcome};
     use crate::tracker::settings::Settings;
     use crate::work::{Stage, StageId, Work};
     use cognate_systems::named::cyclic;
 
     fn toric(system: &System, count: u64) -> Result<PreparedStage, PrepareError> {
+        in_branches(system, count, None)
+    }
+
+    fn in_branches(
+        system: &System,
+        count: u64,
+        branches: Option<CellBranches>,
+    ) -> Result<PreparedStage, PrepareError> {
         let stage = Stage {
             id: StageId(0),
             work: Work::Track,
             homotopy: HomotopyKind::Toric,
-            start_points: StartPoints::MixedCells { count },
+            start_points: StartPoints::MixedCells { count, branches },
             settings: Settings::default(),
             seed: 4,
             attempt: 0,
@@ -369,6 +517,104 @@ mod tests {
             again.extend(stage.track(33..70, width));
             assert_eq!(again, all, "width {width}");
         }
+    }
+
+    /// What workers find of cyclic-5 by seed 4, as in `toric`.
+    fn counted(system: &System) -> CellBranches {
+        let stage = Stage {
+            id: StageId(0),
+            work: Work::CountMixedCells,
+            homotopy: HomotopyKind::Toric,
+            start_points: StartPoints::MixedCells {
+                count: 0,
+                branches: Some(CellBranches::uncounted(0)),
+            },
+            settings: Settings::default(),
+            seed: 4,
+            attempt: 0,
+        };
+        assert!(PreparedStage::new(system, &stage, &|_| None).is_err());
+        let counting = CountingStage::new(system, &stage).expect("a stage that counts");
+        let mut counted = CellBranches::uncounted(0);
+        for (branch, result) in (0..).zip(counting.run(0..counting.items())) {
+            assert_eq!(result.origin.0, branch);
+            let Some(BranchCount::Counted(cells)) = result.mixed_cells else {
+                panic!("{result:?}");
+            };
+            counted.volumes.push(cells.volume);
+            counted.time_exponent = counted.time_exponent.max(cells.time_exponent);
+        }
+        assert!(counted.is_sound(70));
+        counted
+    }
+
+    #[test]
+    fn paths_from_branches_are_the_same_at_every_width_and_end_regular() {
+        let system = cyclic(5).system;
+        let counted = counted(&system);
+        let stage = in_branches(&system, 70, Some(counted.clone())).expect("a stage");
+        let all = stage.track(0..70, 8);
+        assert!(all.iter().all(|r| r.outcome == PathOutcome::Regular));
+        for width in [1, 16] {
+            // The later ones first, and from nothing.
+            let stage = in_branches(&system, 70, Some(counted.clone())).expect("a stage");
+            let late = stage.track(33..70, width);
+            let mut again = stage.track(0..33, width);
+            again.extend(late);
+            assert_eq!(again, all, "width {width}");
+        }
+    }
+
+    #[test]
+    fn branches_with_other_cells_than_were_counted_give_no_start_points() {
+        let system = cyclic(5).system;
+        let mut counted = counted(&system);
+        // A path of one branch is said to be of another.
+        let full = counted.volumes.iter().position(|&volume| volume > 0);
+        let empty = counted.volumes.iter().position(|&volume| volume == 0);
+        counted.volumes[full.expect("there are cells")] -= 1;
+        counted.volumes[empty.expect("there are few cells")] += 1;
+        let stage = in_branches(&system, 70, Some(counted)).expect("the sum is right");
+        let results = stage.track(0..70, 8);
+        let lost = PathOutcome::Failed(Failure::InvalidStartPoint);
+        let lost = results.iter().filter(|r| r.outcome == lost).count();
+        assert!((2..70).contains(&lost), "{lost}");
+    }
+
+    #[test]
+    fn branches_make_room_for_one_another() {
+        let supports = vec![vec![vec![0, 0], vec![1, 0]], vec![vec![0, 0], vec![0, 1]]];
+        let cells = BranchedCells::new(&supports, 0, 0).ok().flatten();
+        let held = |branch: u64, size: usize| {
+            let cell = MixedCell {
+                edges: vec![[0; 2]; 2],
+                volume: 1,
+                normal: vec![0; 2],
+            };
+            let list = Held::default();
+            let _ = list.set(Some(CellList::new(vec![cell; size], 0)));
+            (branch, list)
+        };
+        let branched = Branched {
+            cells: cells.expect("a generic lifting"),
+            offsets: vec![0],
+            time_exponent: 1,
+            held: Mutex::new(vec![held(0, 90), held(1, 1), held(2, 90), held(3, 1)]),
+        };
+        let of_hundred = held(0, 100)
+            .1
+            .get()
+            .and_then(Option::as_ref)
+            .map(CellList::size);
+        let most = of_hundred.expect("a list");
+        branched.make_room(most);
+        let kept = |branched: &Branched| -> Vec<u64> {
+            branched.lock().iter().map(|(branch, _)| *branch).collect()
+        };
+        assert_eq!(kept(&branched), [1, 2, 3]);
+        branched.lock().push(held(4, 200));
+        branched.make_room(most);
+        assert_eq!(kept(&branched), [4]);
     }
 
     #[test]
@@ -391,9 +637,9 @@ mod tests {
         let coefficients: Vec<Complex64> = start.generic.coefficients().collect();
         let mut all: Vec<Vec<Complex64>> = Vec::new();
         for index in 0..start.count() {
-            let x = start.point(index);
-            let cell = start.cell(index);
-            let weights = start.weights(cell);
+            let x = start.point(index).expect("it is in a cell");
+            let cell = start.at(index, |cell, _| cell.clone());
+            let weights = start.weights(index);
             let mut k = 0;
             for support in &start.generic.supports {
                 let mut sum = Complex64::default();
@@ -418,7 +664,8 @@ mod tests {
                 y.iter().zip(&x).map(|(a, b)| (a - b).norm_sqr()).sum()
             };
             for (other, y) in all.iter().enumerate() {
-                assert!(start.cell(other as u64) != cell || distance(y) > 1e-3);
+                let same = start.at(other as u64, |cell, _| cell.clone()) == cell;
+                assert!(!same || distance(y) > 1e-3);
             }
             all.push(x);
         }

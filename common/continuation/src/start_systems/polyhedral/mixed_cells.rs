@@ -6,18 +6,17 @@
 //! one or two on the other side. The supports take the place of simplices one
 //! after the other (regeneration): while support k does, the corners of its
 //! simplex rise from below everything to above everything. All of it in exact
-//! integers, cell by cell, depth first, without a memory of other cells.
+//! integers, cell by cell, depth first, without a memory of other cells; so the
+//! enumeration can be cut into parts (see `branches`).
 
 use super::exact::Exact;
 use cognate_numeric::random::{Purpose, RandomStream};
 use rug::Integer;
 
-/// Liftings are below this.
+/// Liftings are below this where all cells are enumerated at once.
 const LIFTING_RANGE: u64 = 1 << 20;
-/// Liftings of the simplices' corners at the beginning are below four times this.
-const CORNER_RANGE: u64 = 1 << 18;
 /// Liftings that may turn out not to be generic before this is given up.
-const MOST_LIFTINGS: u64 = 20;
+pub const MOST_LIFTINGS: u32 = 20;
 /// Exponents above this are not taken.
 const MOST_EXPONENT: i64 = 1 << 20;
 
@@ -65,7 +64,8 @@ pub enum MixedCellsError {
 }
 
 /// What ends an enumeration early.
-enum Stop {
+#[derive(Debug)]
+pub(super) enum Stop {
     /// Two points came down at once: the lifting is not generic.
     Tie,
     /// A number outgrew its type.
@@ -82,31 +82,10 @@ pub fn mixed_cells(
     seed: u64,
     operations: u64,
 ) -> Result<MixedSubdivision, MixedCellsError> {
-    let n = supports.len();
-    let fits = |point: &Vec<i64>| point.len() == n;
-    if n == 0 || supports.iter().any(|s| s.is_empty() || !s.iter().all(fits)) {
-        return Err(MixedCellsError::Shape);
-    }
-    let large = |&e: &i64| !(-MOST_EXPONENT..=MOST_EXPONENT).contains(&e);
-    if supports.iter().flatten().flatten().any(large) {
-        return Err(MixedCellsError::Exponents);
-    }
+    check(supports)?;
     let mut left = operations;
     for attempt in 0..MOST_LIFTINGS {
-        let lifting: Vec<Vec<i64>> = supports
-            .iter()
-            .enumerate()
-            .map(|(i, support)| {
-                let index = attempt << 32 | i as u64;
-                let mut stream = RandomStream::new(seed, Purpose::Lifting, index);
-                support
-                    .iter()
-                    .map(|_| stream.below(LIFTING_RANGE) as i64)
-                    .collect()
-            })
-            .collect();
-        let stream = RandomStream::new(seed, Purpose::Lifting, attempt << 32 | 0xffff_ffff);
-        let tuple = Tuple::new(supports, &lifting, stream);
+        let (lifting, tuple) = lifted(supports, seed, attempt, LIFTING_RANGE);
         let mut found = tuple.enumerate::<i64>(&mut left);
         if matches!(found, Err(Stop::Overflow)) {
             found = tuple.enumerate::<i128>(&mut left);
@@ -134,6 +113,69 @@ pub fn mixed_cells(
     Err(MixedCellsError::NoLifting)
 }
 
+/// Whether these are as many supports as variables, none empty, with exponents in range.
+pub(super) fn check(supports: &[Vec<Vec<i64>>]) -> Result<(), MixedCellsError> {
+    let n = supports.len();
+    let fits = |point: &Vec<i64>| point.len() == n;
+    if n == 0 || supports.iter().any(|s| s.is_empty() || !s.iter().all(fits)) {
+        return Err(MixedCellsError::Shape);
+    }
+    let large = |&e: &i64| !(-MOST_EXPONENT..=MOST_EXPONENT).contains(&e);
+    if supports.iter().flatten().flatten().any(large) {
+        return Err(MixedCellsError::Exponents);
+    }
+    Ok(())
+}
+
+/// A random lifting below `range`, of which so many before had ties: `lifting[support][place]`, and
+/// the supports with it.
+pub(super) fn lifted(
+    supports: &[Vec<Vec<i64>>],
+    seed: u64,
+    attempt: u32,
+    range: u64,
+) -> (Vec<Vec<i64>>, Tuple) {
+    let attempt = u64::from(attempt) << 32;
+    let lifting: Vec<Vec<i64>> = supports
+        .iter()
+        .enumerate()
+        .map(|(i, support)| {
+            let mut stream = RandomStream::new(seed, Purpose::Lifting, attempt | i as u64);
+            support.iter().map(|_| stream.below(range) as i64).collect()
+        })
+        .collect();
+    let stream = RandomStream::new(seed, Purpose::Lifting, attempt | 0xffff_ffff);
+    let tuple = Tuple::new(supports, &lifting, range, stream);
+    (lifting, tuple)
+}
+
+impl MixedCell {
+    /// The exponent of s at every term of the toric homotopy of this cell, equation after
+    /// equation: 0 at the ends of the cell's edges, elsewhere at least 1, and 1 at one term at
+    /// least (where the cell is not all there is).
+    pub fn weights(&self, supports: &[Vec<Vec<i64>>], lifting: &[Vec<i64>]) -> Vec<f64> {
+        let volume = i128::from(self.volume);
+        // Volume times the height above the cell, exactly.
+        let mut heights = Vec::new();
+        for ((support, lifting), edge) in supports.iter().zip(lifting).zip(&self.edges) {
+            let height = |term: usize| {
+                let lifted = volume * i128::from(lifting[term]);
+                let along: i128 = support[term]
+                    .iter()
+                    .zip(&self.normal)
+                    .map(|(&a, &v)| i128::from(a) * v)
+                    .sum();
+                lifted + along
+            };
+            let base = height(edge[0] as usize);
+            heights.extend((0..support.len()).map(|term| height(term) - base));
+        }
+        let least = heights.iter().copied().filter(|&h| h > 0).min();
+        let least = least.unwrap_or(1) as f64;
+        heights.iter().map(|&h| h as f64 / least).collect()
+    }
+}
+
 /// Points of one support, one after the other, and their liftings.
 #[derive(Clone, Debug, Default)]
 struct Points {
@@ -153,6 +195,7 @@ impl Points {
 }
 
 /// A support in its three ages.
+#[derive(Debug)]
 struct Support {
     /// Where it stands among the supports that were given.
     given: usize,
@@ -167,17 +210,21 @@ struct Support {
 }
 
 /// Supports in the order in which they take the place of their simplices.
-struct Tuple {
-    n: usize,
+#[derive(Debug)]
+pub(super) struct Tuple {
+    pub(super) n: usize,
     supports: Vec<Support>,
     /// Largest sum of the absolute coordinates of a difference of two points.
     reach: i64,
+    /// Liftings are below this.
+    range: i64,
 }
 
 /// A mixed cell while it is followed, of some stage.
-#[derive(Clone)]
-struct Cell<T> {
-    stage: usize,
+#[derive(Clone, Debug)]
+pub(super) struct Cell<T> {
+    /// How many supports have taken the place of their simplices.
+    pub(super) stage: usize,
     /// Places of the ends of the edges in the points of the stage.
     edges: Vec<[usize; 2]>,
     /// Determinant of the edges, positive.
@@ -186,8 +233,35 @@ struct Cell<T> {
     inverse: Vec<T>,
 }
 
+impl<T> Cell<T> {
+    /// The same in other, wider integers.
+    pub(super) fn widened<U: From<T>>(self) -> Cell<U> {
+        Cell {
+            stage: self.stage,
+            edges: self.edges,
+            volume: self.volume.into(),
+            inverse: self.inverse.into_iter().map(U::from).collect(),
+        }
+    }
+}
+
+/// What becomes of an open cell.
+pub(super) enum Followed<T> {
+    /// It went on, fell in two, or ended without a mixed cell.
+    Open(Option<Cell<T>>, Option<Cell<T>>),
+    /// It came to the end.
+    Mixed(MixedCell),
+}
+
 impl Tuple {
-    fn new(supports: &[Vec<Vec<i64>>], lifting: &[Vec<i64>], mut stream: RandomStream) -> Self {
+    pub(super) fn new(
+        supports: &[Vec<Vec<i64>>],
+        lifting: &[Vec<i64>],
+        range: u64,
+        mut stream: RandomStream,
+    ) -> Self {
+        // Liftings of the simplices' corners at the beginning are below four times this.
+        let corner_range = range / 4;
         let n = supports.len();
         let mut order: Vec<usize> = (0..n).collect();
         // Few points first: what they cut down is not carried along (cyclic-9 and
@@ -214,8 +288,8 @@ impl Tuple {
                 // the edges between them are the one cell of all simplices.
                 let mut corner = |j: Option<usize>| {
                     let low = j.is_none() || j == Some(place);
-                    let height = stream.below(CORNER_RANGE) as i64;
-                    height + if low { 0 } else { 2 * CORNER_RANGE as i64 }
+                    let height = stream.below(corner_range) as i64;
+                    height + if low { 0 } else { 2 * corner_range as i64 }
                 };
                 let heights: Vec<i64> = (0..=n).map(|j| corner(j.checked_sub(1))).collect();
                 let mut simplex = Points::default();
@@ -234,7 +308,12 @@ impl Tuple {
                 }
             })
             .collect();
-        Self { n, supports, reach }
+        Self {
+            n,
+            supports,
+            reach,
+            range: range as i64,
+        }
     }
 
     fn points(&self, support: usize, stage: usize) -> &Points {
@@ -246,45 +325,75 @@ impl Tuple {
         }
     }
 
-    fn enumerate<T: Exact>(&self, operations: &mut u64) -> Result<Vec<MixedCell>, Stop> {
+    /// The one cell from which all others come.
+    pub(super) fn first<T: Exact>(&self) -> Result<Cell<T>, Stop> {
         let n = self.n;
-        let first = Cell {
+        self.enter(Cell {
             stage: 0,
             edges: (0..n).map(|i| [0, i + 1]).collect(),
             volume: T::from(1),
             inverse: (0..n * n)
                 .map(|k| T::from(i64::from(k / n == k % n)))
                 .collect(),
-        };
+        })
+    }
+
+    fn enumerate<T: Exact>(&self, operations: &mut u64) -> Result<Vec<MixedCell>, Stop> {
         let mut found = Vec::new();
-        let mut open = vec![self.enter(first)?];
+        self.below(self.first::<T>()?, operations, &mut |cell| {
+            found.push(cell);
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    /// All mixed cells that come from an open one, depth first.
+    pub(super) fn below<T: Exact>(
+        &self,
+        cell: Cell<T>,
+        operations: &mut u64,
+        found: &mut dyn FnMut(MixedCell) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        let mut open = vec![cell];
         while let Some(mut cell) = open.pop() {
             loop {
-                match self.next_event(&cell, operations)? {
-                    Some((support, place)) => {
-                        let (stays, other) = self.exchange(cell, support, place)?;
+                match self.follow(cell, operations)? {
+                    Followed::Open(stays, other) => {
                         open.extend(other);
                         match stays {
                             Some(next) => cell = next,
                             None => break,
                         }
                     }
-                    None => {
-                        let real = self.supports[cell.stage].points.lifting.len();
-                        if cell.edges[cell.stage].iter().any(|&place| place >= real) {
-                            break;
-                        }
-                        cell.stage += 1;
-                        if cell.stage == n {
-                            found.push(self.finished(&cell)?);
-                            break;
-                        }
-                        cell = self.enter(cell)?;
+                    Followed::Mixed(cell) => {
+                        found(cell)?;
+                        break;
                     }
                 }
             }
         }
-        Ok(found)
+        Ok(())
+    }
+
+    /// An open cell until its next event.
+    pub(super) fn follow<T: Exact>(
+        &self,
+        mut cell: Cell<T>,
+        operations: &mut u64,
+    ) -> Result<Followed<T>, Stop> {
+        if let Some((support, place)) = self.next_event(&cell, operations)? {
+            let (stays, other) = self.exchange(cell, support, place)?;
+            return Ok(Followed::Open(stays, other));
+        }
+        let real = self.supports[cell.stage].points.lifting.len();
+        if cell.edges[cell.stage].iter().any(|&place| place >= real) {
+            return Ok(Followed::Open(None, None));
+        }
+        cell.stage += 1;
+        if cell.stage == self.n {
+            return Ok(Followed::Mixed(self.finished(&cell)?));
+        }
+        Ok(Followed::Open(Some(self.enter(cell)?), None))
     }
 
     fn finished<T: Exact>(&self, cell: &Cell<T>) -> Result<MixedCell, Stop> {
@@ -372,7 +481,7 @@ impl Tuple {
         if moving.iter().any(|m| !m.leaves_room_for(self.reach)) {
             return Err(Stop::Overflow);
         }
-        if !cell.volume.leaves_room_for(8 * LIFTING_RANGE as i64) {
+        if !cell.volume.leaves_room_for(8 * self.range) {
             return Err(Stop::Overflow);
         }
         let height = |slopes: &[T], point: &[i64]| {
@@ -641,7 +750,7 @@ mod tests {
             })
             .collect();
         let stream = RandomStream::new(3, Purpose::Lifting, 0);
-        let tuple = Tuple::new(&supports, &lifting, stream);
+        let tuple = Tuple::new(&supports, &lifting, LIFTING_RANGE, stream);
         let mut left = u64::MAX;
         let sorted = |found: Result<Vec<MixedCell>, Stop>| {
             let Ok(mut cells) = found else {

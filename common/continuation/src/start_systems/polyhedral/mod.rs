@@ -3,6 +3,8 @@
 //! Bernstein, The number of roots of a system of equations (1975); Huber and
 //! Sturmfels, A polyhedral method for solving sparse polynomial systems (1995).
 
+pub mod branches;
+pub mod counting;
 mod exact;
 pub mod generic;
 pub mod mixed_cells;

@@ -1,0 +1,119 @@
+//! Jobs whose mixed cells are counted by workers: whoever dies, the answer is the same.
+
+use super::simulation::*;
+use super::*;
+use crate::chunks::sizing::Sizing;
+use crate::ledger::clock::ManualClock;
+use crate::ledger::faulty::FaultyLedger;
+use crate::ledger::memory::MemoryLedger;
+use crate::ledger::rows::JobRow;
+use cognate_continuation::start_systems::polyhedral::branches::BRANCHES;
+use cognate_protocol::submission::StartKind;
+
+/// Paths fail at first, so that some of any branch are tracked again.
+fn polyhedral() -> NewProblem {
+    let mut problem = problem();
+    problem.options.start = StartKind::Polyhedral;
+    problem
+}
+
+fn policy(most_items: u64) -> Policy {
+    Policy {
+        lease_ms: 3000,
+        steward_ms: 2000,
+        counting_operations: 10,
+        sizing: Sizing {
+            first_items: most_items,
+            most_items,
+            ..Sizing::default()
+        },
+        ..Policy::default()
+    }
+}
+
+fn cluster(policy: Policy, seed: u64, faults: bool) -> Cluster {
+    let clock = Arc::new(ManualClock::default());
+    let memory = Arc::new(MemoryLedger::new(clock.clone()));
+    let ledger: Arc<dyn Ledger> = match faults {
+        true => Arc::new(FaultyLedger::often(memory, seed, 30)),
+        false => memory,
+    };
+    Cluster::new(ledger, Store::in_memory(), clock, policy, seed)
+}
+
+/// One coordinator and one worker, who live.
+async fn quiet(cluster: &mut Cluster) -> JobRow {
+    cluster.start_coordinator();
+    cluster.start_worker();
+    cluster.submit(&polyhedral()).await;
+    cluster.drive(0).await;
+    let explained = cluster.coordinator(0).explain(cluster.job).await.unwrap();
+    let (text, json) = (explained.text, explained.json);
+    assert!(text.contains("; an unknown number of paths, "), "{text}");
+    assert!(json.contains("\"paths\":null"), "{json}");
+    for _ in 0..400 {
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        cluster.report(0, 0).await;
+        cluster.clock.advance_ms(500);
+        cluster.expire(0).await;
+    }
+    cluster.row().await
+}
+
+#[tokio::test]
+async fn mixed_cells_are_counted_whoever_dies() {
+    let mut lone = cluster(policy(1000), 1, false);
+    let reference = quiet(&mut lone).await;
+    assert_eq!(reference.state, JobState::Solved, "{:?}", reference.reason);
+    let coordinator = lone.coordinator(0);
+    let sets = coordinator.solutions(lone.job).await.unwrap();
+    assert_eq!((sets[0].paths.total, sets[0].paths.finite), (16, 16));
+    assert!(sets[0].paths.retracked > 0, "the test needs several stages");
+    let progress = coordinator.progress(lone.job).await.unwrap();
+    let counting = &progress.stages[0];
+    assert_eq!(counting.purpose, "counting mixed cells");
+    assert_eq!((counting.total, counting.accepted), (BRANCHES, BRANCHES));
+    let cells = counting.mixed_cells.expect("it counts them");
+    assert!((1..=16).contains(&cells), "{cells}");
+    assert!(progress.stages[1..].iter().all(|s| s.mixed_cells.is_none()));
+    // Branches are no paths that ended.
+    let tracked: u64 = progress.stages[1..].iter().map(|s| s.total).sum();
+    let outcomes = progress.outcomes;
+    let ended = outcomes.regular + outcomes.singular + outcomes.failed;
+    assert_eq!(ended, tracked);
+    let explained = coordinator.explain(lone.job).await.unwrap();
+    assert!(
+        explained.text.contains("; 16 paths, "),
+        "{}",
+        explained.text
+    );
+    for seed in 0..8 {
+        let policy = Policy {
+            // Here workers die by chance, and no branch is at fault.
+            suspicion_limit: 1000,
+            ..policy([40, 100, 300][seed as usize % 3])
+        };
+        let mut cluster = cluster(policy, seed, true);
+        for _ in 0..2 {
+            cluster.start_coordinator();
+            cluster.start_worker();
+        }
+        cluster.submit(&polyhedral()).await;
+        let row = cluster.run().await;
+        assert_eq!(row.state, JobState::Solved, "{seed}: {:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+    }
+}
+
+#[tokio::test]
+async fn a_branch_that_no_worker_survives_ends_the_job_by_name() {
+    let mut cluster = cluster(policy(400), 1, false);
+    cluster.deadly = Some(700);
+    let row = quiet(&mut cluster).await;
+    assert_eq!(row.state, JobState::Failed);
+    let reason = row.reason.expect("a reason");
+    assert!(reason.contains("branch 700 of the mixed cells"), "{reason}");
+    let explained = cluster.coordinator(0).explain(cluster.job).await.unwrap();
+    assert!(explained.text.contains(&reason), "{}", explained.text);
+}
