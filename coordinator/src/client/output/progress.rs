@@ -172,7 +172,7 @@ mod tests {
         };
         assert_eq!(
             plain_line(&counting, Duration::from_secs(12)),
-            "counting mixed cells, 7 cells so far: 12 of 1,024 parts, 1 parts/s, 12.0 s"
+            "counting mixed cells, 7 cells so far: 12 of 1,024 parts, 1.0 parts/s, 12.0 s"
         );
     }
 
