@@ -21,7 +21,7 @@ fn cyclic_7() -> Submission {
 /// A coordinator that counts hardly anything itself, and workers by their widths.
 fn cluster(widths: &[Option<u32>], chunk_paths: Option<u64>) -> Cluster {
     let mut cluster = Cluster::start(CoordinatorOptions {
-        counting_operations: Some(1000),
+        counting_operations: Some(10),
         chunk_paths,
         ..CoordinatorOptions::default()
     });
