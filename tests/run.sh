@@ -107,7 +107,7 @@ step "partitions: ten workers join and leave in networks whose wires are cut"
 target/release/partitions --seconds 20
 
 step "a large job: 160,000 made-up results through one coordinator"
-target/release/large_job --degree 20 --memory-mib 192
+target/release/large_job --degree 20 --memory-mib 256
 
 step "load: 60 small jobs by 6 clients beside one of 4096 paths"
 target/release/load
