@@ -83,9 +83,11 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                     Fate::Jumps(_, place) => Some(place),
                     Fate::At(_) | Fate::Fails | Fate::Hopeless => None,
                 }
-                .map(|place| BoundaryKey {
-                    numbers: [place; NUMBERS],
-                    margin: 1e-6,
+                .map(|place| {
+                    Box::new(BoundaryKey {
+                        numbers: [place; NUMBERS],
+                        margin: 1e-6,
+                    })
                 }),
                 ..PathResult::untracked(origin, stage.attempt, outcome, coordinates)
             }

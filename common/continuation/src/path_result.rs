@@ -140,8 +140,9 @@ pub struct PathResult {
     pub local_dimension: Option<LocalDimension>,
     /// The point with more digits, in a stage that sharpens.
     pub sharpening: Option<Sharpening>,
-    /// Where the path entered the endgame; `None` where it did not come so far.
-    pub boundary: Option<BoundaryKey>,
+    /// Where the path entered the endgame, for one that ends at a singular point or runs to infinity:
+    /// a regular end tells it from others.
+    pub boundary: Option<Box<BoundaryKey>>,
     /// The mixed cells of a branch, in a stage that counts them; its `origin` is the branch.
     pub mixed_cells: Option<BranchCount>,
 }

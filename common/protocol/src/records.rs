@@ -243,7 +243,7 @@ impl Writer {
                 });
             }
         }
-        if let Some(BoundaryKey { numbers, margin }) = boundary {
+        if let Some(BoundaryKey { numbers, margin }) = boundary.as_deref() {
             self.0.push(tag::BOUNDARY);
             numbers.iter().for_each(|&number| self.f64(number));
             self.f64(*margin);
@@ -504,7 +504,7 @@ impl<'a> Reader<'a> {
                     let margin = self.f64()?;
                     result.boundary = Some(BoundaryKey { numbers, margin })
                         .filter(BoundaryKey::is_sound)
-                        .map(Some)
+                        .map(|key| Some(Box::new(key)))
                         .ok_or_else(|| self.damaged("a key that is none"))?;
                 }
                 tag::MIXED_CELLS => {

@@ -55,7 +55,7 @@ pub fn boundary_key(result: &PathResult, verdict: Verdict) -> Option<BoundaryKey
         PathOutcome::Singular | PathOutcome::Diverging => verdict != Verdict::Failed,
         PathOutcome::Regular | PathOutcome::Failed(_) => false,
     };
-    result.boundary.filter(|_| kept)
+    result.boundary.as_deref().copied().filter(|_| kept)
 }
 
 /// Groups of two or more of these keys, by their places, that may be of one point.
@@ -187,10 +187,10 @@ mod tests {
         let shape = affine_shape(1);
         let tolerances = Tolerances::default();
         let at = |result, place: f64, margin| PathResult {
-            boundary: Some(BoundaryKey {
+            boundary: Some(Box::new(BoundaryKey {
                 numbers: [0.5, place, 1.5],
                 margin,
-            }),
+            })),
             ..result
         };
         let away = |path| singular(path, &[(1e-15, 0.0), (1.0, 0.0)], 2, &[1]);

@@ -409,10 +409,10 @@ mod tests {
             k as f64 / 1e3
         };
         PathResult {
-            boundary: Some(BoundaryKey {
+            boundary: Some(Box::new(BoundaryKey {
                 numbers: [0.25, place, 1.0],
                 margin: 1e-5,
-            }),
+            })),
             ..singular(k, &[(1e-15, 0.0), (1.0, 0.0)], 1, &[1])
         }
     }

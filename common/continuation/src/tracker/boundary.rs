@@ -81,7 +81,8 @@ mod tests {
         numbers.all(|(a_k, b_k)| (a_k - b_k).abs() <= a.margin + b.margin)
     }
 
-    fn keys(settings: Settings, attempt: u16) -> Vec<BoundaryKey> {
+    /// By path, those of paths that run to infinity.
+    fn keys(settings: Settings, attempt: u16) -> Vec<(u64, BoundaryKey)> {
         let stage = Stage {
             id: StageId(0),
             work: Work::Track,
@@ -96,8 +97,14 @@ mod tests {
             attempt,
         };
         let prepared = PreparedStage::new(&cyclic(5).system, &stage, &|_| None).unwrap();
-        let key = |result: PathResult| result.boundary.expect("every path comes there");
-        prepared.track(0..120, 8).into_iter().map(key).collect()
+        let key = |result: PathResult| Some((result.origin.0, *result.boundary?));
+        let keys: Vec<_> = prepared
+            .track(0..120, 8)
+            .into_iter()
+            .filter_map(key)
+            .collect();
+        assert_eq!(keys.len(), 50, "the others have regular ends");
+        keys
     }
 
     /// Whatever steps a path makes there, in whatever patch and arithmetic: its key is the same to
@@ -117,11 +124,11 @@ mod tests {
         ];
         let widest = first
             .iter()
-            .fold(0.0, |widest: f64, key| widest.max(key.margin));
+            .fold(0.0, |widest: f64, (_, key)| widest.max(key.margin));
         assert!(widest < 1e-3, "{widest}");
         for again in &others {
-            for (i, a) in first.iter().enumerate() {
-                for (j, b) in again.iter().enumerate() {
+            for (i, a) in &first {
+                for (j, b) in again {
                     assert_eq!(meet(a, b), i == j, "{i} {j}: {a:?} {b:?}");
                 }
             }

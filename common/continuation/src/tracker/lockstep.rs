@@ -971,7 +971,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
             certification: None,
             local_dimension: None,
             sharpening: None,
-            boundary: path.boundary,
+            boundary: path
+                .boundary
+                .filter(|_| matches!(outcome, PathOutcome::Singular | PathOutcome::Diverging))
+                .map(Box::new),
             mixed_cells: None,
         };
         self.ended.results.push((path.item, result));

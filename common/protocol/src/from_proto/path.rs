@@ -370,7 +370,11 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             .map(sharpening)
             .transpose()
             .map_err(|e| e.within("sharpening"))?,
-        boundary: m.boundary.as_ref().map(boundary_key).transpose()?,
+        boundary: m
+            .boundary
+            .as_ref()
+            .map(|key| boundary_key(key).map(Box::new))
+            .transpose()?,
         mixed_cells: m
             .mixed_cells
             .as_ref()

@@ -185,7 +185,7 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             margin: found.margin,
         }),
         sharpening: r.sharpening.as_ref().map(sharpening),
-        boundary: r.boundary.map(|key| v1::BoundaryKey {
+        boundary: r.boundary.as_ref().map(|key| v1::BoundaryKey {
             numbers: key.numbers.to_vec(),
             margin: key.margin,
         }),

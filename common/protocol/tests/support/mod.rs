@@ -453,9 +453,11 @@ impl Draw {
                 margin: draw.number().abs(),
             }),
             sharpening: None,
-            boundary: self.some(|draw| BoundaryKey {
-                numbers: std::array::from_fn(|_| draw.number()),
-                margin: draw.number().abs(),
+            boundary: self.some(|draw| {
+                Box::new(BoundaryKey {
+                    numbers: std::array::from_fn(|_| draw.number()),
+                    margin: draw.number().abs(),
+                })
             }),
             mixed_cells: None,
         }
