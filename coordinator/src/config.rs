@@ -14,7 +14,7 @@ pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7654";
 /// What a coordinator is told when it starts.
 #[derive(Clone, Debug)]
 pub struct Config {
-    /// Where it listens.
+    /// Addresses at which the coordinator listens.
     pub listen: Vec<ListenAddress>,
     /// Serve addresses beyond this machine without asking anybody who they are.
     pub insecure: bool,
@@ -22,7 +22,7 @@ pub struct Config {
     pub security: Security,
     /// Where metrics are read by HTTP: host and port; `None`: nowhere.
     pub metrics: Option<String>,
-    /// What remembers.
+    /// Database or file of the ledger.
     pub ledger: LedgerPlace,
     /// The folder of the results and all other objects; `None`: in memory.
     pub results: Option<PathBuf>,
@@ -138,7 +138,7 @@ impl fmt::Display for ListenAddress {
     }
 }
 
-/// What remembers.
+/// Place of the ledger: memory, a file of SQLite or a server of PostgreSQL.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LedgerPlace {
     /// A file.

@@ -1,7 +1,7 @@
 //! The server of paths and its command-line client.
 //!
 //! The life of a job:
-//! 1. A client's problem passes the door; [`jobs::planning`] finds how it is solved, or why not.
+//! 1. A client's problem is checked ([`intake`]); [`jobs::planning`] finds how it is solved, or why not.
 //! 2. Its row stands in the [`ledger`], its system and first state are objects in
 //!    [`results::store`]; only then the client has its id.
 //! 3. One coordinator takes the right to drive it ([`jobs::drive`]) and opens its first stage.

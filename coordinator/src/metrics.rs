@@ -1,6 +1,6 @@
 //! Metrics: what the ledger says, as Prometheus reads it. Counts only, no names of problems.
 //!
-//! A door of its own (`--metrics HOST:PORT`), plain HTTP: `GET /metrics`. Every answer is
+//! A listener of its own (`--metrics HOST:PORT`), plain HTTP: `GET /metrics`. Every answer is
 //! asked of the ledger, so that any coordinator over a database says the same.
 
 use crate::ledger::rows::JobState;

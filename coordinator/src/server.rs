@@ -1,7 +1,7 @@
 //! Server: the shell of a coordinator. Clock, sockets, tasks, signals.
 //!
 //! Everything that decides stands in `coordinator`; here it is given a ledger, a
-//! store and a clock, and doors by which calls come in.
+//! store and a clock, and listeners by which calls come in.
 
 use crate::api::Context;
 use crate::api::client_service::ClientService;
@@ -17,7 +17,7 @@ use crate::ledger::{Ledger, LedgerError};
 use crate::metrics;
 use crate::results::store::{Store, StoreError};
 use crate::transport::shared_memory::SharedMemoryDoor;
-use crate::transport::{self, Door, DoorError};
+use crate::transport::{self, ListenError, Listener};
 use cognate_protocol::DESCRIPTORS;
 use cognate_protocol::limits::MESSAGE_BYTES;
 use cognate_protocol::v1::client_api_server::ClientApiServer;
@@ -32,9 +32,9 @@ use tonic::service::Routes;
 /// Why a coordinator does not start.
 #[derive(Debug, thiserror::Error)]
 pub enum ServerError {
-    /// A door does not open.
+    /// A listener does not open.
     #[error(transparent)]
-    Door(#[from] DoorError),
+    Listener(#[from] ListenError),
     /// The ledger does not open.
     #[error("cannot open the ledger: {0}")]
     Ledger(#[from] LedgerError),
@@ -44,9 +44,9 @@ pub enum ServerError {
     /// The folder of the ledger cannot be made.
     #[error("cannot make the folder {folder}: {source}")]
     Folder {
-        /// Which.
+        /// Path of the folder.
         folder: String,
-        /// Why not.
+        /// What the system said.
         source: io::Error,
     },
     /// Signals cannot be listened to.
@@ -68,21 +68,21 @@ pub struct RunningServer {
 pub struct Server;
 
 impl Server {
-    /// Starts one as configured: opens the ledger and the store, binds all doors.
+    /// Starts one as configured: opens the ledger and the store, binds all listeners.
     pub async fn start(config: Config) -> Result<RunningServer, ServerError> {
         if config.listen.is_empty() {
-            return Err(DoorError::NoAddress.into());
+            return Err(ListenError::NoAddress.into());
         }
         // Doors first: whoever is refused here has touched nothing.
-        let mut doors = Vec::new();
+        let mut listeners = Vec::new();
         for address in &config.listen {
-            doors.push(Door::open(address, &config.security, config.insecure).await?);
+            listeners.push(Listener::open(address, &config.security, config.insecure).await?);
         }
         let metrics = match &config.metrics {
             None => None,
             Some(address) => {
                 let bound = tokio::net::TcpListener::bind(address).await;
-                Some(bound.map_err(|source| DoorError::Bind {
+                Some(bound.map_err(|source| ListenError::Bind {
                     address: ListenAddress::Tcp(address.clone()),
                     source,
                 })?)
@@ -117,7 +117,7 @@ impl Server {
         });
         let counted = Arc::clone(&ledger);
         let mut running = Self::serve(
-            doors,
+            listeners,
             memory,
             config.security,
             ledger,
@@ -136,9 +136,9 @@ impl Server {
         Ok(running)
     }
 
-    /// Starts one on parts that are there already, behind these doors.
+    /// Starts one on parts that are there already, behind these listeners.
     pub async fn serve(
-        doors: Vec<Door>,
+        listeners: Vec<Listener>,
         memory: Option<SharedMemoryDoor>,
         security: Security,
         ledger: Arc<dyn Ledger>,
@@ -157,10 +157,10 @@ impl Server {
         ));
         let routes = routes(&context).await;
         let mut tasks = JoinSet::new();
-        let addresses: Vec<_> = doors.iter().map(Door::address).collect();
-        for door in doors {
+        let addresses: Vec<_> = listeners.iter().map(Listener::address).collect();
+        for listener in listeners {
             tasks.spawn(listen(
-                door,
+                listener,
                 security.clone(),
                 routes.clone(),
                 context.clone(),
@@ -185,7 +185,7 @@ impl Server {
 }
 
 impl RunningServer {
-    /// The coordinator behind the doors.
+    /// The coordinator behind the listeners.
     pub fn coordinator(&self) -> &Arc<Coordinator> {
         &self.context.coordinator
     }
@@ -195,7 +195,7 @@ impl RunningServer {
         self.context.stopping.clone()
     }
 
-    /// Closes the door in shared memory: its workers go on by gRPC.
+    /// Closes the listener in shared memory: its workers go on by gRPC.
     pub fn close_shared_memory(&self) {
         self.memory.cancel();
     }
@@ -282,17 +282,17 @@ async fn routes(context: &Arc<Context>) -> Routes {
         .add_service(older.expect(sound))
 }
 
-/// Takes calls at one door until the service stops.
-async fn listen(door: Door, security: Security, routes: Routes, context: Arc<Context>) {
-    let address = door.address();
+/// Takes calls at one listener until the service stops.
+async fn listen(listener: Listener, security: Security, routes: Routes, context: Arc<Context>) {
+    let address = listener.address();
     let stopping = context.stopping.clone();
     let keep_alive = context.rules.keep_alive;
     let server = tonic::transport::Server::builder()
         .http2_keepalive_interval(Some(keep_alive))
         .http2_keepalive_timeout(Some(keep_alive))
         .tcp_keepalive(Some(keep_alive));
-    let served = match door {
-        Door::Tcp(listener) => {
+    let served = match listener {
+        Listener::Tcp(listener) => {
             let mut server = server.layer(Guard(security.tokens));
             let incoming = transport::tcp_connections(listener);
             server
@@ -300,7 +300,7 @@ async fn listen(door: Door, security: Security, routes: Routes, context: Arc<Con
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await
         }
-        Door::Tls(listener) => {
+        Listener::Tls(listener) => {
             let tls = security.tls.map(|tls| tls.config()).unwrap_or_default();
             let incoming = transport::tcp_connections(listener);
             match server.tls_config(tls) {
@@ -315,7 +315,7 @@ async fn listen(door: Door, security: Security, routes: Routes, context: Arc<Con
             }
         }
         // Its file is this user's alone: whoever opens it could read the tokens, too.
-        Door::Unix(socket) => {
+        Listener::Unix(socket) => {
             let mut server = server.layer(Guard(None));
             let incoming = transport::unix_connections(socket);
             server
@@ -325,6 +325,6 @@ async fn listen(door: Door, security: Security, routes: Routes, context: Arc<Con
         }
     };
     if let Err(error) = served {
-        tracing::error!(%address, %error, "a door has closed");
+        tracing::error!(%address, %error, "a listener has closed");
     }
 }

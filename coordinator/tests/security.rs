@@ -3,11 +3,11 @@
 use cognate_coordinator::api::security::{Security, Tls, Tokens};
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};
 use cognate_coordinator::server::{RunningServer, Server, ServerError};
-use cognate_coordinator::transport::DoorError;
+use cognate_coordinator::transport::ListenError;
 use cognate_protocol::v1;
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::v1::worker_api_client::WorkerApiClient;
-use cognate_worker::config::Address;
+use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::{CredentialFiles, Credentials, Role};
 use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
 use std::path::{Path, PathBuf};
@@ -113,7 +113,7 @@ async fn certificates_are_checked_on_both_sides() {
     let (server, address) = start(security).await;
     assert!(
         matches!(address, Address::Tls(_)),
-        "every TCP door speaks TLS"
+        "every TCP listener speaks TLS"
     );
     let with = |authority: &str, own: Option<&str>| CredentialFiles {
         tls_ca: Some(at(authority)),
@@ -170,7 +170,7 @@ async fn beyond_loopback_callers_must_be_known() {
     let refused = start(anybody, "0.0.0.0:0").await.err().unwrap();
     let beyond = matches!(
         &refused,
-        ServerError::Door(DoorError::BeyondLoopback { .. })
+        ServerError::Listener(ListenError::BeyondLoopback { .. })
     );
     assert!(
         beyond && refused.to_string().contains("--token-file"),

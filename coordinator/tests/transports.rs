@@ -245,7 +245,7 @@ async fn many_calls_at_once_are_all_answered() {
 async fn where_shared_memory_ends_calls_go_on_by_grpc() {
     let house = house().await;
     let mut worker = worker(&house, "one", TransportChoice::SharedMemory).await;
-    // The door in shared memory closes; the others stay open.
+    // The listener in shared memory closes; the others stay open.
     house.server.close_shared_memory();
     let begin = Instant::now();
     while worker.way.by_shared_memory() {

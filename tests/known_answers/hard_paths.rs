@@ -8,7 +8,7 @@ use cognate_algorithms::PlanOptions;
 use cognate_algorithms::plan::StartChoice;
 use cognate_systems::named::{eco, katsura, reimer};
 
-/// By total degree, two to four of its 162 paths come so near to others (1e-14 and less, half-way,
+/// By total degree, at most four of its 162 paths come so near to others (1e-14 and less, half-way,
 /// where they are larger than 1e14) that they take too many steps with hundreds of bits. Every one
 /// of them must be named, and the 16 solutions must all be there.
 #[test]
@@ -24,7 +24,7 @@ fn eco_6_names_every_path_that_it_does_not_settle() {
         assert_eq!((paths.total, paths.sum()), (162, 162), "seed {seed}");
         assert_eq!(counts.nonsingular, 16, "seed {seed}");
         assert_eq!(sets[0].failed.len() as u64, paths.failed, "seed {seed}");
-        assert!(paths.failed <= 6, "seed {seed}: {} failed", paths.failed);
+        assert!(paths.failed <= 4, "seed {seed}: {} failed", paths.failed);
         assert_eq!(sets[0].settled(), paths.failed == 0, "seed {seed}");
     }
 }

@@ -1,3 +1,4 @@
 //! Properties that hold for whole crates together.
 
-mod tracking;
+mod purity;
+mod subject;

@@ -4,6 +4,7 @@ use crate::worker_lost::{nervous, problem, quiet_answer, slow_worker};
 use cognate_tests::client::{accepted, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::processes::until;
+use cognate_tests::skip::skip;
 
 /// Whether the coordinator offers shared memory here; where not, why is printed.
 fn offered(cluster: &Cluster) -> bool {
@@ -11,7 +12,7 @@ fn offered(cluster: &Cluster) -> bool {
     match log.lines().find(|line| line.contains("no shared memory")) {
         None => true,
         Some(line) => {
-            println!("skipped: {line}");
+            skip(line);
             false
         }
     }

@@ -1,5 +1,6 @@
 //! Database: a PostgreSQL server of one test, which may be killed.
 
+use crate::skip::skip;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -22,7 +23,7 @@ impl Database {
         match database.tell("start") {
             Some(0) => Some(database),
             Some(77) => {
-                println!("skipped: PostgreSQL is not installed; tests/run.sh installs it");
+                skip("PostgreSQL is not installed; tests/run.sh installs it");
                 None
             }
             code => panic!("PostgreSQL did not start: {code:?}"),

@@ -13,5 +13,6 @@ pub mod measures;
 pub mod namespaces;
 pub mod processes;
 pub mod six_revolute;
+pub mod skip;
 pub mod subjects;
 pub mod systems;

@@ -2,6 +2,7 @@
 //!
 //! Linux only, and only where this user may make them; else a test is skipped and says why.
 
+use crate::skip::skip;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -28,7 +29,7 @@ impl SmallDisk {
         let mut holder = match holder {
             Ok(holder) => holder,
             Err(error) => {
-                println!("skipped: no small file system: unshare: {error}");
+                skip(&format!("no small file system: unshare: {error}"));
                 return None;
             }
         };
@@ -46,10 +47,10 @@ impl SmallDisk {
             |e| e.to_string(),
             |o| String::from_utf8_lossy(&o.stderr).into(),
         );
-        println!(
-            "skipped: no small file system for this user: {}",
+        skip(&format!(
+            "no small file system for this user: {}",
             told.trim()
-        );
+        ));
         None
     }
 
@@ -125,7 +126,7 @@ impl Network {
         match network.make() {
             Ok(()) => Some(network),
             Err(why) => {
-                println!("skipped: no networks for this user: {why}");
+                skip(&format!("no networks for this user: {why}"));
                 None
             }
         }

@@ -123,7 +123,7 @@ impl ChunkRunner {
         })
     }
 
-    /// How many threads track.
+    /// Number of threads that track.
     pub fn threads(&self) -> usize {
         self.threads
     }

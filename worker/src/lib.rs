@@ -11,6 +11,7 @@
 pub mod chunk_runner;
 pub mod command;
 pub mod config;
+pub mod log;
 pub mod machine;
 pub mod problem_cache;
 pub mod reports;

@@ -4,7 +4,6 @@
 use clap::Parser;
 use cognate_worker::config::Arguments;
 use std::process::ExitCode;
-use tracing_subscriber::EnvFilter;
 
 /// Tracks paths for a coordinator.
 #[derive(Parser)]
@@ -15,11 +14,7 @@ struct Command {
 }
 
 fn main() -> ExitCode {
-    let filter = EnvFilter::try_from_env("RUST_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .init();
+    cognate_worker::log::to_standard_error();
     let command = Command::parse();
     ExitCode::from(cognate_worker::command::execute(command.arguments))
 }

@@ -1,6 +1,6 @@
-//! Reports: finished chunks, kept and sent again until the coordinator has given a verdict.
+//! Reports: finished chunks, kept and sent again until the coordinator has given a receipt.
 //!
-//! A chunk's results leave this list only by a verdict, so that no result is lost
+//! A chunk's results leave this list only by a receipt, so that no result is lost
 //! with a reply; whether a late report still counts is the coordinator's decision.
 
 use crate::retry::{Backoff, Moment, Retry};
@@ -8,27 +8,12 @@ use crate::transport::LeaseId;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What the coordinator said about a report. After each of these it is not sent again.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// It is durable now.
-    Accepted,
-    /// It was durable already, with the same results.
-    AlreadyAccepted,
-    /// The lease was another worker's by then, or the job had ended.
-    Stale,
-    /// Other results are there for the same lease: one of two executions is wrong.
-    HashDiffers,
-    /// The coordinator could not make sense of it.
-    Invalid(String),
-}
-
 struct Kept<C> {
     content: Arc<C>,
     retry: Retry,
 }
 
-/// Finished chunks without a verdict. `C` is what is sent.
+/// Finished chunks without a receipt. `C` is what is sent.
 pub struct Reports<C> {
     kept: BTreeMap<LeaseId, Kept<C>>,
 }
@@ -77,7 +62,7 @@ impl<C> Reports<C> {
         }
     }
 
-    /// When the next one is to be sent.
+    /// Time at which the next report is to be sent; `None` where none is kept.
     pub fn due_at(&self) -> Option<Moment> {
         self.kept
             .values()
@@ -85,12 +70,12 @@ impl<C> Reports<C> {
             .min()
     }
 
-    /// How many are kept.
+    /// Number of reports that are kept.
     pub fn len(&self) -> usize {
         self.kept.len()
     }
 
-    /// True when every report has its verdict.
+    /// True when every report has its receipt.
     pub fn is_empty(&self) -> bool {
         self.kept.is_empty()
     }
@@ -108,7 +93,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_report_is_kept_until_its_verdict() {
+    fn a_report_is_kept_until_its_receipt() {
         let backoff = Backoff::default();
         let mut now = Moment::default();
         let mut reports = Reports::default();
@@ -135,7 +120,7 @@ mod tests {
         assert!(reports.answered(&lease(2)));
         assert!(
             !reports.answered(&lease(2)),
-            "a second verdict changes nothing"
+            "a second receipt changes nothing"
         );
         assert!(reports.is_empty());
     }

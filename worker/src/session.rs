@@ -3,9 +3,9 @@
 //! Pure: inputs and the time come in, commands go out; no socket, clock or
 //! thread. The shell (`shell.rs`) carries the commands out.
 
-use crate::reports::{Reports, Verdict};
+use crate::reports::Reports;
 use crate::retry::{Backoff, Moment, Retry};
-use crate::transport::{GiveBack, LeaseId, Renewal};
+use crate::transport::{GiveBack, LeaseId, Receipt, Renewal};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use std::time::Duration;
 pub struct Limits {
     /// Chunks that may be unfinished at once.
     pub chunks_at_once: usize,
-    /// Finished chunks that may wait for their verdict before pulling stops.
+    /// Finished chunks that may wait for their receipt before pulling stops.
     pub unacknowledged: usize,
     /// How long a pull may wait at the coordinator.
     pub poll: Duration,
@@ -38,7 +38,7 @@ pub struct Limits {
 /// A lease as it came: it ends `lasts` after the coordinator granted it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grant {
-    /// Its name.
+    /// Lease of the chunk.
     pub lease: LeaseId,
     /// How long it lasts from the moment of granting.
     pub lasts: Duration,
@@ -64,7 +64,7 @@ pub enum Input<C> {
     /// A chunk cannot be tracked here, and why.
     Untrackable(LeaseId, String),
     /// A report was answered.
-    Reported(LeaseId, Verdict),
+    Reported(LeaseId, Receipt),
     /// A report was not answered.
     ReportFailed(LeaseId),
     /// A chunk was given back.
@@ -84,7 +84,7 @@ pub enum Command<C> {
     Pull {
         /// Number of the pull; the same after one without an answer.
         sequence: u64,
-        /// How many chunks.
+        /// Number of chunks that there is room for.
         free: usize,
         /// How long the coordinator may wait for some.
         wait: Duration,
@@ -110,9 +110,9 @@ pub enum Command<C> {
 /// Why a worker ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// It was told to.
+    /// A signal told the worker to stop.
     Stopped,
-    /// Its wall time is over.
+    /// The worker's wall time is over.
     WallTime,
     /// It had nothing to do for too long.
     Idle,
@@ -130,7 +130,7 @@ enum Step {
     Waiting,
     /// On the threads.
     Tracking,
-    /// Finished; `Reports` keeps it. The lease is renewed until the verdict, or until it is lost.
+    /// Finished; `Reports` keeps it. The lease is renewed until the receipt, or until it is lost.
     Reporting,
     /// On its way back.
     GivingBack(GiveBack, Retry),
@@ -269,12 +269,12 @@ impl<C> Session<C> {
                     held.step = Step::GivingBack(GiveBack::Failed(why), Retry::default());
                 }
             }
-            Input::Reported(lease, verdict) => {
+            Input::Reported(lease, receipt) => {
                 self.answered();
                 self.reports.answered(&lease);
-                match (verdict, self.held.get_mut(&lease)) {
+                match (receipt, self.held.get_mut(&lease)) {
                     // The chunk is still leased, and its results are of no use: a failure of the chunk.
-                    (Verdict::Invalid(why), Some(held)) => {
+                    (Receipt::Invalid(why), Some(held)) => {
                         held.step = Step::GivingBack(GiveBack::Failed(why), Retry::default());
                     }
                     _ => {
@@ -370,7 +370,7 @@ impl<C> Session<C> {
         moments.into_iter().flatten().min()
     }
 
-    /// How many chunks are held, finished ones without a verdict among them.
+    /// How many chunks are held, finished ones without a receipt among them.
     pub fn held(&self) -> usize {
         self.held.len()
     }

@@ -7,12 +7,11 @@ use crate::chunk_runner::{Abandonment, ChunkEnd, ChunkRunner, TrackedChunk};
 use crate::config::Config;
 use crate::machine::{Machine, UnfitMachine};
 use crate::problem_cache::{PrepareFailure, ProblemCache};
-use crate::reports::Verdict;
 use crate::retry::{Backoff, Moment};
 use crate::session::{Command, Ending, Grant, Input, Limits, Session};
 use crate::transport::connect::UnusableAddress;
 use crate::transport::grpc::Grpc;
-use crate::transport::{Announcement, Lease, LeaseId, Transport, TransportError};
+use crate::transport::{Announcement, Lease, LeaseId, Receipt, Transport, TransportError};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -186,17 +185,17 @@ impl Shell {
             });
         }
         match input {
-            Input::Reported(lease, verdict) => {
+            Input::Reported(lease, receipt) => {
                 self.leases.remove(lease);
-                match verdict {
-                    Verdict::Accepted | Verdict::AlreadyAccepted => {
+                match receipt {
+                    Receipt::Accepted | Receipt::AlreadyAccepted => {
                         tracing::debug!(%lease, "accepted");
                     }
-                    Verdict::Stale => tracing::warn!(%lease, "reported too late; dropped"),
-                    Verdict::HashDiffers => {
+                    Receipt::Stale => tracing::warn!(%lease, "reported too late; dropped"),
+                    Receipt::HashDiffers => {
                         tracing::error!(%lease, "other results are there for this lease");
                     }
-                    Verdict::Invalid(why) => tracing::error!(%lease, why, "report refused"),
+                    Receipt::Invalid(why) => tracing::error!(%lease, why, "report refused"),
                 }
             }
             Input::GaveBack(lease) => {
@@ -251,9 +250,9 @@ impl Shell {
             }),
             Command::Report(lease, chunk) => self.call(async move {
                 match transport.report(&lease, &chunk).await {
-                    Ok(verdict) => Input::Reported(lease, verdict),
+                    Ok(receipt) => Input::Reported(lease, receipt),
                     Err(TransportError::Refused(why)) => {
-                        Input::Reported(lease, Verdict::Invalid(why))
+                        Input::Reported(lease, Receipt::Invalid(why))
                     }
                     Err(error) => {
                         tracing::warn!(%lease, %error, "not reported yet");

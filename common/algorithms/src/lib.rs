@@ -5,6 +5,25 @@
 //! feeds it from leases, a test from a loop ([`run_locally`]). [`plan`] makes
 //! one from a system and options; [`any_algorithm`] writes its state down and
 //! reads it back in another process.
+//!
+//! # Which method for what
+//!
+//! | method | finds | file |
+//! |---|---|---|
+//! | a start system | all isolated solutions of one system | [`zero_dimensional_solve`] |
+//! | mixed cells | the same, from a generic system with the same monomials | [`polyhedral_solve`] |
+//! | regeneration | all regular solutions, equation by equation; singular ones may be missed | [`regeneration_solve`] |
+//! | parameters | solutions of other members of a family, from those of one | [`parameter_solve`] |
+//! | monodromy | solutions of a generic member, from one of them, by loops | [`monodromy`] |
+//!
+//! Around any of these: [`sharpened_solve`] brings solutions to more digits, [`certified_solve`] proves
+//! them. Inside all of them: [`retried_stage`] tracks again what failed or met. Paths meet that end at one
+//! regular point, or that entered the endgame at one point; a jump also shows where turns around an end are no
+//! permutation.
+//!
+//! Loops of a monodromy solve end when many in a row bring nothing new, when an estimate says that none is missing
+//! ([`monodromy::estimate`]), or when a trace test says so ([`monodromy::trace`]): the points of a curve on parallel
+//! slices have a sum that moves on a line, and a part of them has not.
 #![forbid(unsafe_code)]
 
 pub mod any_algorithm;

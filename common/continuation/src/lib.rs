@@ -7,7 +7,66 @@
 //! [`asked_system`] holds it against all equations that are asked, [`local_dimension`] says
 //! whether it is isolated, [`sharpening`] brings it to more digits, [`certification`] proves what is
 //! there; these look at the [`points_at_targets`] of a stage. [`projection`] tells points apart by numbers.
-//! `examples/two_conics.rs` is a whole solve in thirty lines.
+//!
+//! # A tour: two conics meet in four points
+//!
+//! ```
+//! use cognate_continuation::homotopies::HomotopyKind;
+//! use cognate_continuation::stage::PreparedStage;
+//! use cognate_continuation::start_points::StartPoints;
+//! use cognate_continuation::tracker::outcome::PathOutcome;
+//! use cognate_continuation::tracker::settings::Settings;
+//! use cognate_continuation::work::{Stage, StageId, Work};
+//! use cognate_systems::{formats, polynomial};
+//!
+//! let text = "CONFIG END; INPUT variable_group x, y; function circle, hyperbola;
+//!             circle = x^2 + y^2 - 5; hyperbola = x*y - 2; END;";
+//! let system = formats::read("two conics", text.as_bytes())?.system;
+//! // A stage says what is asked; it is pure data and could be sent to a worker.
+//! let stage = Stage {
+//!     id: StageId(0),
+//!     work: Work::Track,
+//!     homotopy: HomotopyKind::StraightLine { parameters: Vec::new() },
+//!     start_points: StartPoints::TotalDegree { degrees: polynomial::degrees(&system)?.total },
+//!     settings: Settings::default(),
+//!     seed: 1,
+//!     attempt: 0,
+//! };
+//! let prepared = PreparedStage::new(&system, &stage, &|_| None)?;
+//! // Two quadrics have four paths; eight may be followed at once.
+//! let results = prepared.track(0..prepared.items(), 8);
+//! let mut solutions = Vec::new();
+//! for result in &results {
+//!     assert_eq!(result.outcome, PathOutcome::Regular);
+//!     // Ends are homogeneous: the first coordinate belongs to the affine chart.
+//!     let end = result.endpoint.to_double();
+//!     let (x, y) = (end[1] / end[0], end[2] / end[0]);
+//!     solutions.push((x.re.round() as i32, y.re.round() as i32));
+//! }
+//! solutions.sort();
+//! assert_eq!(solutions, [(-2, -1), (-1, -2), (1, 2), (2, 1)]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Homotopies and starts
+//!
+//! A homotopy is a program F(x; p) whose parameters p move ([`homotopies`]). Start points are made from their
+//! index where a formula exists ([`start_systems`]), and are stored points elsewhere ([`start_points`]):
+//!
+//! | start | points | homotopy |
+//! |---|---|---|
+//! | total degree, groups, linear products | by index | straight line to the start system |
+//! | mixed cells | by index, cell by cell | toric to a generic system, then straight line from it |
+//! | slices (regeneration) | stored, level by level | a slice moves, then a product becomes an equation |
+//! | solutions of another member of a family | stored | parameters |
+//! | the user's | stored | the user's own path variable |
+//!
+//! # Robust mode
+//!
+//! With `reach` above 0 ([`tracker::settings`]) Taylor series of the path show where it goes (by Padé
+//! approximants), where its nearest singularity lies, and how near the nearest other path is (Telen, Van Barel,
+//! Verschelde 2020). Steps stay clear of both. A step after which another path is too near is taken back. Paths
+//! that met are tracked again in this mode.
 #![forbid(unsafe_code)]
 
 pub mod asked_system;

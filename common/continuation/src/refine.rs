@@ -2,7 +2,7 @@
 
 use crate::chart::norm;
 use crate::homotopies::Homotopy;
-use cognate_numeric::lanes::dispatch::{Job, dispatch};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
 use cognate_numeric::linear_algebra::condition::condition_number;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
@@ -139,7 +139,7 @@ impl<'a, S: Real> Refiner<'a, S> {
     }
 
     fn newton(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {
-        dispatch(Newton {
+        dispatch_single(Newton {
             refiner: self,
             point,
             t,

@@ -32,6 +32,19 @@ pub enum Work {
     CountMixedCells,
 }
 
+impl Work {
+    /// True where each item is a path that is tracked, so that its outcome says how a path ended. The
+    /// items of all other kinds are points or branches, whose results carry an outcome of no meaning.
+    pub fn tracks_paths(self) -> bool {
+        match self {
+            Self::Track => true,
+            Self::Certify | Self::LocalDimension | Self::Sharpen { .. } | Self::CountMixedCells => {
+                false
+            }
+        }
+    }
+}
+
 /// One kind of work over the start points of one homotopy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {

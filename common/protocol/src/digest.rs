@@ -20,9 +20,9 @@ pub enum DamagedSystem {
     /// The encoding is broken.
     #[error("the encoded system is damaged at byte {at}: {what}")]
     Encoding {
-        /// Where reading stopped.
+        /// Byte at which reading stopped.
         at: usize,
-        /// What is wrong there.
+        /// What is wrong at that byte.
         what: &'static str,
     },
     /// It decodes, but to no system.

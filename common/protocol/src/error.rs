@@ -17,9 +17,9 @@ pub enum ProtocolError {
     Invalid {
         /// The field.
         field: String,
-        /// What stands there, shortened.
+        /// Value of the field, shortened.
         found: String,
-        /// What should stand there.
+        /// What the field may hold.
         expected: String,
     },
     /// There is more of something than is accepted.
@@ -27,9 +27,9 @@ pub enum ProtocolError {
     Limit {
         /// The field.
         field: String,
-        /// How much there is.
+        /// Number or size that the message has.
         found: u64,
-        /// What is counted.
+        /// What is counted: variables, bytes.
         what: &'static str,
         /// The limit's name.
         name: &'static str,

@@ -38,9 +38,9 @@ mod tag {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the object of path results is damaged at byte {at}: {what}")]
 pub struct DamagedRecords {
-    /// Where reading stopped.
+    /// Byte at which reading stopped.
     pub at: usize,
-    /// What is wrong there.
+    /// What is wrong at that byte.
     pub what: &'static str,
 }
 

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 pub struct Submission {
     /// What is to be solved.
     pub source: Source,
-    /// How.
+    /// Start, settings and closings of the solve.
     pub options: Options,
 }
 
@@ -23,7 +23,7 @@ pub enum Source {
     Text {
         /// The file's name, for messages.
         name: String,
-        /// Its content.
+        /// Bytes of the file.
         content: Vec<u8>,
     },
 }
@@ -31,7 +31,7 @@ pub enum Source {
 /// How a problem is to be solved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Which start system.
+    /// The start system that the client asked for; `Auto` lets the plan choose.
     pub start: StartKind,
     /// Variable groups by name, instead of those of the system.
     pub groups: Option<Vec<Vec<String>>>,
@@ -39,7 +39,7 @@ pub struct Options {
     pub conjugates: Vec<(String, String)>,
     /// Seed of everything random; `None`: from the problem's digest.
     pub seed: Option<u64>,
-    /// How paths are tracked.
+    /// Preset of the tracker, and the numbers that replace its own.
     pub settings: SettingsChoice,
     /// The arithmetic asked for.
     pub precision: PrecisionChoice,
@@ -70,7 +70,7 @@ pub struct Options {
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
 }
 
-/// Which start system.
+/// The start system that a client asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StartKind {
     /// The coordinator chooses.

@@ -24,7 +24,7 @@ use tonic::Status;
 /// Workers whose refusal is remembered.
 const REFUSALS: usize = 1000;
 
-/// What both services stand on.
+/// The coordinator, its limits and its rules of access, which both services use.
 pub struct Context {
     /// The coordinator.
     pub coordinator: Arc<Coordinator>,
@@ -32,7 +32,7 @@ pub struct Context {
     pub rules: Rules,
     /// Cancelled when the service is to stop: waiting calls return at once.
     pub stopping: CancellationToken,
-    /// The door in shared memory, where there is one; else the empty message.
+    /// The listener in shared memory, where there is one; else the empty message.
     pub shared_memory: v1::SharedMemory,
     /// Workers that get no work, and why.
     refused: Mutex<HashMap<WorkerId, String>>,

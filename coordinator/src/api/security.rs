@@ -133,7 +133,7 @@ impl Tokens {
     }
 }
 
-/// Stands before all services of a door.
+/// Stands before all services of a listener.
 #[derive(Clone, Debug)]
 pub struct Guard(pub Option<Tokens>);
 

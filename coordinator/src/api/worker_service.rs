@@ -138,7 +138,7 @@ fn verdict(answer: Result<Completion, ApiError>) -> Result<v1::ReportVerdict, Ap
     };
     match answer {
         // Whether others agree is not the worker's business.
-        Ok(Completion::Accepted | Completion::Witnessed) => {
+        Ok(Completion::Accepted | Completion::Unconfirmed) => {
             of(v1::Verdict::Accepted, String::new())
         }
         // That another worker was first is not the worker's business either.

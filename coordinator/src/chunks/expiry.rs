@@ -15,19 +15,19 @@ use num_complex::Complex64;
 
 /// What is done with a suspect.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Sentence {
-    /// It is cut into these pieces.
+pub enum SuspectAction {
+    /// Cut the chunk into these pieces.
     Split(Vec<Piece>),
     /// It is one path, and that path is named as failed.
-    Condemn,
+    FailItem,
 }
 
 /// What is done with a ready chunk whose suspicions have reached the limit.
-pub fn sentence(chunk: &ChunkRow, policy: &Policy) -> Sentence {
+pub fn suspect_action(chunk: &ChunkRow, policy: &Policy) -> SuspectAction {
     let ItemRange { first, last } = chunk.items;
     let items = chunk.items.len();
     if items <= 1 {
-        return Sentence::Condemn;
+        return SuspectAction::FailItem;
     }
     let pieces = policy.split_into.clamp(2, items);
     let cut = |k: u64| {
@@ -48,7 +48,7 @@ pub fn sentence(chunk: &ChunkRow, policy: &Policy) -> Sentence {
             alone: true,
         }
     };
-    Sentence::Split((0..pieces).map(piece).collect())
+    SuspectAction::Split((0..pieces).map(piece).collect())
 }
 
 /// The result of a path that no worker survived.
@@ -64,8 +64,8 @@ pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
 mod tests {
     use super::*;
     use crate::ledger::identity::{ChunkId, Epoch, JobId};
-    use crate::ledger::memory::make_up;
     use crate::ledger::rows::ChunkState;
+    use crate::ledger::rules::make_up;
     use cognate_continuation::work::StageId;
 
     fn chunk(first: u64, last: u64) -> ChunkRow {
@@ -87,7 +87,7 @@ mod tests {
     fn pieces_make_up_the_chunk() {
         for items in [2, 3, 7, 8, 9, 64, 1001] {
             let whole = chunk(5, 5 + items);
-            let Sentence::Split(pieces) = sentence(&whole, &Policy::default()) else {
+            let SuspectAction::Split(pieces) = suspect_action(&whole, &Policy::default()) else {
                 panic!("more than one path is split");
             };
             assert!(make_up(pieces.iter().map(|p| p.items), whole.items));
@@ -98,8 +98,8 @@ mod tests {
             }
         }
         assert_eq!(
-            sentence(&chunk(5, 6), &Policy::default()),
-            Sentence::Condemn
+            suspect_action(&chunk(5, 6), &Policy::default()),
+            SuspectAction::FailItem
         );
     }
 }

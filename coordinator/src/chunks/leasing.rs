@@ -35,7 +35,7 @@ pub struct Policy {
     /// Planning a polyhedral start counts mixed cells in at most so many operations, about one for each
     /// multiplication; what takes more is counted by workers. Default 2,000,000,000: a few seconds.
     pub counting_operations: u64,
-    /// How large chunks are.
+    /// Rule for the size of chunks.
     pub sizing: Sizing,
     /// When the last chunks of a stage are given to a second worker.
     pub speculation: Speculation,

@@ -5,7 +5,7 @@ use cognate_protocol::limits::{MESSAGE_BYTES, PIECE_BYTES};
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::{from_proto, v1};
 use cognate_solutions::solution::Solution;
-use cognate_worker::config::Address;
+use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::{Bearer, CredentialFiles, Credentials, Role, innermost};
 use std::time::Duration;
 use tonic::service::interceptor::InterceptedService;

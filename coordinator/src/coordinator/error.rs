@@ -29,7 +29,7 @@ pub enum CoordinatorError {
     NoResult {
         /// The job.
         job: JobId,
-        /// Its state.
+        /// State of the job.
         state: JobState,
         /// Why it failed or was cancelled.
         reason: Option<String>,
@@ -39,7 +39,7 @@ pub enum CoordinatorError {
     Report {
         /// The lease.
         lease: String,
-        /// What is wrong.
+        /// What is wrong with the report.
         what: String,
     },
     /// A job's record cannot be read.

@@ -46,7 +46,7 @@ use tokio::sync::Notify;
 /// Systems, stages and solutions that are kept decoded.
 const KEPT: usize = 64;
 
-/// A problem that has passed the door: the checked system and the resolved options.
+/// A problem that passed the checks: the system and the resolved options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewProblem {
     /// The system, with the groups and conjugates of the options.
@@ -78,7 +78,7 @@ pub struct Coordinator {
     policy: Policy,
     /// Something may be leased that could not be before.
     work: Notify,
-    /// Who watches which job.
+    /// Wakes those who watch a job when the job changes.
     changes: Changes,
     /// Jobs that this coordinator drives.
     drives: Mutex<HashMap<JobId, Arc<Notify>>>,
@@ -125,12 +125,12 @@ impl Coordinator {
         &self.policy
     }
 
-    /// Its ledger.
+    /// The ledger.
     pub fn ledger(&self) -> &dyn Ledger {
         &*self.ledger
     }
 
-    /// Its objects.
+    /// The store of objects.
     pub fn store(&self) -> &Store {
         &self.store
     }

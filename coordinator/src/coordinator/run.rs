@@ -1,7 +1,8 @@
 //! What a coordinator does by itself: drives jobs and takes back what fell silent.
 
 use super::{Coordinator, CoordinatorError};
-use crate::jobs::drive::{Drive, DriveError, Driven, Tools};
+use crate::jobs::drive::{Drive, Driven};
+use crate::jobs::tools::{DriveError, Tools};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::JobId;

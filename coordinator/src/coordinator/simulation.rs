@@ -4,7 +4,8 @@
 
 use super::{Coordinator, CoordinatorError, NewProblem, Pull, Report};
 use crate::chunks::leasing::Policy;
-use crate::jobs::drive::{Drive, Driven, Tools};
+use crate::jobs::drive::{Drive, Driven};
+use crate::jobs::tools::Tools;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;

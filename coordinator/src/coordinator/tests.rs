@@ -632,7 +632,7 @@ async fn a_panic_ends_the_job_and_not_the_service() {
         .collect();
     let (store, ledger) = (coordinator.store(), coordinator.ledger());
     let object = store
-        .put_results(lease.lease, lease.items, results, 1)
+        .put_results(stage.work, lease.lease, lease.items, results, 1)
         .await
         .unwrap();
     ledger.complete(lease.lease, object).await.unwrap();

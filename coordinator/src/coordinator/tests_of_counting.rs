@@ -1,4 +1,4 @@
-//! Jobs whose mixed cells are counted by workers: whoever dies, the answer is the same.
+//! What is counted on the way: mixed cells by workers, whoever dies; outcomes of paths and of nothing else.
 
 use super::simulation::*;
 use super::*;
@@ -6,8 +6,9 @@ use crate::chunks::sizing::Sizing;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::faulty::FaultyLedger;
 use crate::ledger::memory::MemoryLedger;
-use crate::ledger::rows::JobRow;
+use crate::ledger::rows::{JobRow, Outcomes};
 use cognate_continuation::start_systems::polyhedral::branches::BRANCHES;
+use cognate_continuation::work::Work;
 use cognate_protocol::submission::StartKind;
 
 /// Paths fail at first, so that some of any branch are tracked again.
@@ -51,6 +52,11 @@ async fn quiet(cluster: &mut Cluster) -> JobRow {
     let (text, json) = (explained.text, explained.json);
     assert!(text.contains("; an unknown number of paths, "), "{text}");
     assert!(json.contains("\"paths\":null"), "{json}");
+    run_alone(cluster).await
+}
+
+/// The only coordinator and its only worker go on; enough steps for every job here.
+async fn run_alone(cluster: &mut Cluster) -> JobRow {
     for _ in 0..400 {
         cluster.drive(0).await;
         cluster.pull(0, 0).await;
@@ -59,6 +65,55 @@ async fn quiet(cluster: &mut Cluster) -> JobRow {
         cluster.expire(0).await;
     }
     cluster.row().await
+}
+
+/// A finished job's progress counts the end of every tracked path, and of nothing else.
+async fn check_outcomes(cluster: &Cluster) -> Vec<Work> {
+    let stages = cluster.ledger.stages(cluster.job).await.unwrap();
+    let (mut kinds, mut tracked) = (Vec::new(), 0);
+    for row in &stages {
+        let work = cluster.store.stage(row.definition).await.unwrap().work;
+        let Outcomes {
+            regular,
+            singular,
+            failed,
+        } = row.outcomes;
+        let expected = if work == Work::Track { row.items } else { 0 };
+        assert_eq!(regular + singular + failed, expected, "{work:?}");
+        tracked += expected;
+        kinds.push(work);
+    }
+    let progress = cluster.coordinator(0).progress(cluster.job).await;
+    let outcomes = progress.unwrap().outcomes;
+    let ended = outcomes.regular + outcomes.singular + outcomes.failed;
+    assert_eq!(ended, tracked);
+    kinds
+}
+
+/// Two solutions are double, one path goes to infinity; the others are certified and sharpened. Questions
+/// of isolation were counted as singular paths once, sharpened points as regular ones.
+#[tokio::test]
+async fn only_tracked_paths_have_outcomes() {
+    let double = "variable_group x, y; function f, g;
+        f = (x - 1)^2*(x + 2*y - 3); g = y^3 - x*y + x - 2;";
+    let mut problem = problem_of(double, None);
+    problem.options.certify = true;
+    problem.options.digits = Some(30);
+    let mut lone = cluster(policy(1000), 1, false);
+    lone.start_coordinator();
+    lone.start_worker();
+    lone.submit(&problem).await;
+    let row = run_alone(&mut lone).await;
+    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    let kinds = check_outcomes(&lone).await;
+    for kind in [
+        Work::Track,
+        Work::Certify,
+        Work::LocalDimension,
+        Work::Sharpen { digits: 30 },
+    ] {
+        assert!(kinds.contains(&kind), "no stage of {kind:?} in {kinds:?}");
+    }
 }
 
 #[tokio::test]
@@ -77,11 +132,7 @@ async fn mixed_cells_are_counted_whoever_dies() {
     let cells = counting.mixed_cells.expect("it counts them");
     assert!((1..=16).contains(&cells), "{cells}");
     assert!(progress.stages[1..].iter().all(|s| s.mixed_cells.is_none()));
-    // Branches are no paths that ended.
-    let tracked: u64 = progress.stages[1..].iter().map(|s| s.total).sum();
-    let outcomes = progress.outcomes;
-    let ended = outcomes.regular + outcomes.singular + outcomes.failed;
-    assert_eq!(ended, tracked);
+    check_outcomes(&lone).await;
     let explained = coordinator.explain(lone.job).await.unwrap();
     assert!(
         explained.text.contains("; 16 paths, "),

@@ -3,8 +3,8 @@
 use super::{Coordinator, CoordinatorError};
 use crate::chunks::audit::is_audited;
 use crate::ledger::identity::{ItemRange, LeaseId, RequestId, WorkerId};
-use crate::ledger::memory::MOST_MICROS;
 use crate::ledger::rows::{Completion, GiveBack, Lease, LeaseRequest, Renewal, WorkerSeen};
+use crate::ledger::rules::MOST_MICROS;
 use crate::results::store::StoreError;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::Stage;
@@ -20,20 +20,20 @@ const POLL: Duration = Duration::from_secs(1);
 /// A worker asks for chunks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pull {
-    /// What it says about itself.
+    /// What the worker says about itself.
     pub worker: WorkerSeen,
     /// The same for a question that is sent again.
     pub request: RequestId,
     /// How many chunks it wants at most.
     pub slots: u32,
-    /// How long it waits for some.
+    /// How long the call waits until there is a chunk.
     pub wait: Duration,
 }
 
 /// What a worker found out about a chunk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Its lease.
+    /// Lease under which the chunk was done.
     pub lease: LeaseId,
     /// One result for each item, in order.
     pub results: Vec<PathResult>,
@@ -151,7 +151,7 @@ impl Coordinator {
         let cpu_micros = cpu_micros.min(MOST_MICROS);
         let object = match self
             .store
-            .put_results(lease, items, results, cpu_micros)
+            .put_results(stage.work, lease, items, results, cpu_micros)
             .await
         {
             Ok(object) => object,
@@ -171,12 +171,12 @@ impl Coordinator {
         };
         let address = object.address.clone();
         let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
-            self.ledger.witness(lease, object).await?
+            self.ledger.confirm(lease, object).await?
         } else {
             self.ledger.complete(lease, object).await?
         };
         match completion {
-            Completion::Witnessed => {
+            Completion::Unconfirmed => {
                 tracing::debug!(%lease, "a chunk is done again on another worker, to compare");
                 self.work.notify_waiters();
                 self.changed(lease.chunk.job);

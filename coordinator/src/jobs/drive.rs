@@ -7,13 +7,13 @@
 use super::large_stage::{self, LargeStage};
 use super::planning::{Planned, STATE, first_chunks};
 use super::steward::{Steward, Wanted, next_to_absorb};
-use crate::chunks::expiry::{Sentence, killed_its_worker, sentence};
-use crate::chunks::leasing::Policy;
+use super::tools::{DriveError, Tools};
+use crate::chunks::expiry::{SuspectAction, killed_its_worker, suspect_action};
 use crate::ledger::clock::LedgerTime;
-use crate::ledger::identity::{CoordinatorId, Epoch, JobId, LeaseId};
+use crate::ledger::identity::{Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
-use crate::results::store::{Store, StoreError};
+use crate::results::store::Store;
 use crate::results::summary::{self, LargeAnswer, Summary};
 use cognate_algorithms::Opening;
 use cognate_continuation::work::StageId;
@@ -21,65 +21,12 @@ use std::sync::Arc;
 
 const HERE: &str = "the steward is back before the step ends";
 
-/// What a drive works with.
-pub struct Tools<'a> {
-    /// The ledger.
-    pub ledger: &'a dyn Ledger,
-    /// The objects.
-    pub store: &'a Store,
-    /// Who drives.
-    pub who: &'a CoordinatorId,
-    /// The numbers.
-    pub policy: &'a Policy,
-}
-
-impl Tools<'_> {
-    /// Keeps the right to drive a job; false once it is lost.
-    pub async fn renew_right(&self, job: JobId, epoch: Epoch) -> Result<bool, LedgerError> {
-        let duration = self.policy.steward_ms;
-        let right = self.ledger.steward(job, self.who, duration).await?;
-        Ok(right == Some(epoch))
-    }
-}
-
-/// Why a step was not made.
-#[derive(Debug, thiserror::Error)]
-pub enum DriveError {
-    /// The ledger refused or failed.
-    #[error(transparent)]
-    Ledger(#[from] LedgerError),
-    /// An object could not be written or read.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// The job's state cannot be read back.
-    #[error("the job's state cannot be read: {0}")]
-    State(String),
-}
-
-impl DriveError {
-    /// True where another steward, or nobody, drives the job now.
-    pub fn is_fenced(&self) -> bool {
-        matches!(self, Self::Ledger(LedgerError::Fenced(_)))
-    }
-
-    /// True where trying again later cannot help: the job ends with this reason.
-    pub fn is_permanent(&self) -> bool {
-        match self {
-            Self::Ledger(LedgerError::Damaged(_) | LedgerError::TooLarge(_)) | Self::State(_) => {
-                true
-            }
-            Self::Ledger(_) => false,
-            Self::Store(error) => error.is_permanent(),
-        }
-    }
-}
-
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driven {
-    /// Nothing: chunks are with workers, or wait for them.
+    /// The step did nothing: chunks are with workers, or wait for them.
     Waits,
-    /// Something: ask again at once.
+    /// The step did something: ask again at once.
     Went,
     /// The job has ended.
     Ended,
@@ -160,7 +107,7 @@ impl Drive {
         self.job
     }
 
-    /// Which right to drive it this is.
+    /// Epoch of the right to drive the job.
     pub fn epoch(&self) -> Epoch {
         self.epoch
     }
@@ -360,14 +307,14 @@ impl Drive {
         }
         for suspect in &suspects {
             let (chunk, items) = (suspect.chunk, suspect.items);
-            match sentence(suspect, policy) {
-                Sentence::Split(pieces) => {
+            match suspect_action(suspect, policy) {
+                SuspectAction::Split(pieces) => {
                     let pieces_count = pieces.len();
                     tracing::warn!(job = %self.job, ?items, pieces_count,
                         "workers die of this chunk: it is split");
                     ledger.split(chunk, self.epoch, &pieces).await?;
                 }
-                Sentence::Condemn => {
+                SuspectAction::FailItem => {
                     let stages = ledger.stages(self.job).await?;
                     let row = stages.iter().find(|s| s.stage == chunk.stage);
                     let row = row.ok_or_else(|| {
@@ -383,8 +330,10 @@ impl Drive {
                         chunk,
                         epoch: Epoch(suspect.epoch.0 + 1),
                     };
-                    let object = store.put_results(own, items, results, 0).await?;
-                    ledger.condemn(chunk, self.epoch, object).await?;
+                    let object = store
+                        .put_results(stage.work, own, items, results, 0)
+                        .await?;
+                    ledger.fail_item(chunk, self.epoch, object).await?;
                 }
             }
         }

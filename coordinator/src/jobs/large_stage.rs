@@ -4,8 +4,8 @@
 //! `solutions::plain`), once to fetch the others, which the algorithm gets. When it tracks some again, the
 //! plain paths that may end where those do now are fetched, too.
 
-use super::drive::{DriveError, Tools};
 use super::steward::{Steward, Wanted};
+use super::tools::{DriveError, Tools};
 use crate::ledger::LedgerError;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkRow, ChunkState, ResultObject};

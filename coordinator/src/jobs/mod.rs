@@ -11,3 +11,4 @@ pub mod large_stage;
 pub mod planning;
 pub mod progress;
 pub mod steward;
+pub mod tools;

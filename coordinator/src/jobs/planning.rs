@@ -26,13 +26,13 @@ pub struct Planned {
     pub name: String,
     /// Digest of the system as it was submitted.
     pub problem: Digest,
-    /// How many variables it has.
+    /// Number of variables of the system.
     pub variables: u64,
-    /// How many equations it has.
+    /// Number of equations of the system.
     pub equations: u64,
     /// How its paths begin: `total-degree`, for instance.
     pub start: String,
-    /// Why they begin so.
+    /// Why the paths begin so, in words for people.
     pub why: String,
     /// Number of paths of the first stage that tracks some; `None` where workers count them.
     pub paths: Option<u64>,

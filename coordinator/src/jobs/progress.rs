@@ -10,7 +10,7 @@ use cognate_continuation::work::StageId;
 pub struct JobProgress {
     /// The job.
     pub job: JobId,
-    /// Its state.
+    /// State of the job.
     pub state: JobState,
     /// Every stage opened so far, in order.
     pub stages: Vec<StageProgress>,
@@ -25,7 +25,7 @@ pub struct JobProgress {
 /// Items of one stage: ready, leased, accepted and failed make up the total.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StageProgress {
-    /// Its number.
+    /// Number of the stage within the job, from 0.
     pub stage: StageId,
     /// All items.
     pub total: u64,
@@ -33,11 +33,11 @@ pub struct StageProgress {
     pub ready: u64,
     /// With a worker.
     pub leased: u64,
-    /// Done.
+    /// Items whose results were accepted.
     pub accepted: u64,
     /// Given up.
     pub failed: u64,
-    /// What the stage is for, in words.
+    /// Purpose of the stage, in words for people.
     pub purpose: String,
     /// Where items are branches of mixed cells, which are counted before it is known how many paths
     /// there are: the cells of the accepted ones.

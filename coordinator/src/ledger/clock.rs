@@ -23,7 +23,7 @@ impl LedgerTime {
     }
 }
 
-/// What tells the time.
+/// Source of time: the system's clock, or one that a test sets.
 pub trait Clock: Send + Sync {
     /// Now. Never earlier than before.
     fn now(&self) -> LedgerTime;

@@ -5,8 +5,8 @@
 
 use super::clock::{Clock, LedgerTime, ManualClock};
 use super::identity::*;
-use super::memory::NEW_JOB_MICROS;
 use super::rows::*;
+use super::rules::NEW_JOB_MICROS;
 use super::{Ledger, LedgerError};
 use crate::chunks::sizing::Sizing;
 use crate::chunks::speculation::Speculation;
@@ -45,7 +45,7 @@ macro_rules! ledger_conformance {
             case!(a_chunk_is_accepted_once);
             case!(silence_is_a_suspicion_and_a_drain_is_none);
             case!(who_speaks_again_is_not_dead);
-            case!(suspects_are_split_and_condemned);
+            case!(suspects_are_split_and_fail);
             case!(an_old_steward_changes_nothing);
             case!(a_cancelled_job_gives_nothing_out);
             case!(tenants_and_jobs_take_turns);
@@ -301,24 +301,24 @@ pub async fn an_audited_chunk_needs_two_that_agree(ledger: &dyn Ledger, _: &Manu
     let (job, _) = running(ledger, "r", "t", 8, 8).await;
     let first = take(ledger, "v", "1").await;
     let found = result(first.items, 1, 5);
-    let done = ledger.witness(first.lease, found.clone()).await.unwrap();
-    assert_eq!(done, Completion::Witnessed);
+    let done = ledger.confirm(first.lease, found.clone()).await.unwrap();
+    assert_eq!(done, Completion::Unconfirmed);
     assert_eq!(counts(ledger, job).await, (8, 0, 0, 0));
     // The answer was lost; and it does not change its mind.
-    let again = ledger.witness(first.lease, found.clone()).await.unwrap();
-    assert_eq!(again, Completion::Witnessed);
-    let other = ledger.witness(first.lease, result(first.items, 2, 5)).await;
+    let again = ledger.confirm(first.lease, found.clone()).await.unwrap();
+    assert_eq!(again, Completion::Unconfirmed);
+    let other = ledger.confirm(first.lease, result(first.items, 2, 5)).await;
     assert_eq!(other.unwrap(), Completion::HashDiffers);
     // Not the same worker again, while there are others.
     assert!(ledger.lease(wants("v", "2", 1)).await.unwrap().is_empty());
     let second = take(ledger, "w", "1").await;
     assert_eq!(second.items, first.items, "the whole chunk");
     let done = ledger
-        .witness(second.lease, result(second.items, 2, 5))
+        .confirm(second.lease, result(second.items, 2, 5))
         .await;
-    assert_eq!(done.unwrap(), Completion::Witnessed);
+    assert_eq!(done.unwrap(), Completion::Unconfirmed);
     let third = take(ledger, "u", "1").await;
-    let done = ledger.witness(third.lease, found).await.unwrap();
+    let done = ledger.confirm(third.lease, found).await.unwrap();
     assert_eq!(done, Completion::Accepted);
     assert_eq!(counts(ledger, job).await, (0, 0, 8, 0));
     let rows = ledger.workers(9).await.unwrap();
@@ -342,14 +342,14 @@ pub async fn what_an_outvoted_worker_found_is_done_again(ledger: &dyn Ledger, _:
     let audited = take(ledger, "w", "2").await;
     let held = take(ledger, "w", "3").await;
     let done = ledger
-        .witness(audited.lease, result(audited.items, 7, 5))
+        .confirm(audited.lease, result(audited.items, 7, 5))
         .await;
-    assert_eq!(done.unwrap(), Completion::Witnessed);
+    assert_eq!(done.unwrap(), Completion::Unconfirmed);
     for who in ["u", "v"] {
         let lease = take(ledger, who, "1").await;
         assert_eq!(lease.items, audited.items);
         let found = result(lease.items, 1, 5);
-        ledger.witness(lease.lease, found).await.unwrap();
+        ledger.confirm(lease.lease, found).await.unwrap();
     }
     assert_eq!(counts(ledger, job).await, (24, 0, 8, 0));
     let late = ledger.complete(held.lease, result(held.items, 7, 5)).await;
@@ -384,7 +384,7 @@ pub async fn a_job_that_used_an_outvoted_worker_fails(ledger: &dyn Ledger, _: &M
     for (who, hash) in [("w", 7), ("u", 1), ("v", 1)] {
         let lease = take(ledger, who, "2").await;
         let found = result(lease.items, hash, 5);
-        ledger.witness(lease.lease, found).await.unwrap();
+        ledger.confirm(lease.lease, found).await.unwrap();
     }
     let row = ledger.job(job).await.unwrap().unwrap();
     assert_eq!(row.state, JobState::Failed);
@@ -416,7 +416,7 @@ pub async fn who_speaks_again_is_not_dead(ledger: &dyn Ledger, clock: &ManualClo
     assert!(!ledger.suspects(job, 2, EVER).await.unwrap().is_empty());
 }
 
-pub async fn suspects_are_split_and_condemned(ledger: &dyn Ledger, clock: &ManualClock) {
+pub async fn suspects_are_split_and_fail(ledger: &dyn Ledger, clock: &ManualClock) {
     let (job, epoch) = running(ledger, "r", "t", 5, 5).await;
     for round in 0..3 {
         let wanted = wants("w", &format!("r{round}"), 1);
@@ -443,11 +443,11 @@ pub async fn suspects_are_split_and_condemned(ledger: &dyn Ledger, clock: &Manua
     let suspect = ledger.suspects(job, 3, EVER).await.unwrap()[0].clone();
     let verdict = result(suspect.items, 0, 0);
     ledger
-        .condemn(suspect.chunk, epoch, verdict.clone())
+        .fail_item(suspect.chunk, epoch, verdict.clone())
         .await
         .unwrap();
     assert_eq!(counts(ledger, job).await, (2, 2, 0, 1));
-    let twice = ledger.condemn(suspect.chunk, epoch, verdict).await;
+    let twice = ledger.fail_item(suspect.chunk, epoch, verdict).await;
     assert!(matches!(twice, Err(LedgerError::NotAPartition(_))));
 }
 

@@ -134,13 +134,13 @@ impl Ledger for FaultyLedger {
     ) -> Result<(), LedgerError> {
         self.write(self.inner.split(chunk, epoch, pieces)).await
     }
-    async fn condemn(
+    async fn fail_item(
         &self,
         chunk: ChunkId,
         epoch: Epoch,
         result: ResultObject,
     ) -> Result<(), LedgerError> {
-        self.write(self.inner.condemn(chunk, epoch, result)).await
+        self.write(self.inner.fail_item(chunk, epoch, result)).await
     }
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
         self.write(self.inner.finish(job, epoch, end)).await
@@ -182,12 +182,12 @@ impl Ledger for FaultyLedger {
     ) -> Result<Completion, LedgerError> {
         self.write(self.inner.complete(lease, result)).await
     }
-    async fn witness(
+    async fn confirm(
         &self,
         lease: LeaseId,
         result: ResultObject,
     ) -> Result<Completion, LedgerError> {
-        self.write(self.inner.witness(lease, result)).await
+        self.write(self.inner.confirm(lease, result)).await
     }
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         self.write(self.inner.give_back(lease, why)).await

@@ -12,7 +12,7 @@ pub enum IdentityError {
     /// Names have 1 to 128 visible ASCII characters.
     #[error("{what} must have 1 to 128 visible ASCII characters")]
     Name {
-        /// Which name.
+        /// What the name was to be of: a worker, a tenant.
         what: &'static str,
     },
     /// A job's id has 16 hexadecimal digits.
@@ -137,7 +137,7 @@ pub struct ChunkId {
 pub struct LeaseId {
     /// The chunk.
     pub chunk: ChunkId,
-    /// Which of its leases.
+    /// Epoch of the lease: how often the chunk had been leased.
     pub epoch: Epoch,
 }
 

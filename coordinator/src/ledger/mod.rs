@@ -13,6 +13,7 @@ pub(crate) mod faulty;
 pub mod identity;
 pub mod memory;
 pub mod rows;
+pub mod rules;
 pub mod sql;
 #[cfg(test)]
 mod state_machine;
@@ -53,9 +54,9 @@ pub enum LedgerError {
     /// The file is from a later version.
     #[error("the ledger has schema version {found}, and this program knows only {known}")]
     TooNew {
-        /// What the file says.
+        /// Version of the schema in the file.
         found: i64,
-        /// What this program can read.
+        /// Newest version that this program can read.
         known: i64,
     },
     /// The storage engine failed.
@@ -112,7 +113,7 @@ pub trait Ledger: Send + Sync {
         pieces: &[Piece],
     ) -> Result<(), LedgerError>;
     /// Accepts the coordinator's own verdict on a ready chunk that no worker survives.
-    async fn condemn(
+    async fn fail_item(
         &self,
         chunk: identity::ChunkId,
         epoch: Epoch,
@@ -161,7 +162,7 @@ pub trait Ledger: Send + Sync {
     /// again until then, for another worker where there is one. Whoever found something else is
     /// evicted: it gets no chunk any more, its leases end, and what it alone has found in open
     /// stages is ready again. A job that has used such a result in a closed stage fails.
-    async fn witness(
+    async fn confirm(
         &self,
         lease: LeaseId,
         result: ResultObject,

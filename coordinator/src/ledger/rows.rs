@@ -7,7 +7,7 @@ use crate::chunks::speculation::{Pace, Speculation};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::PathOutcome;
-use cognate_continuation::work::StageId;
+use cognate_continuation::work::{StageId, Work};
 use serde::{Deserialize, Serialize};
 
 /// How far a job is.
@@ -18,11 +18,11 @@ pub enum JobState {
     Queued,
     /// Stages are open or about to be.
     Running,
-    /// Ended with a result.
+    /// The job ended with solutions and a summary.
     Solved,
-    /// Ended without: the reason says why.
+    /// The job ended without a result; its row has the reason.
     Failed,
-    /// Somebody ended it.
+    /// A client ended the job.
     Cancelled,
 }
 
@@ -93,17 +93,17 @@ pub struct JobRow {
     pub job: JobId,
     /// Jobs count from 1 in the order of their submission.
     pub number: u64,
-    /// What was asked.
+    /// The submission that the job carries out.
     pub asked: NewJob,
-    /// How far it is.
+    /// State of the job.
     pub state: JobState,
-    /// Why it failed or was cancelled.
+    /// Why the job failed or was cancelled; `None` in other states.
     pub reason: Option<String>,
-    /// When it was submitted.
+    /// Time of the submission, by the ledger's clock.
     pub submitted: LedgerTime,
-    /// When its first chunk was leased.
+    /// Time of the job's first lease; `None` before.
     pub started: Option<LedgerTime>,
-    /// When it ended.
+    /// Time at which the job ended; `None` before.
     pub ended: Option<LedgerTime>,
     /// Who drives it, with which epoch, until when.
     pub steward: Option<CoordinatorId>,
@@ -122,11 +122,11 @@ pub struct JobRow {
 /// A stage that is to be opened, already cut into chunks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NewStage {
-    /// Its number within the job.
+    /// Number of the stage within the job, from 0.
     pub stage: StageId,
     /// The stage, as an object.
     pub definition: Digest,
-    /// How many items it has.
+    /// Number of items: paths, points or branches.
     pub items: u64,
     /// Its first chunks: they make up the items in order. A lease may cut them smaller.
     pub chunks: Vec<ItemRange>,
@@ -153,9 +153,9 @@ pub enum JobEnd {
         /// The summary.
         summary: Digest,
     },
-    /// Without.
+    /// The job ended without a result.
     Failed {
-        /// Why.
+        /// One sentence for the client.
         reason: String,
     },
 }
@@ -169,7 +169,7 @@ pub struct Count {
     pub chunks: u64,
 }
 
-/// How paths ended, before any verdict.
+/// How tracked paths ended, before any verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outcomes {
     /// At a regular endpoint.
@@ -181,12 +181,13 @@ pub struct Outcomes {
 }
 
 impl Outcomes {
-    /// Counts the outcomes of some results.
-    pub fn of(results: &[PathResult]) -> Self {
+    /// Counts the outcomes of some results of a stage; none where the stage tracks no paths.
+    pub fn of(work: Work, results: &[PathResult]) -> Self {
         let mut outcomes = Self::default();
-        // What was certified is no path that ended, and what was counted is none.
-        let is_path = |r: &&PathResult| r.certification.is_none() && r.mixed_cells.is_none();
-        for result in results.iter().filter(is_path) {
+        if !work.tracks_paths() {
+            return outcomes;
+        }
+        for result in results {
             match result.outcome {
                 PathOutcome::Regular => outcomes.regular += 1,
                 PathOutcome::Singular | PathOutcome::Diverging => outcomes.singular += 1,
@@ -214,25 +215,25 @@ impl Outcomes {
 /// A stage's row with its counts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StageRow {
-    /// Its number within the job.
+    /// Number of the stage within the job, from 0.
     pub stage: StageId,
     /// The stage, as an object.
     pub definition: Digest,
-    /// How many items it has.
+    /// Number of items: paths, points or branches.
     pub items: u64,
     /// False while its results are still awaited or not yet absorbed.
     pub closed: bool,
-    /// Waiting for a worker.
+    /// Items and chunks that wait for a worker.
     pub ready: Count,
-    /// With a worker.
+    /// Items and chunks that are leased to workers.
     pub leased: Count,
-    /// Done.
+    /// Items and chunks whose results were accepted.
     pub accepted: Count,
-    /// Given up: each has a result that says so.
+    /// Items and chunks that the coordinator gave up: each has a result that says so.
     pub failed: Count,
     /// CPU time of the accepted items, in microseconds.
     pub cpu_micros: u64,
-    /// How the accepted and failed items ended.
+    /// Outcomes of the accepted and failed paths; none where the stage tracks no paths.
     pub outcomes: Outcomes,
     /// How long the accepted chunks were with the workers that reported them, in milliseconds.
     pub held_ms: u64,
@@ -243,7 +244,7 @@ pub struct StageRow {
 }
 
 impl StageRow {
-    /// What its accepted chunks took.
+    /// Items and time of the accepted chunks.
     pub fn pace(&self) -> Pace {
         Pace {
             items: self.accepted.items,
@@ -265,25 +266,25 @@ impl StageRow {
 /// Where a chunk is; each state carries its data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ChunkState {
-    /// Waits for a worker.
+    /// The chunk waits for a worker.
     Ready,
-    /// With a worker.
+    /// The chunk is leased to a worker.
     Leased {
-        /// Which.
+        /// Name of the worker.
         worker: WorkerId,
-        /// Until when, unless renewed.
+        /// Time at which the lease expires, unless it is renewed.
         until: LedgerTime,
     },
-    /// Done by a worker.
+    /// The chunk's results were accepted from a worker.
     Accepted {
-        /// Which.
+        /// Name of the worker.
         worker: WorkerId,
-        /// Its result.
+        /// The object that holds the results.
         result: ResultObject,
     },
     /// Given up by the coordinator, with a result that says so.
     Failed {
-        /// That result.
+        /// The object that holds a failed result for each item.
         result: ResultObject,
     },
 }
@@ -293,9 +294,9 @@ pub enum ChunkState {
 pub struct ChunkRow {
     /// The chunk.
     pub chunk: ChunkId,
-    /// Its items.
+    /// Range of the stage's items that the chunk holds.
     pub items: ItemRange,
-    /// Where it is.
+    /// State of the chunk.
     pub state: ChunkState,
     /// Epoch of its last lease; 0 before the first.
     pub epoch: Epoch,
@@ -327,7 +328,7 @@ impl ChunkRow {
 /// The object that holds a chunk's results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ResultObject {
-    /// Which items it holds.
+    /// Range of the stage's items whose results the object holds.
     pub items: ItemRange,
     /// Its address in the result store.
     pub address: String,
@@ -335,14 +336,14 @@ pub struct ResultObject {
     pub hash: Digest,
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
-    /// How its paths ended.
+    /// Outcomes of the paths in the object; none where the stage tracks no paths.
     pub outcomes: Outcomes,
 }
 
 /// A piece of a chunk that is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// Its items.
+    /// Range of the stage's items that the chunk holds.
     pub items: ItemRange,
     /// Suspicions that it inherits.
     pub suspicions: u32,
@@ -353,7 +354,7 @@ pub struct Piece {
 /// A worker asks for chunks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeaseRequest {
-    /// Who asks.
+    /// Name of the worker that asks.
     pub worker: WorkerId,
     /// The same for a request that is sent again: it gets the same leases.
     pub request: RequestId,
@@ -365,7 +366,7 @@ pub struct LeaseRequest {
     pub slots: u32,
     /// How long it may keep them without renewal, in milliseconds.
     pub duration_ms: u64,
-    /// How large the chunks are to be.
+    /// Rule for the size of chunks.
     pub sizing: Sizing,
     /// When a chunk that another worker has is given to this one, too.
     pub speculation: Speculation,
@@ -382,7 +383,7 @@ pub struct Lease {
     pub lease: LeaseId,
     /// The chunk's items.
     pub items: ItemRange,
-    /// Until when, unless renewed.
+    /// Time at which the lease expires, unless it is renewed.
     pub until: LedgerTime,
     /// The job's problem, as an object.
     pub problem: Digest,
@@ -398,11 +399,11 @@ pub struct Lease {
 /// The lease before the last of a chunk that was given to a second worker: it may still report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Elder {
-    /// Its epoch.
+    /// Epoch of the elder lease.
     pub epoch: Epoch,
-    /// Who has it.
+    /// Worker that has the elder lease.
     pub worker: WorkerId,
-    /// When it began.
+    /// Time at which the elder lease began.
     pub leased_at: LedgerTime,
     /// Until when it lasts, unless renewed; `None` once the chunk is accepted.
     pub until: Option<LedgerTime>,
@@ -411,7 +412,7 @@ pub struct Elder {
 /// Who may report a chunk, under one of its leases.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
-    /// Who.
+    /// Name of the worker.
     pub worker: WorkerId,
     /// When the lease began, where that is known.
     pub leased_at: Option<LedgerTime>,
@@ -429,7 +430,7 @@ impl Holder {
 /// What became of a lease that was to be renewed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Renewal {
-    /// It lasts until then.
+    /// The lease lasts until this time.
     Until(LedgerTime),
     /// It has ended: stop working on it.
     Lost,
@@ -446,7 +447,7 @@ pub enum Completion {
     /// is of no use.
     Overtaken,
     /// The chunk is audited: it is ready again, and accepted once another execution agrees.
-    Witnessed,
+    Unconfirmed,
     /// The lease had ended: drop the result.
     Stale,
     /// Another result was accepted for the same items: one of two workers computes wrongly.
@@ -460,7 +461,7 @@ pub enum GiveBack {
     Drained,
     /// It tried and could not: counts as a suspicion at once.
     Failed {
-        /// What happened.
+        /// What the worker said about its failure.
         reason: String,
     },
 }
@@ -479,11 +480,11 @@ pub struct Expired {
 /// What a worker says about itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkerSeen {
-    /// Who.
+    /// Name of the worker.
     pub worker: WorkerId,
     /// Version of its program.
     pub version: String,
-    /// Its numerics revision.
+    /// `NUMERICS_REVISION` of the worker's program.
     pub numerics_revision: u32,
     /// The instruction set that it tracks with.
     pub instruction_set: String,
@@ -502,11 +503,11 @@ pub struct WorkerSeen {
 /// A worker's row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkerRow {
-    /// What it said last.
+    /// What the worker said about itself in its last call.
     pub says: WorkerSeen,
-    /// When it was first here.
+    /// Time of the worker's first call.
     pub first_seen: LedgerTime,
-    /// When it was last here.
+    /// Time of the worker's last call.
     pub last_seen: LedgerTime,
     /// Items that it finished.
     pub items_done: u64,
@@ -521,7 +522,7 @@ pub struct WorkerRow {
 /// What one worker did for one job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contribution {
-    /// Who.
+    /// Name of the worker.
     pub worker: WorkerId,
     /// How it is connected; empty when it never said.
     pub transport: String,
@@ -534,9 +535,9 @@ pub struct Contribution {
 /// What one execution of an audited chunk found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vote {
-    /// Of which lease of the chunk.
+    /// Epoch of the lease under which the chunk was executed.
     pub epoch: Epoch,
-    /// Whose it was.
+    /// Worker that executed the chunk.
     pub worker: WorkerId,
     /// Hash of the results' records.
     pub hash: Digest,

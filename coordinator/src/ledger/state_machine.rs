@@ -49,7 +49,7 @@ enum Call {
         suspicions: u32,
         alone: bool,
     },
-    Condemn {
+    FailItem {
         job: usize,
         chunk: usize,
     },
@@ -109,7 +109,7 @@ fn call() -> impl Strategy<Value = Call> {
         2 => (job.clone(), 0..9usize, 0..9u64, 0..4u32, any::<bool>()).prop_map(
             |(job, chunk, at, suspicions, alone)| Call::Split { job, chunk, at, suspicions, alone }
         ),
-        1 => (job.clone(), 0..9usize).prop_map(|(job, chunk)| Call::Condemn { job, chunk }),
+        1 => (job.clone(), 0..9usize).prop_map(|(job, chunk)| Call::FailItem { job, chunk }),
         1 => (job, 0..4u8, any::<bool>()).prop_filter_map("rarely", |(job, dice, solved)| {
             (dice == 0).then_some(Call::Finish { job, solved })
         }),
@@ -276,7 +276,7 @@ impl Pair<'_> {
                 items.last += u64::from(other_items);
                 let object = result(items, hash, cpu_micros);
                 let done = if audited {
-                    both!(self, witness(lease.lease, object.clone()))
+                    both!(self, confirm(lease.lease, object.clone()))
                 } else {
                     both!(self, complete(lease.lease, object.clone()))
                 };
@@ -375,7 +375,7 @@ impl Pair<'_> {
                 let pieces = [piece(chunk.items.first, at), piece(at, chunk.items.last)];
                 both!(self, split(chunk.chunk, row.steward_epoch, &pieces));
             }
-            Call::Condemn { job, chunk } => {
+            Call::FailItem { job, chunk } => {
                 let Some(row) = self.job(job).await else {
                     return;
                 };
@@ -383,7 +383,7 @@ impl Pair<'_> {
                 if let Some(chunk) = ready.get(chunk) {
                     let verdict = result(chunk.items, 9, 0);
                     let epoch = row.steward_epoch;
-                    both!(self, condemn(chunk.chunk, epoch, verdict.clone()));
+                    both!(self, fail_item(chunk.chunk, epoch, verdict.clone()));
                 }
             }
             Call::Finish { job, solved } => {

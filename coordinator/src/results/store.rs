@@ -10,7 +10,7 @@ use crate::ledger::rows::{Outcomes, ResultObject};
 use bytes::Bytes;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::Digest;
-use cognate_continuation::work::Stage;
+use cognate_continuation::work::{Stage, Work};
 use cognate_protocol::v1;
 use cognate_protocol::{digest, from_proto, records, to_proto};
 use cognate_systems::system::System;
@@ -31,12 +31,12 @@ pub enum StoreError {
     /// There is no such object.
     #[error("there is no object {0}")]
     Missing(String),
-    /// It is not what was written.
+    /// The object is not what was written.
     #[error("object {address} is damaged: {what}")]
     Damaged {
-        /// Where it is.
+        /// Address of the object.
         address: String,
-        /// What is wrong with it.
+        /// What is wrong with the object.
         what: String,
     },
     /// Another execution of the same lease wrote other results there.
@@ -50,7 +50,7 @@ pub enum StoreError {
     Folder {
         /// The folder.
         folder: String,
-        /// Why not.
+        /// What the system said.
         error: std::io::Error,
     },
 }
@@ -232,15 +232,16 @@ impl Store {
         .await
     }
 
-    /// Keeps the results of a lease. Sent twice, they are kept once.
+    /// Keeps the results of a lease of a stage that does this work. Sent twice, they are kept once.
     pub async fn put_results(
         &self,
+        work: Work,
         lease: LeaseId,
         items: ItemRange,
         results: Vec<PathResult>,
         cpu_micros: u64,
     ) -> Result<ResultObject, StoreError> {
-        let outcomes = Outcomes::of(&results);
+        let outcomes = Outcomes::of(work, &results);
         let (hash, bytes) = off_thread(results.len() * 256 > SMALL, move || pack(&results)).await;
         let address = results_address(lease, items);
         let object = ResultObject {
@@ -404,7 +405,9 @@ mod tests {
     async fn results_come_back_and_are_kept_once() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::folder(folder.path()).unwrap();
-        let put = |epoch, value| store.put_results(lease(epoch), ITEMS, results(5, value), 7);
+        let put = |epoch, value| {
+            store.put_results(Work::Track, lease(epoch), ITEMS, results(5, value), 7)
+        };
         let object = put(1, 0.5).await.unwrap();
         assert_eq!(object.outcomes.regular, 5);
         assert_eq!(store.results(&object).await.unwrap(), results(5, 0.5));
@@ -427,7 +430,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::folder(folder.path()).unwrap();
         let object = store
-            .put_results(lease(1), ITEMS, results(5, 0.5), 7)
+            .put_results(Work::Track, lease(1), ITEMS, results(5, 0.5), 7)
             .await
             .unwrap();
         let path = folder.path().join(&object.address);

@@ -32,9 +32,9 @@ pub struct LargeAnswer {
 /// A finished job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// Which job.
+    /// Id of the job.
     pub job: String,
-    /// What was solved.
+    /// The system, its start and its seed.
     pub problem: ProblemBlock,
     /// Every path, counted once.
     pub paths: PathCounts,
@@ -45,9 +45,9 @@ pub struct Summary {
     /// How the solutions were found, in a solve by monodromy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub monodromy: Option<MonodromyBlock>,
-    /// How long it took.
+    /// Wall time and CPU time.
     pub time: TimeBlock,
-    /// Who tracked how much.
+    /// Workers and the number of paths that each tracked.
     pub workers: Vec<WorkerBlock>,
     /// Why paths failed: how many for each reason.
     pub failures: BTreeMap<String, u64>,
@@ -59,22 +59,22 @@ pub struct Summary {
     pub certification: Option<CertifiedSystem>,
     /// True when every path is accounted for and every count is settled.
     pub settled: bool,
-    /// What a reader should know.
+    /// Doubts and refusals, one sentence each.
     pub warnings: Vec<String>,
 }
 
 /// What was solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProblemBlock {
-    /// What people call it.
+    /// Name of the problem, usually that of its file.
     pub name: String,
     /// Digest of the system.
     pub digest: String,
-    /// How many variables.
+    /// Number of variables.
     pub variables: u64,
-    /// How many equations.
+    /// Number of equations.
     pub equations: u64,
-    /// How the paths began.
+    /// Start of the paths: `total-degree`, for instance.
     pub start: String,
     /// Why they began so: which groups, for instance, and whose.
     #[serde(default)]
@@ -109,22 +109,22 @@ pub struct TimeBlock {
 /// What one worker did.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorkerBlock {
-    /// Its name.
+    /// Name of the worker.
     pub id: String,
     /// Items that it finished.
     pub paths: u64,
-    /// How it was connected.
+    /// Transport of the worker: `grpc` or `shared-memory`.
     pub transport: String,
 }
 
 /// The counts of one target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TargetBlock {
-    /// Its paths.
+    /// Counts of the paths to this target.
     pub paths: PathCounts,
-    /// Its solutions.
+    /// Counts of the solutions at this target.
     pub solutions: SolutionCounts,
-    /// Its classes.
+    /// Counts of symmetry classes of solutions at this target.
     pub classes: ClassCounts,
     /// What its certificates are of, where there are some.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -1,4 +1,4 @@
-//! Transport: the doors by which workers and clients come in.
+//! Transport: the listeners by which workers and clients come in.
 //!
 //! One gRPC service behind all of them.
 
@@ -17,16 +17,16 @@ use tokio::net::{TcpListener, TcpStream, UnixStream};
 /// descriptors have run out, trying at once would only burn the processor.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Why a door does not open.
+/// Why a listener does not open.
 #[derive(Debug, thiserror::Error)]
-pub enum DoorError {
+pub enum ListenError {
     /// Nothing to listen on.
     #[error("there is no address to listen on")]
     NoAddress,
     /// The system refuses it.
     #[error("cannot listen on {address}: {source}")]
     Bind {
-        /// Where.
+        /// The address that was to be listened at.
         address: ListenAddress,
         /// What the system said.
         source: std::io::Error,
@@ -37,42 +37,42 @@ pub enum DoorError {
          with a certificate of its own; or say --insecure to ask nobody there who they are"
     )]
     BeyondLoopback {
-        /// Where.
+        /// The address that was to be listened at.
         address: ListenAddress,
     },
-    /// A door with TLS and no certificate.
+    /// A listener with TLS and no certificate.
     #[error("{address} needs a certificate: --tls-certificate and --tls-key")]
     NoCertificate {
-        /// Where.
+        /// The address that was to be listened at.
         address: ListenAddress,
     },
     /// Somebody else is there.
     #[error("another process listens on {address}")]
     Taken {
-        /// Where.
+        /// The address that was to be listened at.
         address: ListenAddress,
     },
 }
 
-/// A door that is open: the socket is bound, and connections queue up.
+/// A listener that is open: the socket is bound, and connections queue up.
 #[derive(Debug)]
-pub enum Door {
+pub enum Listener {
     /// TCP.
     Tcp(TcpListener),
     /// TCP and TLS.
     Tls(TcpListener),
-    /// A Unix socket, which is removed when the door closes.
+    /// A Unix socket, which is removed when the listener closes.
     Unix(unix::Socket),
 }
 
-impl Door {
+impl Listener {
     /// Binds an address; one that others can reach only where callers are known, or if `insecure`.
-    /// With a certificate, every TCP door speaks TLS.
+    /// With a certificate, every TCP listener speaks TLS.
     pub async fn open(
         address: &ListenAddress,
         security: &Security,
         insecure: bool,
-    ) -> Result<Self, DoorError> {
+    ) -> Result<Self, ListenError> {
         let open_to_all = insecure || security.knows_callers();
         match address {
             ListenAddress::Tcp(authority) | ListenAddress::Tls(authority)
@@ -80,7 +80,7 @@ impl Door {
             {
                 tcp::bind(authority, open_to_all).await.map(Self::Tls)
             }
-            ListenAddress::Tls(_) => Err(DoorError::NoCertificate {
+            ListenAddress::Tls(_) => Err(ListenError::NoCertificate {
                 address: address.clone(),
             }),
             ListenAddress::Tcp(authority) => {

@@ -1,4 +1,4 @@
-//! Shared memory: the door for workers of the same user on the same host (iceoryx2).
+//! Shared memory: the listener for workers of the same user on the same host (iceoryx2).
 //!
 //! Behind it are the same services as behind the sockets. A thread sleeps until a
 //! worker rings; each call is a task, called off when its worker no longer waits.
@@ -31,14 +31,14 @@ const LOOK: Duration = Duration::from_millis(200);
 /// calls may still be given chunks, which come back only with the end of their leases.
 const CLEAN: Duration = Duration::from_secs(2);
 /// How long workers may take to leave when the service stops. Default 1 s: each notices
-/// within 300 ms that the door is unlocked.
+/// within 300 ms that the lock is free.
 const LEAVE: Duration = Duration::from_secs(1);
 /// Responses that exist at a time: memory is reserved for so many of the largest size.
 const RESPONSES: usize = 64;
 
 type Active = ActiveRequest<Ipc, [u8], (), [u8], ()>;
 
-/// A door in shared memory that is open.
+/// A listener in shared memory that is open.
 // In the order of dropping: ports before their node, the node before the place.
 pub struct SharedMemoryDoor {
     server: Server<Ipc, [u8], (), [u8], ()>,
@@ -102,7 +102,7 @@ impl SharedMemoryDoor {
             }));
             match served {
                 Ok(Ok(())) => {}
-                // Workers see the door unlocked and go on by gRPC.
+                // Workers see the lock free and go on by gRPC.
                 Ok(Err(Unusable(why))) => tracing::error!(why, "shared memory ended"),
                 Err(_) => tracing::error!("shared memory ended: it panicked"),
             }

@@ -1,6 +1,6 @@
 //! Unix socket: only this user may connect; a socket left over by a killed process is replaced.
 
-use super::DoorError;
+use super::ListenError;
 use crate::config::ListenAddress;
 use std::io;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};
@@ -16,9 +16,9 @@ pub struct Socket {
 
 impl Socket {
     /// Binds a path, unless somebody answers there.
-    pub async fn bind(path: &Path) -> Result<Self, DoorError> {
+    pub async fn bind(path: &Path) -> Result<Self, ListenError> {
         let address = || ListenAddress::Unix(path.to_owned());
-        let refused = |source| DoorError::Bind {
+        let refused = |source| ListenError::Bind {
             address: address(),
             source,
         };
@@ -28,7 +28,7 @@ impl Socket {
         match std::fs::symlink_metadata(path) {
             Ok(found) if found.file_type().is_socket() => {
                 if UnixStream::connect(path).await.is_ok() {
-                    return Err(DoorError::Taken { address: address() });
+                    return Err(ListenError::Taken { address: address() });
                 }
                 std::fs::remove_file(path).map_err(refused)?;
             }
@@ -51,7 +51,7 @@ impl Socket {
         Ok(socket)
     }
 
-    /// Where it is.
+    /// Path of the socket.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(mode & 0o777, 0o600);
         assert!(matches!(
             Socket::bind(&path).await,
-            Err(DoorError::Taken { .. })
+            Err(ListenError::Taken { .. })
         ));
         drop(first);
         assert!(!path.exists());
@@ -93,7 +93,7 @@ mod tests {
         std::fs::write(&path, "precious").unwrap();
         assert!(matches!(
             Socket::bind(&path).await,
-            Err(DoorError::Bind { .. })
+            Err(ListenError::Bind { .. })
         ));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
     }

@@ -62,7 +62,7 @@ fn a_chunk_is_pulled_tracked_reported_and_forgotten() {
     };
     let report = Command::Report(lease(1), Arc::new("one"));
     assert_eq!(session.poll(at(100)), [report, pull]);
-    session.handle(Input::Reported(lease(1), Verdict::Accepted), at(110));
+    session.handle(Input::Reported(lease(1), Receipt::Accepted), at(110));
     assert_eq!(session.poll(at(110)), []);
     assert_eq!(session.held(), 1);
 }
@@ -192,7 +192,7 @@ fn a_busy_worker_is_heard_of() {
 }
 
 #[test]
-fn pulling_stops_while_too_many_results_wait_for_their_verdict() {
+fn pulling_stops_while_too_many_results_wait_for_their_receipt() {
     let limits = Limits {
         unacknowledged: 2,
         ..limits()
@@ -237,7 +237,7 @@ fn draining_gives_back_what_is_unfinished_and_reports_the_rest() {
     session.handle(Input::GaveBack(lease(2)), at(22));
     session.handle(Input::GaveBack(lease(3)), at(22));
     assert_eq!(session.poll(at(22)), [], "a report is still under way");
-    session.handle(Input::Reported(lease(1), Verdict::Accepted), at(23));
+    session.handle(Input::Reported(lease(1), Receipt::Accepted), at(23));
     assert_eq!(session.poll(at(23)), [Command::Leave]);
     session.handle(Input::Left, at(24));
     assert_eq!(session.poll(at(24)), [Command::Exit(Ending::Stopped)]);
@@ -292,7 +292,7 @@ fn a_report_that_makes_no_sense_is_a_failure_of_its_chunk() {
     let mut session = with_two_chunks(limits());
     session.handle(Input::Tracked(lease(1), "one"), at(10));
     session.poll(at(10));
-    let invalid = Verdict::Invalid("too long".to_owned());
+    let invalid = Receipt::Invalid("too long".to_owned());
     session.handle(Input::Reported(lease(1), invalid), at(11));
     let failed = GiveBack::Failed("too long".to_owned());
     assert_eq!(session.poll(at(11)), [Command::GiveBack(lease(1), failed)]);
@@ -447,19 +447,19 @@ impl Books {
             Command::Report(lease, content) => {
                 assert_eq!(**content, lease.chunk, "the results are those of the chunk");
                 let (row, epoch) = &mut self.rows[lease.chunk as usize];
-                let verdict = match *row {
+                let receipt = match *row {
                     Row::Leased { .. } if *epoch == lease.epoch => {
                         *row = Row::Accepted;
                         self.accepted += 1;
-                        Verdict::Accepted
+                        Receipt::Accepted
                     }
-                    Row::Accepted if *epoch == lease.epoch => Verdict::AlreadyAccepted,
+                    Row::Accepted if *epoch == lease.epoch => Receipt::AlreadyAccepted,
                     _ => {
                         self.stale += 1;
-                        Verdict::Stale
+                        Receipt::Stale
                     }
                 };
-                Input::Reported(lease.clone(), verdict)
+                Input::Reported(lease.clone(), receipt)
             }
             Command::GiveBack(lease, _) => {
                 if self.holds(lease) {

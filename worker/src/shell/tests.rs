@@ -1,7 +1,7 @@
 //! The shell with real threads, clock and stages, and a coordinator that is a table in memory.
 
 use super::*;
-use crate::config::Address;
+use crate::transport::address::Address;
 use crate::transport::{GiveBack, Pulled, Renewal};
 use async_trait::async_trait;
 use cognate_continuation::homotopies::HomotopyKind;
@@ -147,19 +147,19 @@ impl Transport for Coordinator {
         self.answer(&table, renewals)
     }
 
-    async fn report(&self, id: &LeaseId, chunk: &TrackedChunk) -> Result<Verdict, TransportError> {
+    async fn report(&self, id: &LeaseId, chunk: &TrackedChunk) -> Result<Receipt, TransportError> {
         let mut table = self.table();
-        let verdict = match (table.accepted.get(id), table.leased.contains_key(id)) {
-            (Some(before), _) if before.results == chunk.results => Verdict::AlreadyAccepted,
-            (Some(_), _) => Verdict::HashDiffers,
-            (None, false) => Verdict::Stale,
+        let receipt = match (table.accepted.get(id), table.leased.contains_key(id)) {
+            (Some(before), _) if before.results == chunk.results => Receipt::AlreadyAccepted,
+            (Some(_), _) => Receipt::HashDiffers,
+            (None, false) => Receipt::Stale,
             (None, true) => {
                 table.leased.remove(id);
                 table.accepted.insert(id.clone(), chunk.clone());
-                Verdict::Accepted
+                Receipt::Accepted
             }
         };
-        self.answer(&table, verdict)
+        self.answer(&table, receipt)
     }
 
     async fn give_back(&self, leases: &[LeaseId], why: &GiveBack) -> Result<(), TransportError> {

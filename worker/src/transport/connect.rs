@@ -2,7 +2,7 @@
 //!
 //! Workers and clients share it.
 
-use crate::config::Address;
+use super::address::Address;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tonic::metadata::{Ascii, MetadataValue};
@@ -43,9 +43,9 @@ pub const SHORTEST_TOKEN: usize = 16;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {what}")]
 pub struct CredentialError {
-    /// Which file, or which option.
+    /// Path of the file, or name of the option.
     pub file: String,
-    /// What is wrong with it.
+    /// What is wrong with the file or option.
     pub what: String,
 }
 
@@ -248,9 +248,9 @@ impl Interceptor for Bearer {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{address} cannot be used: {why}")]
 pub struct UnusableAddress {
-    /// Which.
+    /// The address that cannot be used.
     pub address: Address,
-    /// Why not.
+    /// Why the address cannot be used.
     pub why: String,
 }
 

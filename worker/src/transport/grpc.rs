@@ -5,10 +5,11 @@
 
 use super::connect::UnusableAddress;
 use super::way::Way;
-use super::{Announcement, GiveBack, Lease, LeaseId, Pulled, Renewal, Transport, TransportError};
+use super::{
+    Announcement, GiveBack, Lease, LeaseId, Pulled, Receipt, Renewal, Transport, TransportError,
+};
 use crate::chunk_runner::TrackedChunk;
 use crate::config::Config;
-use crate::reports::Verdict;
 use async_trait::async_trait;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::{Stage, StageId};
@@ -203,13 +204,13 @@ fn lease_from_proto(lease: v1::Lease) -> Result<Lease, ProtocolError> {
     })
 }
 
-fn verdict_from_proto(verdict: v1::ReportVerdict) -> Result<Verdict, TransportError> {
+fn receipt_from_proto(verdict: v1::ReportVerdict) -> Result<Receipt, TransportError> {
     match verdict.verdict() {
-        v1::Verdict::Accepted => Ok(Verdict::Accepted),
-        v1::Verdict::AlreadyAccepted => Ok(Verdict::AlreadyAccepted),
-        v1::Verdict::Stale => Ok(Verdict::Stale),
-        v1::Verdict::HashDiffers => Ok(Verdict::HashDiffers),
-        v1::Verdict::Invalid => Ok(Verdict::Invalid(verdict.message)),
+        v1::Verdict::Accepted => Ok(Receipt::Accepted),
+        v1::Verdict::AlreadyAccepted => Ok(Receipt::AlreadyAccepted),
+        v1::Verdict::Stale => Ok(Receipt::Stale),
+        v1::Verdict::HashDiffers => Ok(Receipt::HashDiffers),
+        v1::Verdict::Invalid => Ok(Receipt::Invalid(verdict.message)),
         v1::Verdict::Unspecified => Err(TransportError::Malformed("an unknown verdict".to_owned())),
     }
 }
@@ -283,7 +284,7 @@ impl Transport for Grpc {
         &self,
         lease: &LeaseId,
         chunk: &TrackedChunk,
-    ) -> Result<Verdict, TransportError> {
+    ) -> Result<Receipt, TransportError> {
         let request = v1::ReportRequest {
             identity: self.identity(),
             chunks: vec![v1::ChunkReport {
@@ -300,7 +301,7 @@ impl Transport for Grpc {
         let call = |mut client: Client| async move { client.report(request).await };
         let mut verdicts = self.call(REPORT_ANSWER, call).await?.into_inner().verdicts;
         match (verdicts.pop(), verdicts.pop()) {
-            (Some(verdict), None) => verdict_from_proto(verdict),
+            (Some(verdict), None) => receipt_from_proto(verdict),
             _ => {
                 let text = "not one verdict for one report".to_owned();
                 Err(TransportError::Malformed(text))

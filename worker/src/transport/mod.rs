@@ -3,6 +3,7 @@
 //! One trait in this crate's own types; only the implementations below know
 //! what a message looks like, and only `way` knows what carries it.
 
+pub mod address;
 pub mod connect;
 pub mod grpc;
 pub mod shared_memory;
@@ -10,7 +11,6 @@ pub mod way;
 
 use crate::chunk_runner::TrackedChunk;
 use crate::machine::Machine;
-use crate::reports::Verdict;
 use async_trait::async_trait;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::{Stage, StageId};
@@ -47,7 +47,7 @@ impl fmt::Display for LeaseId {
 /// A chunk to track.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lease {
-    /// Its name.
+    /// Chunk and epoch of the lease.
     pub id: LeaseId,
     /// Digest of the system to solve.
     pub problem: Digest,
@@ -61,7 +61,7 @@ pub struct Lease {
     pub alone: bool,
 }
 
-/// What a pull brought.
+/// Answer to a pull.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pulled {
     /// Chunks to track, perhaps none.
@@ -75,10 +75,25 @@ pub struct Pulled {
 /// What became of a lease that was to be renewed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Renewal {
-    /// It lasts so long from now.
+    /// The lease lasts so long from now.
     Held(Duration),
     /// It belongs to another worker by now, or its job has ended.
     Lost,
+}
+
+/// What the coordinator said about a report. After each of these it is not sent again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Receipt {
+    /// The results are durable now.
+    Accepted,
+    /// The same results were durable already.
+    AlreadyAccepted,
+    /// The lease was another worker's by then, or the job had ended.
+    Stale,
+    /// Other results are there for the same lease: one of two executions is wrong.
+    HashDiffers,
+    /// The coordinator could not make sense of the report.
+    Invalid(String),
 }
 
 /// Why a chunk goes back.
@@ -97,7 +112,7 @@ pub struct Announcement {
     pub worker: String,
     /// Drawn anew by each process.
     pub session: String,
-    /// What it runs on.
+    /// The computer that the worker runs on.
     pub machine: Machine,
     /// Threads that track.
     pub threads: usize,
@@ -137,7 +152,7 @@ pub trait Transport: Send + Sync {
         &self,
         lease: &LeaseId,
         chunk: &TrackedChunk,
-    ) -> Result<Verdict, TransportError>;
+    ) -> Result<Receipt, TransportError>;
     /// Gives chunks back.
     async fn give_back(&self, leases: &[LeaseId], why: &GiveBack) -> Result<(), TransportError>;
     /// Says goodbye: the session ends, and whatever it still holds is free.

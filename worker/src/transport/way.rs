@@ -3,11 +3,12 @@
 //! It stands below the generated client, so that every call is written once, whatever
 //! carries it.
 
+use super::address::Address;
 use super::connect::Bearer;
 use super::shared_memory::frame::Response;
 use super::shared_memory::place::Unusable;
 use super::shared_memory::{CallError, SharedMemory};
-use crate::config::{Address, TransportChoice};
+use crate::config::TransportChoice;
 use bytes::Bytes;
 use cognate_protocol::v1::GetSharedMemoryRequest;
 use cognate_protocol::v1::worker_api_client::WorkerApiClient;

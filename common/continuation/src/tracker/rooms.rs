@@ -15,7 +15,7 @@ use crate::homotopies::Homotopy;
 use crate::path_result::PathResult;
 use crate::stage::PreparedStage;
 use cognate_numeric::lanes::Lanes;
-use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on};
+use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on, dispatch_single};
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, rungs};
 use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
 use num_complex::Complex64;
@@ -136,14 +136,13 @@ fn work<'a>(
     observer: Option<&'a mut dyn Observer>,
 ) -> Ended {
     match (room.bits, width) {
-        (DOUBLE, 1) => dispatch_on(set, Work::<f64>::new(room, (), waiting, observer)),
+        (DOUBLE, 1) => dispatch_single(Work::<f64>::new(room, (), waiting, observer)),
         (DOUBLE, 8) => dispatch_on(set, Work::<Lanes<8>>::new(room, (), waiting, observer)),
         (DOUBLE, 16) => dispatch_on(set, Work::<Lanes<16>>::new(room, (), waiting, observer)),
         // Few paths come here, one at a time; lanes of double-doubles multiply the time that
         // this crate takes to compile by ten.
         (DOUBLE_DOUBLE, 1 | 8 | 16) => {
-            let work = Work::<DoubleDouble<f64>>::new(room, (), waiting, observer);
-            dispatch_on(set, work)
+            dispatch_single(Work::<DoubleDouble<f64>>::new(room, (), waiting, observer))
         }
         // Numbers of MPFR use no vector instructions.
         (bits, 1 | 8 | 16) => Work::<MultiplePrecision>::new(room, bits, waiting, observer).run(),

@@ -9,10 +9,12 @@ pub mod family;
 pub mod mechanisms;
 pub mod path_points;
 pub mod realization;
+pub mod search;
 
 pub use class_book::{ClassBook, ClassEnd};
 pub use mechanisms::{Curve, Mechanism};
 pub use path_points::{PathPoints, PointFault};
+pub use search::Search;
 
 use num_complex::Complex64;
 

@@ -3,6 +3,8 @@
 //! `dispatch(job)` runs `job.run()` compiled for the best instruction set of
 //! this machine. The only `unsafe` code of the mathematics stands here.
 
+use std::cell::Cell;
+
 /// Work that is compiled once per instruction set.
 ///
 /// `run` and everything below it must be `#[inline(always)]`, and it is a trait
@@ -30,8 +32,12 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// The best one that this machine has.
+    /// The best one that this machine has; within [`limited_to`], the one that is named there.
     pub fn detect() -> Self {
+        LIMIT.get().unwrap_or_else(Self::best)
+    }
+
+    fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             if std::arch::is_x86_feature_detected!("fma")
@@ -81,6 +87,30 @@ fn run_avx2<J: Job>(job: J) -> J::Output {
     job.run()
 }
 
+std::thread_local! {
+    /// What [`limited_to`] says on this thread.
+    static LIMIT: Cell<Option<InstructionSet>> = const { Cell::new(None) };
+}
+
+/// Runs `work` with everything that it dispatches on this thread done with `set`, or with the best
+/// instruction set that this machine has where it lacks that one. For tests that compare them.
+pub fn limited_to<T>(set: InstructionSet, work: impl FnOnce() -> T) -> T {
+    /// Gives the limit back that was there before, also after a panic.
+    struct Before(Option<InstructionSet>);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            LIMIT.set(self.0);
+        }
+    }
+    let best = InstructionSet::best();
+    let has_it = set == best || (best == InstructionSet::Avx512 && set == InstructionSet::Avx2);
+    let _before = Before(LIMIT.replace(Some(if has_it { set } else { best })));
+    work()
+}
+
+const NO_FUSED_MULTIPLY_ADD: &str =
+    "this machine has no fused multiply-add, which every path's bits rely on";
+
 /// Runs the job with the best instruction set of this machine.
 pub fn dispatch<J: Job>(job: J) -> J::Output {
     dispatch_on(InstructionSet::detect(), job)
@@ -93,11 +123,8 @@ pub fn dispatch<J: Job>(job: J) -> J::Output {
 /// On a machine without fused multiply-add. What tracks paths asks
 /// [`InstructionSet::detect`] first and declines such a machine.
 pub fn dispatch_on<J: Job>(instruction_set: InstructionSet, job: J) -> J::Output {
-    let best = InstructionSet::detect();
-    assert!(
-        best != InstructionSet::Software,
-        "this machine has no fused multiply-add, which every path's bits rely on"
-    );
+    let best = InstructionSet::best();
+    assert!(best != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");
     #[cfg(target_arch = "x86_64")]
     {
         if best == InstructionSet::Avx512 && instruction_set != InstructionSet::Avx2 {
@@ -112,6 +139,26 @@ pub fn dispatch_on<J: Job>(instruction_set: InstructionSet, job: J) -> J::Output
     #[cfg(not(target_arch = "x86_64"))]
     {
         let _ = instruction_set;
+        job.run()
+    }
+}
+
+/// Runs a job on single numbers, which gain nothing from AVX-512: it is compiled once, for AVX2 with
+/// fused multiply-add, which every machine with AVX-512 has too. The bits are those of [`dispatch`].
+///
+/// # Panics
+/// On a machine without fused multiply-add, as [`dispatch_on`] does.
+pub fn dispatch_single<J: Job>(job: J) -> J::Output {
+    let best = InstructionSet::best();
+    assert!(best != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");
+    #[cfg(target_arch = "x86_64")]
+    {
+        // SAFETY: the features were detected on this machine just now: both sets have AVX2 and FMA;
+        // `single_numbers_are_the_same_on_every_instruction_set` compares.
+        unsafe { run_avx2(job) }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
         job.run()
     }
 }
@@ -153,5 +200,22 @@ mod tests {
         ] {
             assert_eq!(plain, dispatch_on(set, Horner(x)), "{}", set.name());
         }
+    }
+
+    #[test]
+    fn single_numbers_are_the_same_on_every_instruction_set() {
+        let x = std::array::from_fn(|i| (i as f64 - 7.3) / 9.1);
+        let single = dispatch_single(Horner(x));
+        for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
+            let limited = limited_to(set, || {
+                assert!(
+                    InstructionSet::detect() == set
+                        || InstructionSet::best() != InstructionSet::Avx512
+                );
+                dispatch(Horner(x))
+            });
+            assert_eq!(single, limited, "{}", set.name());
+        }
+        assert_eq!(InstructionSet::detect(), InstructionSet::best());
     }
 }

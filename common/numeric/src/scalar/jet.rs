@@ -21,8 +21,9 @@ impl<S: Real> Jet<S> {
         jet
     }
 
-    /// `self += a*b`, or `self -= a*b`, term by term.
-    #[inline(always)]
+    /// `self += a*b`, or `self -= a*b`, term by term. A call of its own: written out at every place of the
+    /// interpreter, with numbers of MPFR, it made a function of half a megabyte, the largest of the program.
+    #[inline(never)]
     fn accumulate(&mut self, a: &Self, b: &Self, minus: bool) {
         for k in 0..TERMS {
             for j in 0..=k {
@@ -91,14 +92,14 @@ impl<S: Real> Real for Jet<S> {
             own.sub(other);
         }
     }
-    #[inline(always)]
+    #[inline(never)]
     fn mul(&mut self, other: &Self) {
         let a = self.clone();
         *self = Self::from_f64(a.context(), 0.0);
         self.accumulate(&a, other, false);
     }
     /// q b = a: each coefficient of q from those before it.
-    #[inline(always)]
+    #[inline(never)]
     fn div(&mut self, other: &Self) {
         for k in 0..TERMS {
             let (known, rest) = self.0.split_at_mut(k);

@@ -7,11 +7,10 @@ use crate::client::error::{ClientError, Exit};
 use crate::config::{Config, ListenAddress};
 use crate::server::{self, ServerError};
 use cognate_worker::transport::connect::CredentialError;
-use std::io::IsTerminal;
 
 /// Serves until somebody wants it to end; then lets running calls finish.
 pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
-    log_to_standard_error();
+    cognate_worker::log::to_standard_error();
     let config = config(a)?;
     let started = |addresses: &[ListenAddress]| {
         for address in addresses {
@@ -20,7 +19,7 @@ pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
     };
     match server::run(config, started).await {
         Ok(()) => Ok(Exit::Solved),
-        Err(ServerError::Door(e)) => Err(ClientError::Input {
+        Err(ServerError::Listener(e)) => Err(ClientError::Input {
             origin: "--listen".into(),
             message: e.to_string(),
         }),
@@ -87,16 +86,4 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
     config.metrics = a.metrics.clone().or(file.metrics);
     config.insecure = a.insecure || file.insecure.unwrap_or(false);
     Ok(config)
-}
-
-/// Logs of a service: on standard error, `RUST_LOG` says how much.
-pub fn log_to_standard_error() {
-    let filter = tracing_subscriber::EnvFilter::try_from_default_env()
-        .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("info"));
-    let logs = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal());
-    // Somebody who embeds this may have chosen a subscriber already.
-    let _ = logs.try_init();
 }

@@ -5,6 +5,6 @@ use std::process::ExitCode;
 
 /// Works until something ends it. It has a runtime of its own.
 pub fn run(a: Worker) -> ExitCode {
-    super::coordinator::log_to_standard_error();
+    cognate_worker::log::to_standard_error();
     ExitCode::from(cognate_worker::command::execute(a.worker))
 }

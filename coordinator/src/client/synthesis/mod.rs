@@ -1,8 +1,6 @@
 //! Synthesis: from points to linkages, by jobs of the service.
 //!
-//! The points become parameters of the nine-point system; one representative of each class is
-//! followed there from the generic member that is carried in this program; what is open then is
-//! followed by other cognates, more carefully, and along other parameters.
+//! What is followed is decided in `cognate_kinematics` (`nine_point::search`); here each round becomes a job.
 
 pub mod designs;
 pub mod point_files;
@@ -19,8 +17,8 @@ use super::problem::Prepared;
 use crate::results::summary::Summary;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
-use cognate_kinematics::nine_point::class_book::{Arrival, Arrived, Member};
-use cognate_kinematics::nine_point::{ClassBook, ClassEnd, PathPoints, Point, family};
+use cognate_kinematics::nine_point::class_book::{Arrival, Arrived};
+use cognate_kinematics::nine_point::{ClassBook, PathPoints, Point, Search, family};
 use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
@@ -68,9 +66,6 @@ pub struct Answer {
 /// Seed of a synthesis where none is asked for: the same points give the same bits.
 const SEED: u64 = 0;
 
-/// Added to the seed for another way through the parameters.
-const OTHER_WAY: u64 = 1;
-
 /// Follows all classes to these points.
 pub async fn nine_points(
     target: &Target,
@@ -78,14 +73,40 @@ pub async fn nine_points(
     how: &How,
     progress: &mut Progress,
 ) -> Result<Answer, ClientError> {
-    let mut search = Search::new(target, points, how, progress);
-    let mut book = ClassBook::new(points.parameters());
-    let first = ClassBook::first_round();
-    let (seed, preset) = (search.seed, search.preset);
-    search
-        .round("one of each class", &mut book, &first, seed, preset)
-        .await?;
-    search.settle(book).await
+    let search = Search::new(points);
+    carry_out(target, points, how, progress, search).await
+}
+
+/// Carries out the rounds that a search has before it, each as one job.
+async fn carry_out(
+    target: &Target,
+    points: &PathPoints,
+    how: &How,
+    progress: &mut Progress,
+    mut search: Search,
+) -> Result<Answer, ClientError> {
+    let mut rounds = Vec::new();
+    while let Some(round) = search.next_round() {
+        let seed = how.seed.unwrap_or(SEED).wrapping_add(round.way);
+        let preset = match round.careful {
+            true => Preset::Careful,
+            false => preset(how.preset),
+        };
+        let targets = [points.parameters()];
+        let job = submission(&round.starts, &targets, points.is_real(), how, seed, preset);
+        let (summary, ends) = run(target, job, progress).await?;
+        rounds.push(Round {
+            purpose: round.purpose,
+            summary,
+        });
+        search.absorb(ends);
+    }
+    let (book, derived) = search.finish();
+    Ok(Answer {
+        book,
+        rounds,
+        derived,
+    })
 }
 
 /// The system that is followed: without the group, of which only one member is wanted, and
@@ -106,114 +127,6 @@ fn preset(name: PresetName) -> Preset {
         PresetName::Default => Preset::Default,
         PresetName::Fast => Preset::Fast,
         PresetName::Reckless => Preset::Reckless,
-    }
-}
-
-/// A synthesis under way.
-struct Search<'a> {
-    target: &'a Target,
-    points: &'a PathPoints,
-    how: &'a How,
-    progress: &'a mut Progress,
-    rounds: Vec<Round>,
-    seed: u64,
-    preset: Preset,
-}
-
-impl<'a> Search<'a> {
-    fn new(
-        target: &'a Target,
-        points: &'a PathPoints,
-        how: &'a How,
-        progress: &'a mut Progress,
-    ) -> Self {
-        Self {
-            target,
-            points,
-            how,
-            progress,
-            rounds: vec![],
-            seed: how.seed.unwrap_or(SEED),
-            preset: preset(how.preset),
-        }
-    }
-
-    /// What is open after the first round.
-    async fn settle(mut self, mut book: ClassBook) -> Result<Answer, ClientError> {
-        let (seed, preset) = (self.seed, self.preset);
-        book.compare();
-        let others = book.other_cognates();
-        self.round("other cognates", &mut book, &others, seed, preset)
-            .await?;
-        book.compare();
-        let open = book.open();
-        self.round("again, carefully", &mut book, &open, seed, Preset::Careful)
-            .await?;
-        book.compare();
-        let mut derived = book.derive(&[], self.points.is_real());
-        if !book.counts().contains(&(ClassEnd::Failed, 0)) {
-            // Along other parameters every class may end as another one: only what is found counts.
-            let first = ClassBook::first_round();
-            let starts: Vec<Point> = first.iter().map(|&member| book.start(member)).collect();
-            let way = seed.wrapping_add(OTHER_WAY);
-            let job = self.job("another way", &starts, way, preset).await?;
-            let others: Vec<Arrived> = job
-                .into_values()
-                .filter_map(|arrival| match arrival {
-                    Arrival::Regular(arrived) => Some(arrived),
-                    _ => None,
-                })
-                .collect();
-            derived += book.derive(&others, self.points.is_real());
-        }
-        Ok(Answer {
-            book,
-            rounds: self.rounds,
-            derived,
-        })
-    }
-
-    /// Follows these members, if there are any, and notes how they ended.
-    async fn round(
-        &mut self,
-        purpose: &'static str,
-        book: &mut ClassBook,
-        members: &[Member],
-        seed: u64,
-        preset: Preset,
-    ) -> Result<(), ClientError> {
-        if members.is_empty() {
-            return Ok(());
-        }
-        let starts: Vec<Point> = members.iter().map(|&member| book.start(member)).collect();
-        let mut ends = self.job(purpose, &starts, seed, preset).await?;
-        for (k, &member) in members.iter().enumerate() {
-            let unknown = || Arrival::Failed("the service says nothing of its path".into());
-            book.note(member, ends.remove(&k).unwrap_or_else(unknown));
-        }
-        Ok(())
-    }
-
-    /// One job: how each start ended, by its place.
-    async fn job(
-        &mut self,
-        purpose: &'static str,
-        starts: &[Point],
-        seed: u64,
-        preset: Preset,
-    ) -> Result<BTreeMap<usize, Arrival>, ClientError> {
-        let targets = [self.points.parameters()];
-        let submission = submission(
-            starts,
-            &targets,
-            self.points.is_real(),
-            self.how,
-            seed,
-            preset,
-        );
-        let (summary, ends) = run(self.target, submission, self.progress).await?;
-        self.rounds.push(Round { purpose, summary });
-        Ok(ends)
     }
 }
 

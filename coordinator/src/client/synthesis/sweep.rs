@@ -1,12 +1,10 @@
 //! Sweeps: many sets of nine points, in jobs of some sets each, answered set after set.
 
-use super::{Answer, How, SEED, Search, preset, run, submission};
+use super::{Answer, How, SEED, carry_out, preset, run, submission};
 use crate::client::connection::Target;
 use crate::client::error::ClientError;
 use crate::client::output::progress::Progress;
-use cognate_kinematics::nine_point::class_book::Arrival;
-use cognate_kinematics::nine_point::family::CLASSES;
-use cognate_kinematics::nine_point::{ClassBook, PathPoints, Point};
+use cognate_kinematics::nine_point::{PathPoints, Search};
 use futures::StreamExt;
 
 /// Sets in one job: enough paths to keep many workers busy, few enough that answers come soon.
@@ -43,12 +41,16 @@ async fn follow(
     batch: &[(String, PathPoints)],
     how: &How,
 ) -> Result<Vec<Answer>, ClientError> {
-    let first = ClassBook::first_round();
-    let books: Vec<ClassBook> = batch
+    // The first round is the same for every set: one job follows it to all of them.
+    let mut searches: Vec<Search> = batch
         .iter()
-        .map(|(_, points)| ClassBook::new(points.parameters()))
+        .map(|(_, points)| Search::new(points))
         .collect();
-    let starts: Vec<Point> = first.iter().map(|&member| books[0].start(member)).collect();
+    let mut starts = Vec::new();
+    for search in &mut searches {
+        let round = search.next_round().expect("a search begins with a round");
+        starts = round.starts;
+    }
     let targets: Vec<_> = batch
         .iter()
         .map(|(_, points)| points.parameters())
@@ -59,15 +61,13 @@ async fn follow(
     let mut quiet = Progress::silent();
     let (_, mut ends) = run(target, job, &mut quiet).await?;
     let mut answers = Vec::with_capacity(batch.len());
-    for (number, (book, (_, points))) in books.into_iter().zip(batch).enumerate() {
-        let mut book = book;
-        for &member in &first {
-            let unknown = || Arrival::Failed("the service says nothing of its path".into());
-            let path = number * CLASSES + member.class;
-            book.note(member, ends.remove(&path).unwrap_or_else(unknown));
-        }
-        let search = Search::new(target, points, how, &mut quiet);
-        answers.push(search.settle(book).await?);
+    for (mut search, (_, points)) in searches.into_iter().zip(batch) {
+        let later = ends.split_off(&starts.len());
+        search.absorb(ends);
+        // Paths are numbered through all sets.
+        let of_the_next = |(path, arrival)| (path - starts.len(), arrival);
+        ends = later.into_iter().map(of_the_next).collect();
+        answers.push(carry_out(target, points, how, &mut quiet, search).await?);
     }
     Ok(answers)
 }

@@ -1,18 +1,10 @@
 //! Audits in memory: votes on chunks, and what becomes of a worker that was outvoted.
 
-use super::PRESENT_MS;
 use super::books::{Books, Chunk, Stage};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
-
-/// Why a job ends that has used results of a worker that was outvoted later.
-pub fn tainted(worker: &WorkerId) -> String {
-    format!(
-        "worker {worker} computed wrongly, which an audit has shown, and results of it were used \
-         before that: submit the job again"
-    )
-}
+use crate::ledger::rules::{PRESENT_MS, tainted};
 
 impl Chunk {
     /// Whether this worker has executed the chunk for an audit.
@@ -69,7 +61,7 @@ impl Books {
 
     /// One execution of an audited chunk; `None` where it is not the chunk's lease that stands, nor
     /// one that voted.
-    pub fn witness(
+    pub fn confirm(
         &mut self,
         now: LedgerTime,
         lease: LeaseId,
@@ -83,7 +75,7 @@ impl Books {
         let Some(holder) = holder.filter(|_| chunk.row.items == result.items) else {
             let vote = chunk.votes.iter().find(|vote| vote.epoch == lease.epoch)?;
             return Some(if vote.hash == result.hash {
-                Completion::Witnessed
+                Completion::Unconfirmed
             } else {
                 Completion::HashDiffers
             });
@@ -99,7 +91,7 @@ impl Books {
             self.unlease(lease.chunk, ChunkState::Ready);
             self.elders.remove(&lease.chunk);
             self.charge(lease.chunk.job, result.cpu_micros as i64);
-            return Some(Completion::Witnessed);
+            return Some(Completion::Unconfirmed);
         }
         let outvoted = chunk.votes.iter().filter(|vote| vote.hash != result.hash);
         let outvoted: Vec<WorkerId> = outvoted.map(|vote| vote.worker.clone()).collect();

@@ -1,11 +1,11 @@
 //! What the ledger in memory holds, and the moves that its calls are made of.
 
-use super::{PRESENT_MS, estimate};
 use crate::chunks::sizing::Situation;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
+use crate::ledger::rules::{PRESENT_MS, estimate};
 use cognate_continuation::work::StageId;
 use std::collections::{BTreeMap, BTreeSet};
 

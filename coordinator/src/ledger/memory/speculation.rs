@@ -1,11 +1,11 @@
 //! Speculation in memory: late chunks that a second worker gets, and who of the two may report.
 
 use super::books::Books;
-use super::estimate;
 use crate::chunks::speculation::Pace;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
+use crate::ledger::rules::estimate;
 
 impl Books {
     /// Who may report under this lease; `None` where it has ended, or the chunk has a result.

@@ -3,13 +3,13 @@
 
 use super::decode::*;
 use super::engine::{Connection, query};
-use super::leases::{Found, accept, complete, find, release, release_all, signed};
+use super::leases::{Found, accept, complete, find, release, release_all};
 use super::speculation::{drop_elder, drop_elders_of_worker};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
-use crate::ledger::memory::{check_size, tainted};
 use crate::ledger::rows::*;
+use crate::ledger::rules::{check_size, tainted};
 use std::collections::BTreeSet;
 
 async fn votes(c: &mut Connection, chunk: ChunkId) -> Result<Vec<Vote>, LedgerError> {
@@ -31,7 +31,7 @@ async fn votes(c: &mut Connection, chunk: ChunkId) -> Result<Vec<Vote>, LedgerEr
 }
 
 /// One execution of an audited chunk.
-pub async fn witness(
+pub async fn confirm(
     c: &mut Connection,
     now: LedgerTime,
     lease: LeaseId,
@@ -49,7 +49,7 @@ pub async fn witness(
     let Some(holder) = holder else {
         let vote = votes.iter().find(|vote| vote.epoch == lease.epoch);
         return match vote.filter(|_| found.state != "accepted") {
-            Some(vote) if vote.hash == result.hash => Ok(Completion::Witnessed),
+            Some(vote) if vote.hash == result.hash => Ok(Completion::Unconfirmed),
             Some(_) => Ok(Completion::HashDiffers),
             None => complete(c, now, lease, result).await,
         };
@@ -83,7 +83,7 @@ pub async fn witness(
             charge(c, lease.chunk.job, cpu_micros).await?;
         }
         drop_elder(c, lease.chunk, 0).await?;
-        return Ok(Completion::Witnessed);
+        return Ok(Completion::Unconfirmed);
     }
     accept(c, now, lease, &found, &holder, &result, cpu_micros).await?;
     for outvoted in votes.iter().filter(|vote| vote.hash != result.hash) {

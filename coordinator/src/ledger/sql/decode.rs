@@ -34,6 +34,11 @@ fn time(row: &Row, column: &str) -> Result<LedgerTime, LedgerError> {
     Ok(LedgerTime(row.try_get(column)?))
 }
 
+/// A number as a database holds it.
+pub fn signed(value: u64) -> i64 {
+    i64::try_from(value).unwrap_or(i64::MAX)
+}
+
 /// A digest.
 pub fn digest(row: &Row, column: &str) -> Result<Digest, LedgerError> {
     parse_digest(&text(row, column)?).map_err(damaged)

@@ -55,9 +55,9 @@ pub enum Readers {
 
 /// A row of either.
 pub enum Row {
-    /// Of a file.
+    /// A row of SQLite.
     Sqlite(SqliteRow),
-    /// Of a server.
+    /// A row of PostgreSQL.
     Postgres(PgRow),
 }
 

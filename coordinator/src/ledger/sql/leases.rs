@@ -7,12 +7,8 @@ use crate::chunks::sizing::Situation;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
-use crate::ledger::memory::{PRESENT_MS, check_size, estimate};
 use crate::ledger::rows::*;
-
-pub fn signed(value: u64) -> i64 {
-    i64::try_from(value).unwrap_or(i64::MAX)
-}
+use crate::ledger::rules::{PRESENT_MS, check_size, estimate};
 
 /// What a chunk's row says that the operations here need.
 pub struct Found {

@@ -226,14 +226,14 @@ impl Ledger for SqlLedger {
             .await
     }
 
-    async fn condemn(
+    async fn fail_item(
         &self,
         chunk: ChunkId,
         epoch: Epoch,
         result: ResultObject,
     ) -> Result<(), LedgerError> {
         self.writer
-            .write(move |c, _| Box::pin(stewardship::condemn(c, chunk, epoch, result)))
+            .write(move |c, _| Box::pin(stewardship::fail_item(c, chunk, epoch, result)))
             .await
     }
 
@@ -317,13 +317,13 @@ impl Ledger for SqlLedger {
             .await
     }
 
-    async fn witness(
+    async fn confirm(
         &self,
         lease: LeaseId,
         result: ResultObject,
     ) -> Result<Completion, LedgerError> {
         self.writer
-            .write(move |c, now| Box::pin(audit::witness(c, now, lease, result)))
+            .write(move |c, now| Box::pin(audit::confirm(c, now, lease, result)))
             .await
     }
 

@@ -3,12 +3,11 @@
 
 use super::decode::*;
 use super::engine::{Connection, query};
-use super::leases::signed;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
-use crate::ledger::memory::estimate;
 use crate::ledger::rows::*;
+use crate::ledger::rules::estimate;
 
 /// The chunk that is late, of whoever's turn it is, the oldest: `Speculation::is_overdue` in SQL, by
 /// what the stage's accepted chunks took, or the job's where it has none. Whoever is suspected gets

@@ -7,8 +7,8 @@ use super::speculation::drop_elder;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
-use crate::ledger::memory::{check_size, first_virtual_time, make_up};
 use crate::ledger::rows::*;
+use crate::ledger::rules::{check_size, first_virtual_time, make_up};
 use cognate_continuation::work::StageId;
 use std::collections::BTreeSet;
 
@@ -291,7 +291,7 @@ pub async fn split(
 }
 
 /// Settles a ready chunk with the coordinator's own verdict.
-pub async fn condemn(
+pub async fn fail_item(
     c: &mut Connection,
     chunk: ChunkId,
     epoch: Epoch,

@@ -6,6 +6,7 @@ use crate::ledger::clock::{Clock, ManualClock, SystemClock};
 use crate::ledger::conformance::*;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
+use cognate_tests::skip::skip;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ ledger_conformance!(sqlite, open);
 fn postgres() -> Option<String> {
     let server = std::env::var("COGNATE_TEST_POSTGRES").ok();
     if server.is_none() {
-        println!("skipped: COGNATE_TEST_POSTGRES names no server; tests/run.sh starts one");
+        skip("COGNATE_TEST_POSTGRES names no server; tests/run.sh starts one");
     }
     server
 }
@@ -248,8 +249,8 @@ async fn a_database_of_version_1_still_opens() {
     let lease = one.lease(wants("w", "1", 1)).await.unwrap().remove(0);
     let object = result(lease.items, 1, 100_000);
     // What the second version is for.
-    let voted = one.witness(lease.lease, object).await.unwrap();
-    assert_eq!(voted, Completion::Witnessed);
+    let voted = one.confirm(lease.lease, object).await.unwrap();
+    assert_eq!(voted, Completion::Unconfirmed);
     let mut now = PgConnection::connect(&url).await.expect("the database");
     let votes = of_version("SELECT * FROM votes").fetch_all(&mut now).await;
     assert_eq!(votes.unwrap().len(), 1);

@@ -23,7 +23,7 @@ enum Message {
     Close(oneshot::Sender<()>),
 }
 
-/// The door to the writing task.
+/// The way to the writing task.
 pub struct Writer {
     operations: mpsc::Sender<Message>,
 }

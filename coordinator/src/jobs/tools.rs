@@ -1,0 +1,59 @@
+//! Tools: what a drive works with, and why a step of it may not be made.
+
+use crate::chunks::leasing::Policy;
+use crate::ledger::identity::{CoordinatorId, Epoch, JobId};
+use crate::ledger::{Ledger, LedgerError};
+use crate::results::store::{Store, StoreError};
+
+/// What a drive works with.
+pub struct Tools<'a> {
+    /// The ledger.
+    pub ledger: &'a dyn Ledger,
+    /// The store of objects.
+    pub store: &'a Store,
+    /// Name of the coordinator that drives.
+    pub who: &'a CoordinatorId,
+    /// Policy of the service.
+    pub policy: &'a Policy,
+}
+
+impl Tools<'_> {
+    /// Keeps the right to drive a job; false once it is lost.
+    pub async fn renew_right(&self, job: JobId, epoch: Epoch) -> Result<bool, LedgerError> {
+        let duration = self.policy.steward_ms;
+        let right = self.ledger.steward(job, self.who, duration).await?;
+        Ok(right == Some(epoch))
+    }
+}
+
+/// Why a step of a drive was not made.
+#[derive(Debug, thiserror::Error)]
+pub enum DriveError {
+    /// The ledger refused or failed.
+    #[error(transparent)]
+    Ledger(#[from] LedgerError),
+    /// An object could not be written or read.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The job's state cannot be read back.
+    #[error("the job's state cannot be read: {0}")]
+    State(String),
+}
+
+impl DriveError {
+    /// True where another steward, or nobody, drives the job now.
+    pub fn is_fenced(&self) -> bool {
+        matches!(self, Self::Ledger(LedgerError::Fenced(_)))
+    }
+
+    /// True where trying again later cannot help: the job ends with this reason.
+    pub fn is_permanent(&self) -> bool {
+        match self {
+            Self::Ledger(LedgerError::Damaged(_) | LedgerError::TooLarge(_)) | Self::State(_) => {
+                true
+            }
+            Self::Ledger(_) => false,
+            Self::Store(error) => error.is_permanent(),
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Subject: a stage of a real solve, with all that a worker needs to do its items.
+
+use cognate_algorithms::plan::GivenStart;
+use cognate_algorithms::run_locally::drive;
+use cognate_algorithms::{PlanOptions, plan};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::prepared_work::PreparedWork;
+use cognate_continuation::stage::PrepareError;
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::work::Stage;
+use cognate_numeric::lanes::dispatch::{InstructionSet, limited_to};
+use cognate_protocol::records;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Of a longer stage only the first items are done: enough for every kind of end, few enough for seconds.
+const MOST_ITEMS: u64 = 48;
+
+/// A stage of a solve by seed 7.
+pub struct Subject {
+    system: System,
+    /// The stage.
+    pub stage: Stage,
+    points: HashMap<Digest, Arc<StoredPoints>>,
+}
+
+/// Hash of the records of these results: what an audit compares. An unknown number (NaN) equals itself.
+pub fn hash(results: &[PathResult]) -> String {
+    records::hash(&records::encode(results)).to_string()
+}
+
+impl Subject {
+    /// The first wanted stage of this solve. What comes before it is done on the way.
+    ///
+    /// # Panics
+    /// When the solve has no such stage.
+    pub fn of(system: &System, options: PlanOptions, wanted: &dyn Fn(&Stage) -> bool) -> Self {
+        Self::from(system, Vec::new(), options, wanted)
+    }
+
+    /// The same, of a solve that starts from these points.
+    pub fn from(
+        system: &System,
+        start: Vec<Complex64>,
+        options: PlanOptions,
+        wanted: &dyn Fn(&Stage) -> bool,
+    ) -> Self {
+        let mut points = HashMap::new();
+        let mut options = PlanOptions { seed: 7, ..options };
+        if !start.is_empty() {
+            let given = StoredPoints {
+                dimension: system.variables.len(),
+                coordinates: start,
+            };
+            options.start_points = Some(GivenStart {
+                object: given.digest(),
+                count: given.len() as u64,
+                dimension: given.dimension,
+            });
+            points.insert(given.digest(), Arc::new(given));
+        }
+        let mut plan = plan(system, &options).expect("a plan");
+        let mut found = None;
+        let ended = drive::<()>(&mut plan.algorithm, &mut |opening| {
+            let brought = opening.objects.iter();
+            points.extend(brought.map(|object| (object.digest(), Arc::clone(object))));
+            if wanted(&opening.stage) {
+                found = Some(opening.stage.clone());
+                return Err(());
+            }
+            let find = |digest: Digest| points.get(&digest).cloned();
+            let prepared = PreparedWork::new(&plan.system, &opening.stage, &find);
+            let prepared = prepared.expect("a stage of a solve can be prepared");
+            Ok(prepared.run(0..prepared.items(), 8))
+        });
+        assert_eq!(ended, Err(()), "the solve has no such stage");
+        Self {
+            system: plan.system,
+            stage: found.expect("it ended there"),
+            points,
+        }
+    }
+
+    fn prepare(&self) -> Result<PreparedWork, PrepareError> {
+        PreparedWork::new(&self.system, &self.stage, &|digest| {
+            self.points.get(&digest).cloned()
+        })
+    }
+
+    fn prepared(&self) -> (PreparedWork, u64) {
+        let prepared = self.prepare().expect("a stage of a solve can be prepared");
+        assert_eq!(Some(prepared.items()), self.stage.items());
+        let end = prepared.items().min(MOST_ITEMS);
+        assert!(end > 1, "one item has no neighbours");
+        (prepared, end)
+    }
+
+    /// How many items are done and the hash of their results, for the golden file.
+    pub fn golden(&self) -> (u64, String) {
+        let (prepared, end) = self.prepared();
+        (end, hash(&prepared.run(0..end, 8)))
+    }
+
+    /// Results are the same bits at every width, in every split and order, on every instruction set and
+    /// after another preparation; each is that of its item; records give them back.
+    ///
+    /// # Panics
+    /// When that is not so.
+    pub fn check_purity(&self) {
+        let (prepared, end) = self.prepared();
+        let expected = prepared.run(0..end, 16);
+        assert_eq!(expected.len() as u64, end);
+        for (item, result) in (0..).zip(&expected) {
+            assert_eq!(result.origin.0, self.stage.origin(item), "item {item}");
+            assert_eq!(result.attempt, self.stage.attempt, "item {item}");
+        }
+        let check = |what: &str, found: Vec<PathResult>| {
+            assert!(
+                hash(&found) == hash(&expected),
+                "{what} changes the results"
+            );
+        };
+        check("width 8", prepared.run(0..end, 8));
+        check("width 1", prepared.run(0..end, 1));
+        let one_by_one = (0..end).flat_map(|item| prepared.run(item..item + 1, 8));
+        check("having no neighbours", one_by_one.collect());
+        let mut parts = Vec::new();
+        for k in (0..end.div_ceil(5)).rev() {
+            parts.push(prepared.run(5 * k..(5 * k + 5).min(end), 16));
+        }
+        parts.reverse();
+        check("another order of chunks", parts.concat());
+        for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
+            let there = limited_to(set, || {
+                let (prepared, _) = self.prepared();
+                prepared.run(0..end, 8)
+            });
+            check(set.name(), there);
+        }
+        check("preparing again", self.prepared().0.run(0..end, 16));
+        let read = records::decode(&records::encode(&expected));
+        check("a record", read.expect("records are read"));
+    }
+}
