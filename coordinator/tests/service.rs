@@ -5,7 +5,7 @@ mod support;
 
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};
 use cognate_coordinator::server::{Server, ServerError};
-use cognate_coordinator::transport::DoorError;
+use cognate_coordinator::transport::ListenError;
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
 use support::{FOUR_POINTS, FakeWorker, House, MANY_PATHS, text};
@@ -567,7 +567,7 @@ async fn beyond_loopback_only_when_told_so() {
     let refused = Server::start(config(false)).await.err().unwrap();
     assert!(matches!(
         &refused,
-        ServerError::Door(DoorError::BeyondLoopback { .. })
+        ServerError::Listener(ListenError::BeyondLoopback { .. })
     ));
     assert!(refused.to_string().contains("--insecure"), "{refused}");
     Server::start(config(true)).await.unwrap().shutdown().await;
