@@ -183,7 +183,7 @@ impl Chart {
         &self,
         context: R::Context,
         point: &[Complex<R>],
-    ) -> Vec<Complex64> {
+    ) -> Vec<Complex<R>> {
         let affine = self.groups.iter().filter(|group| !group.homogeneous);
         affine
             .map(|group| {
@@ -192,7 +192,7 @@ impl Chart {
                 for (&c, y) in group.patch[1..].iter().zip(&point[group.first..]) {
                     y0.mul_add(&exact(c), y);
                 }
-                y0.lane(0)
+                y0
             })
             .collect()
     }

@@ -117,7 +117,9 @@ pub struct PathResult {
     /// Condition number of the Jacobian at the endpoint, each equation scaled to 1 on the patch;
     /// infinite where unknown.
     pub condition: f64,
-    /// Estimated error of the endpoint, relative to its largest coordinate.
+    /// Estimated error of the endpoint, relative to its largest coordinate. Of a path that diverges:
+    /// a power sum over its sheets of a homogenising coordinate (the largest coordinate being 1)
+    /// that is not 0, but too small to tell it from infinity by doubles; infinite where there is none.
     pub accuracy: f64,
     /// How many turns around t = 0 bring the path back to itself; `None` where it was not asked
     /// (a regular endpoint has winding number 1).

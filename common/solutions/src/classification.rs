@@ -111,7 +111,13 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     let point = result.endpoint.to_double();
     let singular = match result.outcome {
         PathOutcome::Failed(_) => return Decision::clear(Verdict::Failed),
-        PathOutcome::Diverging => return Decision::clear(Verdict::AtInfinity),
+        // With a power sum that is not 0 it ends at a point that is infinity as far as doubles tell.
+        PathOutcome::Diverging => {
+            return Decision {
+                verdict: Verdict::AtInfinity,
+                by_precision_limit: result.accuracy.is_finite(),
+            };
+        }
         // A result that holds no point is as good as none.
         _ if !shape.holds(point) => return Decision::clear(Verdict::Failed),
         _ if !solves(result, tolerances) => return Decision::clear(Verdict::Failed),
@@ -139,7 +145,9 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
             Some(&turns) => {
                 let nothing = coordinate <= tolerances.infinity_floor;
                 at_infinity |= nothing || (vanishes && turns > 0);
-                by_precision_limit |= vanishes != (turns > 0);
+                // Where turns show infinity a path ends without a point: one that has a point had
+                // none that showed it.
+                by_precision_limit |= vanishes != (turns > 0) || (vanishes && !nothing);
             }
             None => {
                 at_infinity |= vanishes;

@@ -8,6 +8,7 @@
 //! over the same samples; they vanish only if all sheets end at the mean. An
 //! endpoint counts when they do, and when two radii agree on it and on c.
 
+use super::infinity::{Homogenizing, Infinity, at_exact_vertex, vanishes};
 use super::winding::Winding;
 use crate::chart::norm;
 use crate::tracker::settings::Settings;
@@ -19,6 +20,12 @@ use num_complex::Complex64;
 pub const VERTICES: u32 = 16;
 /// Ratio of successive radii.
 const SHRINKAGE: f64 = 0.125;
+/// Sheets that branch points inside the radius join are followed further in, to this part of how far
+/// out the branch points are.
+const WITHIN: f64 = 0.1;
+/// Radius below which sheets are not followed until they part: equations with coefficients of sixteen digits
+/// have such ends where exact ones have infinity.
+const NEAREST: f64 = 1e-16;
 /// Turns after which a path that has not closed is taken further in, twice as many every second time,
 /// unless it looks as if it diverged: more often branch points lie inside the radius than the
 /// winding number is so large.
@@ -37,6 +44,8 @@ const LEAST_POWER: f64 = 0.01;
 const UNIFORM: f64 = 0.5;
 /// And goes on to be where their mean changes by less than this part from radius to radius.
 const STEADY: f64 = 0.02;
+/// Turns are begun where a valuation has changed by less than this part.
+const STEADY_ENOUGH: f64 = 0.1;
 /// Or where it has not fallen over so many radii: that of a coordinate with a limit falls to 0, while
 /// fractional powers of t that come closer and closer to a leading one may creep for ever.
 const UNFALLING: u32 = 4;
@@ -57,8 +66,19 @@ pub enum Next {
     Inward(f64),
     /// Two radii agree.
     Settled(Settled),
-    /// The path goes to infinity, as the valuations say; where it ends there is not settled.
-    Diverging,
+    /// The path goes to infinity; where it ends there is not settled.
+    Diverging {
+        /// Turns until the path closed; `None` where only the valuations say it.
+        winding_number: Option<u32>,
+        /// Turns of each homogenising coordinate, where the path closed.
+        infinity_turns: Vec<i32>,
+        /// A power sum of a homogenising coordinate that is not 0, but so small that where its sheets
+        /// part lies beyond reach.
+        power_sum: Option<f64>,
+    },
+    /// The turns are made again at this radius with more digits: whether a homogenising
+    /// coordinate vanishes lies below the noise of these.
+    Finer,
     /// There is no use in smaller radii.
     Unsettled,
 }
@@ -94,14 +114,16 @@ pub struct Cauchy {
     total_turns: u32,
     /// At how many radii the path did not close.
     unclosed: u32,
-    /// Whether the path looks as if it diverged, at this radius.
-    diverging: bool,
+    /// Whether the turns can be made with more digits.
+    may_be_finer: bool,
     noise: f64,
     /// Valuations of the homogenising coordinates at all samples, sample after sample.
     valuations: Vec<Complex64>,
     /// The exponents that were found at the radius before, and at how many radii up to it none fell.
     powers: Vec<Option<(f64, u32)>>,
     infinity: Vec<Winding>,
+    /// Values of the homogenising coordinates at all samples, sample after sample.
+    homogenizing: Vec<Homogenizing>,
     previous: Option<(u32, Vec<Complex64>)>,
 }
 
@@ -126,6 +148,12 @@ fn power<'a>(valuations: impl Iterator<Item = &'a Complex64> + Clone) -> Option<
     let uniform = off <= (UNIFORM * mean.re) * (UNIFORM * mean.re);
     let real = mean.im.abs() <= STEADY * mean.re;
     (mean.re >= LEAST_POWER && uniform && real).then_some(mean.re)
+}
+
+/// Whether a valuation is that of a coordinate that goes to 0 like a power of t, and the same as before.
+pub(crate) fn is_steady(now: Complex64, before: Complex64) -> bool {
+    let change = (now - before).norm_sqr();
+    now.re >= LEAST_POWER && change <= (STEADY_ENOUGH * now.re) * (STEADY_ENOUGH * now.re)
 }
 
 /// Largest modulus of the difference.
@@ -163,6 +191,11 @@ impl Cauchy {
         }
     }
 
+    /// Relative error of the samples of the present turns, at most.
+    pub fn noise(&self) -> f64 {
+        self.noise
+    }
+
     /// Radius of the present turns.
     pub fn radius(&self) -> f64 {
         self.radius
@@ -176,16 +209,17 @@ impl Cauchy {
     /// The path stands at real t = radius: the turns begin here.
     ///
     /// `homogenizing` are the values of the homogenising coordinates at the point; `fine`: whether
-    /// the forms at the vertices have more digits than doubles before they are rounded.
+    /// the forms at the vertices have more digits than doubles before they are rounded;
+    /// `may_be_finer`: whether the turns can be made with more digits.
     pub fn begin(
         &mut self,
         radius: f64,
         point: &[Complex64],
         noise: f64,
-        homogenizing: &[Complex64],
-        fine: bool,
+        homogenizing: &[Homogenizing],
+        [fine, may_be_finer]: [bool; 2],
     ) -> Next {
-        self.fine = fine;
+        (self.fine, self.may_be_finer) = (fine, may_be_finer);
         self.radius = radius;
         self.start.clear();
         self.start.extend_from_slice(point);
@@ -197,37 +231,44 @@ impl Cauchy {
         self.samples.push(Complex64::default());
         self.vertex = 0;
         self.turns = 0;
-        self.diverging = false;
         self.noise = noise;
         self.valuations.clear();
         self.infinity.resize(homogenizing.len(), Winding::default());
-        for (winding, &z) in self.infinity.iter_mut().zip(homogenizing) {
+        self.homogenizing.clear();
+        self.homogenizing.extend_from_slice(homogenizing);
+        for (winding, z) in self.infinity.iter_mut().zip(homogenizing) {
             winding.clear();
-            winding.sample(z);
+            winding.sample(z.lane(0));
         }
         Next::Vertex { radius, vertex: 1 }
     }
 
-    /// The path stands at the vertex that was asked for. `noise`: relative error of the point;
+    /// The path stands at the vertex that was asked for, at `t`. `noise`: relative error of the point;
     /// `form`: the generic form of its difference from where the turns began; `valuations`: t x'/x
     /// of the homogenising coordinates x.
     pub fn at_vertex(
         &mut self,
+        t: Complex64,
         point: &[Complex64],
         noise: f64,
         form: Complex64,
-        homogenizing: &[Complex64],
+        homogenizing: &[Homogenizing],
         valuations: &[Complex64],
         settings: &Settings,
     ) -> Next {
         self.valuations.extend_from_slice(valuations);
         self.noise = self.noise.max(noise);
-        for (winding, &z) in self.infinity.iter_mut().zip(homogenizing) {
-            winding.sample(z);
+        for (winding, z) in self.infinity.iter_mut().zip(homogenizing) {
+            winding.sample(z.lane(0));
         }
         self.vertex += 1;
+        let (radius, vertex) = (self.radius, self.vertex);
+        let both = homogenizing.iter().zip(valuations);
+        let homogenizing: Vec<Homogenizing> = both
+            .map(|(value, &valuation)| at_exact_vertex(value, valuation, t, radius, vertex))
+            .collect();
         if self.vertex < VERTICES {
-            self.add(point, form);
+            self.add(point, form, &homogenizing);
             return Next::Vertex {
                 radius: self.radius,
                 vertex: self.vertex + 1,
@@ -243,22 +284,37 @@ impl Cauchy {
             // looks like divergence is believed where more sheets than are tried meet.
             let most = settings.max_winding_number;
             let patience = (FIRST_TURNS << (self.unclosed / 2).min(16)).min(most);
-            if self.turns >= patience && !self.diverging {
-                if !self.diverges() {
-                    self.unclosed += 1;
-                    self.previous = None;
-                    return self.further_inward(settings);
-                }
-                self.diverging = true;
+            if self.turns >= patience && !self.powers_here() {
+                self.powers.clear();
+                return self.not_closed(settings);
             }
             if self.turns >= most {
-                return Next::Diverging;
+                return match self.diverges() {
+                    true => Next::Diverging {
+                        winding_number: None,
+                        infinity_turns: Vec::new(),
+                        power_sum: None,
+                    },
+                    false => self.not_closed(settings),
+                };
             }
-            self.add(point, form);
+            self.add(point, form, &homogenizing);
             return Next::Vertex {
                 radius: self.radius,
                 vertex: 1,
             };
+        }
+        match self.at_infinity(size) {
+            Infinity::Shown => return self.diverging(None),
+            Infinity::BelowNoise if self.may_be_finer => return Next::Finer,
+            Infinity::Apart { part, power_sum } if WITHIN * part < SHRINKAGE => {
+                if self.radius * WITHIN * part < NEAREST {
+                    return self.diverging(Some(power_sum));
+                }
+                self.previous = None;
+                return self.inward(WITHIN * part, settings);
+            }
+            Infinity::BelowNoise | Infinity::Apart { .. } | Infinity::No => {}
         }
         let samples = f64::from(self.turns * VERTICES);
         let mean: Vec<Complex64> = self.sum.iter().map(|s| s / samples).collect();
@@ -368,8 +424,9 @@ impl Cauchy {
         diverges
     }
 
-    fn add(&mut self, point: &[Complex64], form: Complex64) {
+    fn add(&mut self, point: &[Complex64], form: Complex64, homogenizing: &[Homogenizing]) {
         self.samples.push(form);
+        self.homogenizing.extend_from_slice(homogenizing);
         let even = self.vertex.is_multiple_of(2);
         for (k, z) in point.iter().enumerate() {
             self.sum[k] += z;
@@ -377,6 +434,51 @@ impl Cauchy {
                 self.even_sum[k] += z;
             }
         }
+    }
+
+    /// Whether some homogenising coordinate is a positive power of t all around.
+    fn powers_here(&self) -> bool {
+        let groups = self.infinity.len();
+        (0..groups).any(|k| power(self.valuations.iter().skip(k).step_by(groups)).is_some())
+    }
+
+    /// The path has closed, and goes to infinity, or so far out.
+    fn diverging(&self, power_sum: Option<f64>) -> Next {
+        Next::Diverging {
+            winding_number: Some(self.turns),
+            infinity_turns: self.infinity.iter().map(Winding::turns).collect(),
+            power_sum,
+        }
+    }
+
+    /// The turns at this radius have not closed.
+    fn not_closed(&mut self, settings: &Settings) -> Next {
+        self.unclosed += 1;
+        self.previous = None;
+        self.further_inward(settings)
+    }
+
+    /// Whether some homogenising coordinate vanishes at t = 0 on all sheets that the path has
+    /// joined; the path has closed.
+    ///
+    /// The power sums of its values on the sheets are analytic in t, so that their values at 0 are
+    /// means over the samples, and they are all 0 only if every sheet's value is (Newton's identities).
+    /// `size`: largest coordinate.
+    fn at_infinity(&self, size: f64) -> Infinity {
+        let groups = self.infinity.len();
+        let mut found = Infinity::No;
+        for (k, winding) in self.infinity.iter().enumerate() {
+            let samples: Vec<&Homogenizing> =
+                self.homogenizing.iter().skip(k).step_by(groups).collect();
+            let here = vanishes(&samples, self.turns, winding.turns() > 0, self.noise, size);
+            match here {
+                Infinity::Shown => return Infinity::Shown,
+                Infinity::BelowNoise => found = Infinity::BelowNoise,
+                Infinity::Apart { .. } if found == Infinity::No => found = here,
+                Infinity::Apart { .. } | Infinity::No => {}
+            }
+        }
+        found
     }
 
     /// Where the path does not close: the smallest radius is not left out.

@@ -5,4 +5,5 @@
 //! where the path is and says where to follow it next.
 
 pub mod cauchy;
+pub(crate) mod infinity;
 pub mod winding;

@@ -540,12 +540,12 @@ impl Homotopy {
     }
 
     /// Values of the homogenising coordinates at a point of the chart, of one lane: formed with
-    /// all digits of the point, since they are small where they matter, then rounded.
+    /// all digits of the point, since they are small where they matter.
     pub(crate) fn homogenizing<R: Real>(
         &self,
         context: R::Context,
         point: &[Complex<R>],
-    ) -> Vec<Complex64> {
+    ) -> Vec<Complex<R>> {
         self.chart.homogenizing_values(context, point)
     }
 

@@ -18,6 +18,8 @@ pub(super) struct Batch<R: Real> {
     /// Where the turns around 0 begin.
     anchor: Vec<Complex<R>>,
     anchor_tangent: Vec<Complex<R>>,
+    /// The oldest point and its tangent, while a step of a higher rung is tried in their slot.
+    oldest: [Vec<Complex<R>>; 2],
     pub t: [Complex<R::Control>; POINTS],
     /// In which lanes a slot's point counts; where a path is, always.
     pub known: [R::Mask; POINTS],
@@ -47,6 +49,7 @@ impl<R: Real> Batch<R> {
             tangent: std::array::from_fn(|_| points()),
             anchor: points(),
             anchor_tangent: points(),
+            oldest: [points(), points()],
             t: std::array::from_fn(|_| Complex::from_f64((), 1.0, 0.0)),
             known: [R::Mask::splat(false); POINTS],
             newest: 0,
@@ -176,6 +179,22 @@ impl<R: Real> Batch<R> {
     /// A path's point with all its digits.
     pub fn digits(&self, lane: usize) -> Vec<Digits> {
         self.here().iter().map(|z| Digits::of(z, lane)).collect()
+    }
+
+    /// Puts the oldest point aside.
+    pub fn keep_oldest(&mut self, slot: usize) {
+        for (kept, points) in self.oldest.iter_mut().zip([&self.x, &self.tangent]) {
+            for (kept, point) in kept.iter_mut().zip(&points[slot]) {
+                kept.set(point);
+            }
+        }
+    }
+
+    /// Puts it back into its slot, which is empty.
+    pub fn restore_oldest(&mut self, slot: usize) {
+        let [x, tangent] = &self.oldest;
+        self.x[slot].clone_from(x);
+        self.tangent[slot].clone_from(tangent);
     }
 
     /// Remembers where a lane is.

@@ -3,6 +3,7 @@
 use super::digits::Digits;
 use crate::endgames::cauchy::Cauchy;
 use crate::path_result::BoundaryKey;
+use num_complex::Complex64;
 
 /// Where a path is in its life. The order is that of the life.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -78,6 +79,8 @@ pub(crate) struct Lane {
     /// The same of the last turns whose first point stood firmly.
     pub last_turn: Option<(f64, Vec<Digits>)>,
     pub cauchy: Cauchy,
+    /// t and the valuations of the homogenising coordinates there, past the boundary of the endgame.
+    pub valuations: Option<(f64, Vec<Complex64>)>,
     /// Where it last came past the boundary of the endgame.
     pub boundary: Option<BoundaryKey>,
 }
@@ -108,6 +111,7 @@ impl Lane {
         (self.steps_here, self.starved) = (0, 0);
         self.last_rejected = f64::INFINITY;
         (self.first_turn, self.last_turn) = (None, None);
+        self.valuations = None;
     }
 
     /// Whether the difficult place that sent the path up lies behind it: each time it was sent

@@ -17,7 +17,7 @@ use super::rooms::{Departure, Door, Ended, Room, Waiting};
 use super::settings::Settings;
 use super::survey::{Series, Surveyor, View};
 use crate::chart::{LEAST_NORM, norm};
-use crate::endgames::cauchy::{self, VERTICES, distance};
+use crate::endgames::cauchy::{VERTICES, distance};
 use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
 use crate::predictor::hermite::{POINTS, weights};
 use crate::refine::Refiner;
@@ -28,7 +28,7 @@ use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::jet::TERMS;
-use cognate_numeric::scalar::{Complex, DoubleDouble, Mask, Real};
+use cognate_numeric::scalar::{Complex, Mask, Real};
 use cognate_systems::evaluation::Evaluate;
 use num_complex::Complex64;
 
@@ -53,14 +53,8 @@ const PASSING: f64 = 0.1;
 const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
-/// Square of the distance below which two ends of paths are one point, as far as the equations
-/// (of size 1) show: the solution of norm 10^8 is 10^-8 away from infinity.
-const ONE_POINT: f64 = 1e-20;
 /// With such a condition number a path may go down a rung.
 const TAME: f64 = 1e10;
-/// The first point of turns is where they may begin again on another rung if its last Newton
-/// correction is below this.
-const FIRM: f64 = 1e-10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
 /// next rung.
 const STARVED: u32 = 2;
@@ -68,7 +62,7 @@ const STARVED: u32 = 2;
 const APART: f64 = 0.05;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
 /// is not for want of digits.
-const ENDGAME_BITS: u32 = 212;
+pub(super) const ENDGAME_BITS: u32 = 212;
 
 /// Where a path enters a room.
 enum Entry {
@@ -78,40 +72,52 @@ enum Entry {
 
 /// All lanes of one room.
 pub(super) struct Lockstep<'a, R: Real> {
-    stage: &'a PreparedStage,
-    room: Room<'a>,
-    context: R::Context,
-    settings: Settings,
-    on_the_way: Limits,
-    around_zero: Limits,
-    batch: Batch<R>,
-    lanes: Vec<Lane>,
-    scratch: <Evaluator as Evaluate<R>>::Scratch,
-    matrix: Matrix<R>,
-    p: Vec<Complex<R>>,
-    dp: Vec<Complex<R>>,
-    refiner: Refiner<'a, R::Single>,
+    pub(super) stage: &'a PreparedStage,
+    pub(super) room: Room<'a>,
+    pub(super) context: R::Context,
+    pub(super) settings: Settings,
+    pub(super) on_the_way: Limits,
+    pub(super) around_zero: Limits,
+    pub(super) batch: Batch<R>,
+    pub(super) lanes: Vec<Lane>,
+    pub(super) scratch: <Evaluator as Evaluate<R>>::Scratch,
+    pub(super) matrix: Matrix<R>,
+    pub(super) p: Vec<Complex<R>>,
+    pub(super) dp: Vec<Complex<R>>,
+    pub(super) refiner: Refiner<'a, R::Single>,
     /// In robust mode.
-    surveyor: Option<Surveyor<'a, R::Single>>,
+    pub(super) surveyor: Option<Surveyor<'a, R::Single>>,
     /// Where each lane's path goes on, as its last look showed; in robust mode, on the way.
-    series: Vec<Option<Series>>,
-    circle: Vec<Complex64>,
-    waiting: Waiting,
-    ended: Ended,
-    observer: Option<&'a mut dyn Observer>,
-    point: Vec<Complex64>,
-    tangent: Vec<Complex64>,
+    pub(super) series: Vec<Option<Series>>,
+    pub(super) circle: Vec<Complex64>,
+    pub(super) waiting: Waiting,
+    pub(super) ended: Ended,
+    pub(super) observer: Option<&'a mut dyn Observer>,
+    pub(super) point: Vec<Complex64>,
+    pub(super) tangent: Vec<Complex64>,
 }
 
 /// What one step showed in one lane.
-struct Step {
-    accepted: bool,
-    arrived: bool,
+pub(super) struct Step {
+    pub(super) accepted: bool,
+    pub(super) arrived: bool,
     /// First and second Newton correction, relative.
-    predictor_error: f64,
-    correction: f64,
+    pub(super) predictor_error: f64,
+    pub(super) correction: f64,
     /// Largest coordinate of the point that was tried.
-    size: f64,
+    pub(super) size: f64,
+}
+
+impl Step {
+    /// What a third Newton correction would be, by quadratic convergence: with c_1 and c_2 the first
+    /// two, c_3 = c_2 (c_2 / c_1)^2.
+    pub(super) fn left(&self) -> f64 {
+        if self.correction == 0.0 {
+            return 0.0;
+        }
+        let ratio = self.correction / self.predictor_error;
+        self.correction * ratio * ratio
+    }
 }
 
 impl<'a, R: Real> Lockstep<'a, R> {
@@ -168,7 +174,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// Puts the next path into a lane, if there is one.
-    fn refill(&mut self, lane: usize) {
+    pub(super) fn refill(&mut self, lane: usize) {
         let homotopy = self.room.homotopy;
         loop {
             let path = &mut self.lanes[lane];
@@ -254,20 +260,43 @@ impl<'a, R: Real> Lockstep<'a, R> {
             &std::array::from_fn(|k| counts[k].and(moving)),
         );
         let next = slots[POINTS - 1];
+        let fine = self.room.bits > DOUBLE;
+        if fine {
+            batch.keep_oldest(next);
+        }
         let mut candidate = std::mem::take(&mut batch.x[next]);
         let mut candidate_tangent = std::mem::take(&mut batch.tangent[next]);
         for i in 0..n {
-            let weight = Complex::from_control(self.context, &w.point[POINTS - 1]);
             let mut sum = Complex::zero(self.context);
-            sum.set_product(&weight, &candidate[i]);
-            let weight = Complex::from_control(self.context, &w.tangent[POINTS - 1]);
-            sum.mul_add(&weight, &candidate_tangent[i]);
-            for age in (0..POINTS - 1).rev() {
-                let slot = slots[age];
-                let weight = Complex::from_control(self.context, &w.tangent[age]);
-                sum.mul_add(&weight, &batch.tangent[slot][i]);
-                let weight = Complex::from_control(self.context, &w.point[age]);
-                sum.mul_add(&weight, &batch.x[slot][i]);
+            let mut add = |weight: &Complex<R::Control>, value: &Complex<R>| {
+                sum.mul_add(&Complex::from_control(self.context, weight), value);
+            };
+            // Weights are doubles: their rounding counts as a part of how far the points are apart,
+            // not of how large they are, where there are more digits.
+            if fine {
+                let here = &batch.x[newest][i];
+                let mut apart = candidate[i].clone();
+                apart.sub(here);
+                add(&w.point[POINTS - 1], &apart);
+                add(&w.tangent[POINTS - 1], &candidate_tangent[i]);
+                for age in (0..POINTS - 1).rev() {
+                    let slot = slots[age];
+                    add(&w.tangent[age], &batch.tangent[slot][i]);
+                    if age > 0 {
+                        apart.set(&batch.x[slot][i]);
+                        apart.sub(here);
+                        add(&w.point[age], &apart);
+                    }
+                }
+                sum.add(here);
+            } else {
+                add(&w.point[POINTS - 1], &candidate[i]);
+                add(&w.tangent[POINTS - 1], &candidate_tangent[i]);
+                for age in (0..POINTS - 1).rev() {
+                    let slot = slots[age];
+                    add(&w.tangent[age], &batch.tangent[slot][i]);
+                    add(&w.point[age], &batch.x[slot][i]);
+                }
             }
             candidate[i].set(&sum);
         }
@@ -391,22 +420,30 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let entering = moved.and(t.re.less_equal(&boundary));
         let entering = entering.and(before.less_equal(&boundary).not());
 
-        // Move: what stays where it is stands in the new slot, and no longer in the old one.
+        // Move: what stays where it is stands in the new slot, and no longer in the old one. The one
+        // lane of a higher rung keeps the points behind it.
         let stays = accepted.not();
+        let in_place = fine && !moved.any();
         if stays.any() {
             for i in 0..n {
                 candidate[i].select(stays, &batch.x[newest][i]);
                 candidate_tangent[i].select(stays, &batch.tangent[newest][i]);
             }
         }
-        batch.x[next] = candidate;
-        batch.tangent[next] = candidate_tangent;
-        let mut there = batch.t[newest].clone();
-        there.select(moved, &t);
-        batch.t[next] = there;
-        batch.known[newest] = moved;
-        batch.known[next] = R::Mask::splat(false);
-        batch.newest = next;
+        if in_place {
+            batch.x[newest] = candidate;
+            batch.tangent[newest] = candidate_tangent;
+            batch.restore_oldest(next);
+        } else {
+            batch.x[next] = candidate;
+            batch.tangent[next] = candidate_tangent;
+            let mut there = batch.t[newest].clone();
+            there.select(moved, &t);
+            batch.t[next] = there;
+            batch.known[newest] = moved;
+            batch.known[next] = R::Mask::splat(false);
+            batch.newest = next;
+        }
 
         // What only single paths know: a glance at each, and more where something happened.
         for lane in 0..R::WIDTH {
@@ -507,7 +544,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 // path, not at its end: it is passed by before the turns begin.
                 let radius = settings.endgame_radius;
                 let passing = h < PASSING * t.re && t.re > PASSED * radius;
-                let at_end = t.re <= radius && !passing && !(step.accepted && h >= t.re);
+                let reaches = step.accepted && h >= t.re;
+                let near = t.re <= radius && !passing;
+                let at_end = !reaches && (near || self.in_endgame_zone(lane, step, t));
+                let settings = &self.settings;
                 if step.arrived {
                     self.series[lane] = None;
                     self.lanes[lane].phase = Phase::Arriving;
@@ -565,6 +605,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     self.lanes[lane].phase = Phase::Settling;
                 }
             }
+            Phase::Turning if step.arrived && self.is_sample(lane, step) => {
+                let left = step.left().max(self.lanes[lane].cauchy.noise());
+                self.sample(lane, t, left);
+            }
             Phase::Inward | Phase::Turning => {
                 if step.arrived {
                     self.lanes[lane].phase = match phase {
@@ -582,33 +626,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 if !step.accepted {
                     return self.give_up(lane, t, Failure::EndgameUnsettled);
                 }
-                self.batch
-                    .read_here(lane, &mut self.point, &mut self.tangent);
-                let homogenizing = self.homogenizing(false);
-                let next = if phase == Phase::Settling {
-                    self.batch.drop_anchor(lane);
-                    let fine = self.fine();
-                    let path = &mut self.lanes[lane];
-                    let begin = (t.re, self.batch.digits(lane));
-                    if step.correction <= FIRM {
-                        path.last_turn = Some(begin.clone());
-                    }
-                    path.first_turn.get_or_insert(begin);
-                    path.cauchy
-                        .begin(t.re, &self.point, step.correction, &homogenizing, fine)
-                } else {
-                    let valuations = self.valuations(t, &homogenizing);
-                    let form = self.form_from_anchor(lane);
-                    self.lanes[lane].cauchy.at_vertex(
-                        &self.point,
-                        step.correction,
-                        form,
-                        &homogenizing,
-                        &valuations,
-                        settings,
-                    )
-                };
-                self.obey(lane, next);
+                match phase {
+                    Phase::Settling => self.begin_turns(lane, t, step),
+                    _ => self.sample(lane, t, step.correction),
+                }
             }
         }
     }
@@ -648,112 +669,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
         false
     }
 
-    /// Carries out what the endgame wants.
-    fn obey(&mut self, lane: usize, next: cauchy::Next) {
-        let settings = &self.settings;
-        let target = self.lanes[lane].target;
-        match next {
-            cauchy::Next::Vertex { radius, vertex } => {
-                let to = self.circle[(vertex % VERTICES) as usize] * radius;
-                let h = self.batch.h.lane(lane).min(radius);
-                let h = if vertex == 1 { h.max(0.1 * radius) } else { h };
-                self.batch.follow(lane, to, h);
-                self.lanes[lane].phase = Phase::Turning;
-            }
-            cauchy::Next::Inward(radius) => {
-                // A path that closed after one turn may simply be regular.
-                if let Some(mean) = self.lanes[lane].cauchy.closed_after_one_turn() {
-                    self.point.clear();
-                    self.point.extend_from_slice(mean);
-                    let report = self.refiner.refine(&mut self.point, target);
-                    let moved = distance(&self.point, mean) / norm(mean);
-                    if report.converged
-                        && report.condition <= settings.singular_condition
-                        && moved < 1e-6
-                    {
-                        return self.finish(
-                            lane,
-                            PathOutcome::Regular,
-                            report,
-                            Some(1),
-                            Vec::new(),
-                        );
-                    }
-                }
-                let from = self.lanes[lane].cauchy.radius();
-                self.batch.return_to_anchor(lane, from);
-                self.batch
-                    .follow(lane, Complex64::new(radius, 0.0), 0.1 * from);
-                self.lanes[lane].phase = Phase::Inward;
-            }
-            // In doubles a multiple point and points that are only close are the same (a
-            // perturbation by the unit roundoff takes a double point apart by its square root):
-            // the next rung tells.
-            cauchy::Next::Settled(settled)
-                if settled.winding_number > 1
-                    && self.room.bits == DOUBLE
-                    && self.room.up
-                    && !self.is_double_point(&settled, target) =>
-            {
-                let path = &mut self.lanes[lane];
-                let begin = path.last_turn.take().or(path.first_turn.take());
-                let (radius, point) = begin.expect("turns begin somewhere");
-                self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
-            }
-            cauchy::Next::Settled(settled) => {
-                self.point.clear();
-                self.point.extend_from_slice(&settled.endpoint);
-                let mut report = self.refiner.refine(&mut self.point, target);
-                // A condition number that stops growing towards t = 0 belongs to a regular
-                // endpoint; one that grows with the accuracy of the point to a singular one.
-                let near = self.refiner.condition_at(
-                    self.lanes[lane].cauchy.start(),
-                    Complex64::new(settled.radius, 0.0),
-                    target,
-                );
-                let moved = distance(&self.point, &settled.endpoint) / norm(&settled.endpoint);
-                let regular = settled.winding_number == 1
-                    && report.converged
-                    && report.condition <= 100.0 * near
-                    && moved <= 1e3 * settled.accuracy.max(1e-12);
-                let outcome = if regular {
-                    PathOutcome::Regular
-                } else {
-                    self.point.clear();
-                    self.point.extend_from_slice(&settled.endpoint);
-                    report = self.refiner.look(&self.point, target);
-                    report.accuracy = settled.accuracy;
-                    PathOutcome::Singular
-                };
-                self.finish(
-                    lane,
-                    outcome,
-                    report,
-                    Some(settled.winding_number),
-                    settled.infinity_turns,
-                );
-            }
-            cauchy::Next::Diverging => {
-                let path = &self.lanes[lane];
-                let t = Complex64::new(path.cauchy.radius(), 0.0);
-                let report = crate::refine::Report::unknown();
-                self.record(lane, PathOutcome::Diverging, t, report, None, Vec::new());
-                self.refill(lane);
-            }
-            cauchy::Next::Unsettled => {
-                let t = self.batch.t(lane);
-                self.give_up(lane, t, Failure::EndgameUnsettled);
-            }
-        }
-    }
-
-    /// Whether two sheets end so close together that the equations are as small between their ends
-    /// as at a double point.
-    fn is_double_point(&self, settled: &cauchy::Settled, target: u64) -> bool {
-        let mut refiner = Refiner::<DoubleDouble<f64>>::new(self.room.homotopy, ());
-        settled.winding_number == 2 && refiner.out_of_reach(&settled.endpoint, target) <= ONE_POINT
-    }
-
     /// Smallest step around 0, or towards it, as a part of the distance from it.
     fn least_arc(&self) -> f64 {
         if self.fine() {
@@ -764,59 +679,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// Whether points have more digits than doubles.
-    fn fine(&self) -> bool {
+    pub(super) fn fine(&self) -> bool {
         self.room.bits > DOUBLE
     }
 
-    /// The endgame's generic form of how far a path is from where its turns began: on the higher
-    /// rungs with their digits, then rounded.
-    fn form_from_anchor(&self, lane: usize) -> Complex64 {
-        if !self.fine() {
-            return cauchy::form_of_difference(&self.point, self.lanes[lane].cauchy.start());
-        }
-        let mut form = Complex::<R>::zero(self.context);
-        let both = self.batch.here().iter().zip(self.batch.anchor());
-        for ((x, anchor), c) in both.zip(cauchy::generic_form()) {
-            let mut difference = x.clone();
-            difference.sub(anchor);
-            form.mul_add(&Complex::from_f64(self.context, c.re, c.im), &difference);
-        }
-        form.lane(0)
-    }
-
-    /// Values of the homogenising coordinates at `self.point`, which is that of the one lane
-    /// where there is one: then with all its digits. With `back`, at the point less its tangent.
-    fn homogenizing(&self, back: bool) -> Vec<Complex64> {
-        let homotopy = self.room.homotopy;
-        if R::WIDTH == 1 {
-            let here = self.batch.here();
-            if !back {
-                return homotopy.homogenizing(self.context, here);
-            }
-            let mut point = here.to_vec();
-            for (x, tangent) in point.iter_mut().zip(self.batch.tangent_here()) {
-                x.sub(tangent);
-            }
-            homotopy.homogenizing(self.context, &point)
-        } else {
-            let native = |z: Complex64| Complex { re: z.re, im: z.im };
-            let both = self.point.iter().zip(&self.tangent);
-            let point: Vec<Complex<f64>> = both
-                .map(|(&x, &tangent)| native(if back { x - tangent } else { x }))
-                .collect();
-            homotopy.homogenizing((), &point)
-        }
-    }
-
-    /// t x'/x of the homogenising coordinates, which are linear in the chart's.
-    fn valuations(&self, t: Complex64, homogenizing: &[Complex64]) -> Vec<Complex64> {
-        let back = self.homogenizing(true);
-        let both = homogenizing.iter().zip(back);
-        both.map(|(x, back)| t * (x - back) / x).collect()
-    }
-
     /// A path has ended at `self.point`; the lane takes the next one.
-    fn finish(
+    pub(super) fn finish(
         &mut self,
         lane: usize,
         outcome: PathOutcome,
@@ -836,7 +704,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// In this room there is no going on: elsewhere there may be.
-    fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
+    pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
         let door = if self.room.beyond {
             Door::Beyond
         } else if self.room.up
@@ -902,7 +770,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// The path goes on in another room from this point of this one's chart.
-    fn depart(&mut self, lane: usize, t: Complex64, point: Vec<Digits>, door: Door) {
+    pub(super) fn depart(&mut self, lane: usize, t: Complex64, point: Vec<Digits>, door: Door) {
         let point = match door {
             Door::Beyond => {
                 let rounded: Vec<Complex64> = point.iter().map(Digits::rounded).collect();
@@ -938,7 +806,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         self.record(lane, PathOutcome::Failed(why), t, report, None, Vec::new());
     }
 
-    fn record(
+    pub(super) fn record(
         &mut self,
         lane: usize,
         outcome: PathOutcome,

@@ -14,3 +14,4 @@ pub mod outcome;
 pub(crate) mod rooms;
 pub mod settings;
 mod survey;
+mod turns;

@@ -1,0 +1,271 @@
+//! Turns: how a lane's path follows what the endgame wants around t = 0.
+//!
+//! `endgames::cauchy` says where to; here the path is taken there, and what it shows there is handed
+//! back: the point, its homogenising coordinates and their valuations.
+
+use super::digits::Digits;
+use super::lane::Phase;
+use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
+use super::outcome::{Failure, PathOutcome};
+use super::rooms::Door;
+use crate::chart::norm;
+use crate::endgames::cauchy::{self, VERTICES, distance};
+use crate::endgames::infinity::Homogenizing;
+use crate::refine::Refiner;
+use cognate_numeric::precision::DOUBLE;
+use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
+use num_complex::Complex64;
+
+/// The first point of turns is where they may begin again on another rung if its last Newton
+/// correction is below this.
+const FIRM: f64 = 1e-10;
+/// Square of the distance below which two ends of paths are one point, as far as the equations
+/// (of size 1) show: the solution of norm 10^8 is 10^-8 away from infinity.
+const ONE_POINT: f64 = 1e-20;
+/// Valuations are compared when t has become this part of what it was.
+const ZONE: f64 = 0.5;
+
+impl<R: Real> Lockstep<'_, R> {
+    /// The turns around 0 begin where the path is.
+    pub(super) fn begin_turns(&mut self, lane: usize, t: Complex64, step: &Step) {
+        self.batch
+            .read_here(lane, &mut self.point, &mut self.tangent);
+        let homogenizing = self.homogenizing(false);
+        self.batch.drop_anchor(lane);
+        let digits = [self.fine(), self.room.up && self.room.bits < ENDGAME_BITS];
+        let path = &mut self.lanes[lane];
+        let begin = (t.re, self.batch.digits(lane));
+        if step.correction <= FIRM {
+            path.last_turn = Some(begin.clone());
+        }
+        path.first_turn.get_or_insert(begin);
+        let next = path
+            .cauchy
+            .begin(t.re, &self.point, step.correction, &homogenizing, digits);
+        self.obey(lane, next);
+    }
+
+    /// Whether a step that reached a vertex leaves no more error there than the point had where the turn
+    /// began. Steps of more digits never do: their two corrections are those of doubles.
+    pub(super) fn is_sample(&self, lane: usize, step: &Step) -> bool {
+        !self.fine() && step.left() <= self.lanes[lane].cauchy.noise().max(f64::EPSILON)
+    }
+
+    /// The path stands at a vertex, with this relative error.
+    pub(super) fn sample(&mut self, lane: usize, t: Complex64, noise: f64) {
+        self.batch
+            .read_here(lane, &mut self.point, &mut self.tangent);
+        let homogenizing = self.homogenizing(false);
+        let valuations = self.valuations(t, &homogenizing);
+        let form = self.form_from_anchor(lane);
+        let next = self.lanes[lane].cauchy.at_vertex(
+            t,
+            &self.point,
+            noise,
+            form,
+            &homogenizing,
+            &valuations,
+            &self.settings,
+        );
+        self.obey(lane, next);
+    }
+
+    /// Whether a path that has come past the boundary of the endgame runs to infinity like a power of t
+    /// already: turns tell more there than further in, where coordinates are of very different sizes.
+    pub(super) fn in_endgame_zone(&mut self, lane: usize, step: &Step, t: Complex64) -> bool {
+        if self.room.beyond || !step.accepted || t.re > self.settings.endgame_boundary {
+            return false;
+        }
+        let due = |(before, _): &(f64, Vec<Complex64>)| t.re <= ZONE * before;
+        if !self.lanes[lane].valuations.as_ref().is_none_or(due) {
+            return false;
+        }
+        self.batch
+            .read_here(lane, &mut self.point, &mut self.tangent);
+        let homogenizing = self.homogenizing(false);
+        let now = self.valuations(t, &homogenizing);
+        let before = self.lanes[lane].valuations.replace((t.re, now.clone()));
+        before.is_some_and(|(_, before)| {
+            let mut both = now.iter().zip(&before);
+            both.any(|(now, before)| cauchy::is_steady(*now, *before))
+        })
+    }
+
+    /// Carries out what the endgame wants.
+    pub(super) fn obey(&mut self, lane: usize, next: cauchy::Next) {
+        let settings = &self.settings;
+        let target = self.lanes[lane].target;
+        match next {
+            cauchy::Next::Vertex { radius, vertex } => {
+                let to = self.circle[(vertex % VERTICES) as usize] * radius;
+                let h = self.batch.h.lane(lane).min(radius);
+                let h = if vertex == 1 { h.max(0.1 * radius) } else { h };
+                self.batch.follow(lane, to, h);
+                self.lanes[lane].phase = Phase::Turning;
+            }
+            cauchy::Next::Inward(radius) => {
+                // A path that closed after one turn may simply be regular.
+                if let Some(mean) = self.lanes[lane].cauchy.closed_after_one_turn() {
+                    self.point.clear();
+                    self.point.extend_from_slice(mean);
+                    let report = self.refiner.refine(&mut self.point, target);
+                    let moved = distance(&self.point, mean) / norm(mean);
+                    if report.converged
+                        && report.condition <= settings.singular_condition
+                        && moved < 1e-6
+                    {
+                        return self.finish(
+                            lane,
+                            PathOutcome::Regular,
+                            report,
+                            Some(1),
+                            Vec::new(),
+                        );
+                    }
+                }
+                let from = self.lanes[lane].cauchy.radius();
+                self.batch.return_to_anchor(lane, from);
+                self.batch
+                    .follow(lane, Complex64::new(radius, 0.0), 0.1 * from);
+                self.lanes[lane].phase = Phase::Inward;
+            }
+            // In doubles a multiple point and points that are only close are the same (a
+            // perturbation by the unit roundoff takes a double point apart by its square root):
+            // the next rung tells.
+            cauchy::Next::Settled(settled)
+                if settled.winding_number > 1
+                    && self.room.bits == DOUBLE
+                    && self.room.up
+                    && !self.is_double_point(&settled, target) =>
+            {
+                let path = &mut self.lanes[lane];
+                let begin = path.last_turn.take().or(path.first_turn.take());
+                let (radius, point) = begin.expect("turns begin somewhere");
+                self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
+            }
+            cauchy::Next::Settled(settled) => {
+                self.point.clear();
+                self.point.extend_from_slice(&settled.endpoint);
+                let mut report = self.refiner.refine(&mut self.point, target);
+                // A condition number that stops growing towards t = 0 belongs to a regular
+                // endpoint; one that grows with the accuracy of the point to a singular one.
+                let near = self.refiner.condition_at(
+                    self.lanes[lane].cauchy.start(),
+                    Complex64::new(settled.radius, 0.0),
+                    target,
+                );
+                let moved = distance(&self.point, &settled.endpoint) / norm(&settled.endpoint);
+                let regular = settled.winding_number == 1
+                    && report.converged
+                    && report.condition <= 100.0 * near
+                    && moved <= 1e3 * settled.accuracy.max(1e-12);
+                let outcome = if regular {
+                    PathOutcome::Regular
+                } else {
+                    self.point.clear();
+                    self.point.extend_from_slice(&settled.endpoint);
+                    report = self.refiner.look(&self.point, target);
+                    report.accuracy = settled.accuracy;
+                    PathOutcome::Singular
+                };
+                self.finish(
+                    lane,
+                    outcome,
+                    report,
+                    Some(settled.winding_number),
+                    settled.infinity_turns,
+                );
+            }
+            cauchy::Next::Diverging {
+                winding_number,
+                infinity_turns,
+                power_sum,
+            } => {
+                let path = &self.lanes[lane];
+                let t = Complex64::new(path.cauchy.radius(), 0.0);
+                let report = crate::refine::Report {
+                    accuracy: power_sum.unwrap_or(f64::INFINITY),
+                    ..crate::refine::Report::unknown()
+                };
+                let outcome = PathOutcome::Diverging;
+                self.record(lane, outcome, t, report, winding_number, infinity_turns);
+                self.refill(lane);
+            }
+            cauchy::Next::Finer => {
+                let path = &mut self.lanes[lane];
+                let begin = path.last_turn.take().or(path.first_turn.take());
+                let (radius, point) = begin.expect("turns begin somewhere");
+                self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
+            }
+            cauchy::Next::Unsettled => {
+                let t = self.batch.t(lane);
+                self.give_up(lane, t, Failure::EndgameUnsettled);
+            }
+        }
+    }
+
+    /// Whether two sheets end so close together that the equations are as small between their ends
+    /// as at a double point.
+    fn is_double_point(&self, settled: &cauchy::Settled, target: u64) -> bool {
+        let mut refiner = Refiner::<DoubleDouble<f64>>::new(self.room.homotopy, ());
+        settled.winding_number == 2 && refiner.out_of_reach(&settled.endpoint, target) <= ONE_POINT
+    }
+
+    /// The endgame's generic form of how far a path is from where its turns began: on the higher
+    /// rungs with their digits, then rounded.
+    fn form_from_anchor(&self, lane: usize) -> Complex64 {
+        if !self.fine() {
+            return cauchy::form_of_difference(&self.point, self.lanes[lane].cauchy.start());
+        }
+        let mut form = Complex::<R>::zero(self.context);
+        let both = self.batch.here().iter().zip(self.batch.anchor());
+        for ((x, anchor), c) in both.zip(cauchy::generic_form()) {
+            let mut difference = x.clone();
+            difference.sub(anchor);
+            form.mul_add(&Complex::from_f64(self.context, c.re, c.im), &difference);
+        }
+        form.lane(0)
+    }
+
+    /// Values of the homogenising coordinates at `self.point`, which is that of the one lane
+    /// where there is one: then with all its digits. With `back`, at the point less its tangent.
+    fn homogenizing(&self, back: bool) -> Vec<Homogenizing> {
+        let homotopy = self.room.homotopy;
+        if R::WIDTH == 1 {
+            let here = self.batch.here();
+            let precise = |point: &[Complex<R>]| -> Vec<Homogenizing> {
+                let values = homotopy.homogenizing(self.context, point);
+                let values = values.iter().map(|z| Digits::of(z, 0).value(()));
+                values.collect()
+            };
+            if !back {
+                return precise(here);
+            }
+            let mut point = here.to_vec();
+            for (x, tangent) in point.iter_mut().zip(self.batch.tangent_here()) {
+                x.sub(tangent);
+            }
+            precise(&point)
+        } else {
+            let native = |z: Complex64| Complex { re: z.re, im: z.im };
+            let both = self.point.iter().zip(&self.tangent);
+            let point: Vec<Complex<f64>> = both
+                .map(|(&x, &tangent)| native(if back { x - tangent } else { x }))
+                .collect();
+            let values = homotopy.homogenizing((), &point);
+            let values = values.iter().map(|z| Digits::of(z, 0).value(()));
+            values.collect()
+        }
+    }
+
+    /// t x'/x of the homogenising coordinates, which are linear in the chart's.
+    fn valuations(&self, t: Complex64, homogenizing: &[Homogenizing]) -> Vec<Complex64> {
+        let back = self.homogenizing(true);
+        let both = homogenizing.iter().zip(back);
+        both.map(|(x, back)| {
+            let (x, back) = (x.lane(0), back.lane(0));
+            t * (x - back) / x
+        })
+        .collect()
+    }
+}
