@@ -180,3 +180,89 @@ fn product(a: &Homogenizing, b: &Homogenizing) -> Homogenizing {
     product.set_product(a, b);
     product
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_numeric::roots_of_unity::roots_of_unity;
+
+    /// y_0 with y_0^c = b + t at all vertices of c turns, from each to the next by Newton's method.
+    fn samples(c: u32, b: f64, radius: f64) -> Vec<Homogenizing> {
+        let number = |value: f64| Homogenizing::from_f64((), value, 0.0);
+        let mut last = number(0.5);
+        let mut all = Vec::new();
+        for vertex in 0..c * VERTICES {
+            // Between two vertices are places enough that a sheet is not left.
+            let (from, to) = (
+                exact_vertex(radius, vertex + VERTICES - 1),
+                exact_vertex(radius, vertex),
+            );
+            for part in 1..=8 {
+                let mut wanted = to;
+                wanted.sub(&from);
+                wanted.mul(&number(f64::from(part) / 8.0));
+                wanted.add(&from);
+                wanted.add(&number(b));
+                for _ in 0..60 {
+                    let mut power = number(1.0);
+                    (1..c).for_each(|_| power.mul(&last));
+                    let mut value = product(&power, &last);
+                    value.sub(&wanted);
+                    power.mul(&number(f64::from(c)));
+                    value.mul(&power.inverse());
+                    last.sub(&value);
+                }
+            }
+            all.push(last);
+        }
+        all
+    }
+
+    fn found(c: u32, b: f64, radius: f64, noise: f64) -> Infinity {
+        let samples = samples(c, b, radius);
+        vanishes(&samples.iter().collect::<Vec<_>>(), c, true, noise, 1.0)
+    }
+
+    #[test]
+    fn sheets_that_end_at_infinity_have_no_power_sums() {
+        for c in [1, 2, 3, 5, 7] {
+            assert_eq!(found(c, 0.0, 1e-3, 1e-28), Infinity::Shown, "{c} sheets");
+        }
+        // With the digits of doubles one sheet shows it, not three.
+        assert_eq!(found(1, 0.0, 1e-3, 1e-15), Infinity::Shown);
+        assert_eq!(found(3, 0.0, 1e-3, 1e-15), Infinity::BelowNoise);
+    }
+
+    #[test]
+    fn sheets_that_end_far_out_have_some() {
+        for (c, b) in [(1, 1e-12), (2, 1e-18), (3, 1e-15), (7, 1e-9)] {
+            let Infinity::Apart { part, power_sum } = found(c, b, 1e-3, 1e-28) else {
+                panic!("{c} sheets, {b}: {:?}", found(c, b, 1e-3, 1e-28));
+            };
+            let near = |value: f64, expected: f64| (value / expected - 1.0).abs() < 0.1;
+            assert!(
+                near(power_sum, b) && near(part, b / 1e-3),
+                "{c}: {part} {power_sum}"
+            );
+        }
+        assert_eq!(found(2, 1e-18, 1e-3, 1e-15), Infinity::BelowNoise);
+    }
+
+    #[test]
+    fn a_coordinate_that_does_not_turn_does_not_vanish() {
+        let circle = roots_of_unity(VERTICES);
+        let at =
+            |z: &num_complex::Complex64| Homogenizing::from_f64((), 0.1 + 1e-3 * z.re, 1e-3 * z.im);
+        let samples: Vec<Homogenizing> = circle.iter().map(at).collect();
+        let samples: Vec<&Homogenizing> = samples.iter().collect();
+        assert_eq!(vanishes(&samples, 1, false, 1e-15, 1.0), Infinity::No);
+    }
+
+    #[test]
+    fn vertices_are_those_of_the_circle() {
+        for (vertex, z) in (0..VERTICES).zip(roots_of_unity(VERTICES)) {
+            let exact = exact_vertex(1.0, vertex).lane(0);
+            assert!((exact - z).norm_sqr() < 1e-31, "{vertex}: {exact} {z}");
+        }
+    }
+}
