@@ -306,7 +306,7 @@ mod tests {
         let point = |x0: f64| [(x0, 0.0), (1.0, 0.0)];
         assert_eq!(
             verdict(&singular(0, &point(1e-11), 2, &[1])),
-            (Verdict::AtInfinity, false)
+            (Verdict::AtInfinity, true)
         );
         assert_eq!(
             verdict(&singular(0, &point(1e-11), 2, &[0])),

@@ -25,7 +25,7 @@ const SHRINKAGE: f64 = 0.125;
 const WITHIN: f64 = 0.1;
 /// Radius below which sheets are not followed until they part: equations with coefficients of sixteen digits
 /// have such ends where exact ones have infinity.
-const NEAREST: f64 = 1e-16;
+const NEAREST: f64 = 1e-20;
 /// Turns after which a path that has not closed is taken further in, twice as many every second time,
 /// unless it looks as if it diverged: more often branch points lie inside the radius than the
 /// winding number is so large.

@@ -78,8 +78,10 @@ pub(super) fn vanishes(
         limit *= FARTHEST;
         let bound = noise + aliasing;
         if !(mean <= bound) {
-            // Where y_0^c = b + a t, the mean of the power is b and y_0^c at the radius is a t.
-            let part = mean / scale.max(f64::MIN_POSITIVE);
+            // Where y_0^c = b + a t, the mean of power c is b and y_0^c at the radius is a t; a mean of
+            // power k speaks of values at t = 0 whose power c is that to c/k.
+            let ratio = mean / scale.max(f64::MIN_POSITIVE);
+            let part = (0..sheets / k).fold(1.0, |part, _| part * ratio);
             let power_sum = mean;
             return match mean > CLEARLY * bound && part.is_finite() {
                 true => Infinity::Apart { part, power_sum },
