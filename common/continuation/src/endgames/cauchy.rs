@@ -8,6 +8,7 @@
 //! over the same samples; they vanish only if all sheets end at the mean. An
 //! endpoint counts when they do, and when two radii agree on it and on c.
 
+use super::circle::VERTICES;
 use super::infinity::{Homogenizing, Infinity, at_exact_vertex, vanishes};
 use super::winding::Winding;
 use crate::chart::norm;
@@ -16,8 +17,6 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::Real;
 use num_complex::Complex64;
 
-/// Samples per turn.
-pub const VERTICES: u32 = 16;
 /// Ratio of successive radii.
 const SHRINKAGE: f64 = 0.125;
 /// Sheets that branch points inside the radius join are followed further in, to this part of how far

@@ -5,5 +5,6 @@
 //! where the path is and says where to follow it next.
 
 pub mod cauchy;
+pub mod circle;
 pub(crate) mod infinity;
 pub mod winding;
