@@ -3,7 +3,6 @@
 //! A system without parameters can be solved by loops through its family, as Macaulay2's
 //! `sparseMonodromySolve` does.
 
-use crate::start_costs::cell_supports;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::Expressions;
 use cognate_systems::polynomial::Polynomial;
@@ -29,17 +28,19 @@ fn size(coefficient: Option<&ComplexRational>) -> Rational {
 /// Each monomial has the coefficient r + s p with a parameter p: s is the size of the given coefficient,
 /// p at the target is the nearest double to it, in units of s, and r is what is left of it. So the
 /// system at these parameters is the given one without rounding. Where solutions may have zeros,
-/// equations get a constant term, as a start by mixed cells gives them one.
+/// equations get a constant term, as a start by mixed cells gives them one: `supports` are that start's.
 ///
 /// # Errors
-/// Why its monomials are not known, in words.
-pub fn coefficient_family(system: &System) -> Result<(System, Vec<Complex64>), String> {
-    let supports = cell_supports(system)?;
+/// Why its coefficients are not known, in words.
+pub fn coefficient_family(
+    system: &System,
+    supports: &[Vec<Vec<i64>>],
+) -> Result<(System, Vec<Complex64>), String> {
     let n = system.variable_count();
     let mut family = system.clone();
     let mut out = Expressions::new();
     let mut values = Vec::new();
-    for (equation, support) in family.equations.iter_mut().zip(&supports) {
+    for (equation, support) in family.equations.iter_mut().zip(supports) {
         let polynomial = Polynomial::expand(&system.expressions, *equation, n, 0)
             .ok_or("the equations are not multiplied out")?;
         let mut sum = out.integer(0);
@@ -87,6 +88,7 @@ mod tests {
     use super::*;
     use crate::plan::{PlanOptions, StartChoice, plan};
     use crate::run_locally::run_locally;
+    use crate::start_costs::cell_supports;
 
     fn written(text: &str) -> System {
         let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
@@ -110,7 +112,8 @@ mod tests {
     fn a_system_without_parameters_is_solved_by_loops() {
         let system =
             written("variable_group x, y; function f, g; f = x^2 - 100000000/3; g = x*y - y - 7;");
-        let (family, values) = coefficient_family(&system).unwrap();
+        let supports = cell_supports(&system).unwrap();
+        let (family, values) = coefficient_family(&system, &supports).unwrap();
         assert_eq!((family.parameters.len(), values.len()), (5, 5));
         for seed in 1..=5 {
             let options = PlanOptions {

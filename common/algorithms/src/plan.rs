@@ -565,7 +565,9 @@ fn plan_coefficient_loops(system: &System, options: &PlanOptions) -> Result<Plan
     }
     checked_degrees(system)?;
     check_equations(system)?;
-    let (family, values) = coefficient_family(system).map_err(PlanError::NoCoefficientFamily)?;
+    let supports = cell_supports(system).map_err(PlanError::NoCoefficientFamily)?;
+    let family = coefficient_family(system, &supports);
+    let (family, values) = family.map_err(PlanError::NoCoefficientFamily)?;
     let count = values.len();
     let options = PlanOptions {
         target_parameters: vec![values],

@@ -10,6 +10,7 @@ use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::formats;
+use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -112,6 +113,46 @@ pub fn start(dice: &mut Dice) -> StartChoice {
     }
 }
 
+/// Solves in this process, within this time; the set of the first target.
+///
+/// # Errors
+/// The verdict where there is none: [`Verdict::NoEnd`] or [`Verdict::Refused`].
+pub fn solve_within(
+    system: &System,
+    options: &PlanOptions,
+    limit: Duration,
+) -> Result<SolutionSet, Verdict> {
+    let refused = |error: String| Verdict::Refused(error);
+    let mut plan = plan(system, options).map_err(|error| refused(error.to_string()))?;
+    let until = Instant::now() + limit;
+    let mut made = HashMap::<Digest, Arc<StoredPoints>>::new();
+    let tracked = plan.system.clone();
+    drive::<Verdict>(&mut plan.algorithm, &mut |opening| {
+        let objects = opening.objects.iter();
+        made.extend(objects.map(|points| (points.digest(), Arc::clone(points))));
+        let find = |wanted: Digest| made.get(&wanted).cloned();
+        let work = PreparedWork::new(&tracked, &opening.stage, &find);
+        let work = work.map_err(|error| refused(error.to_string()))?;
+        let mut results = Vec::<PathResult>::new();
+        let mut next = 0;
+        while next < work.items() {
+            let end = (next + WIDTH as u64).min(work.items());
+            results.extend(work.run(next..end, WIDTH));
+            next = end;
+            if Instant::now() > until {
+                return Err(Verdict::NoEnd);
+            }
+        }
+        Ok(results)
+    })?;
+    if let Some(message) = plan.algorithm.failure() {
+        return Err(refused(message));
+    }
+    let sets = plan.algorithm.solution_sets(&tracked);
+    let first = sets.into_iter().next();
+    first.ok_or_else(|| refused("there is no solution set".into()))
+}
+
 /// Solves with one start and seed, within this time.
 pub fn solve(planted: &Planted, start: StartChoice, seed: u64, limit: Duration) -> Verdict {
     let text = planted.file("");
@@ -124,41 +165,9 @@ pub fn solve(planted: &Planted, start: StartChoice, seed: u64, limit: Duration) 
         seed,
         ..PlanOptions::default()
     };
-    let mut plan = match plan(&system, &options) {
-        Ok(plan) => plan,
-        Err(error) => return Verdict::Refused(error.to_string()),
-    };
-    let until = Instant::now() + limit;
-    let mut made = HashMap::<Digest, Arc<StoredPoints>>::new();
-    let tracked = plan.system.clone();
-    let ended = drive::<Option<String>>(&mut plan.algorithm, &mut |opening| {
-        let objects = opening.objects.iter();
-        made.extend(objects.map(|points| (points.digest(), Arc::clone(points))));
-        let find = |wanted: Digest| made.get(&wanted).cloned();
-        let work = PreparedWork::new(&tracked, &opening.stage, &find);
-        let work = work.map_err(|error| Some(error.to_string()))?;
-        let mut results = Vec::<PathResult>::new();
-        let mut next = 0;
-        while next < work.items() {
-            let end = (next + WIDTH as u64).min(work.items());
-            results.extend(work.run(next..end, WIDTH));
-            next = end;
-            if Instant::now() > until {
-                return Err(None);
-            }
-        }
-        Ok(results)
-    });
-    match ended {
-        Err(None) => return Verdict::NoEnd,
-        Err(Some(message)) => return Verdict::Refused(message),
-        Ok(()) => {}
-    }
-    if let Some(message) = plan.algorithm.failure() {
-        return Verdict::Refused(message);
-    }
-    let Some(set) = plan.algorithm.solution_sets(&tracked).into_iter().next() else {
-        return Verdict::Refused("no solution set".into());
+    let set = match solve_within(&system, &options, limit) {
+        Ok(set) => set,
+        Err(verdict) => return verdict,
     };
     let wrong = complaints(planted, &set);
     match (wrong.is_empty(), set.settled()) {
