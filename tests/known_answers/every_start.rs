@@ -8,7 +8,6 @@ use cognate_algorithms::plan::StartChoice::{
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::named::{Named, caprasse, cyclic, eco, katsura, noon, reimer};
 use cognate_systems::system::System;
-use cognate_tests::families::of_coefficients;
 use cognate_tests::systems::{shared, six_revolute_axis_vectors, written};
 
 fn options(start: StartChoice, seed: u64) -> PlanOptions {
@@ -19,19 +18,8 @@ fn options(start: StartChoice, seed: u64) -> PlanOptions {
     }
 }
 
-/// Loops go through the systems with the same monomials, and from a general one to this.
 fn solved(system: &System, start: StartChoice, seed: u64) -> SolutionSet {
-    let (_, mut sets) = match start {
-        Monodromy => {
-            let (family, parameters) = of_coefficients(system);
-            let options = PlanOptions {
-                target_parameters: vec![parameters],
-                ..options(start, seed)
-            };
-            solve(&family, &options, &|_| None)
-        }
-        start => solve(system, &options(start, seed), &|_| None),
-    };
+    let (_, mut sets) = solve(system, &options(start, seed), &|_| None);
     sets.remove(0)
 }
 

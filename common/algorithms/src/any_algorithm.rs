@@ -9,7 +9,7 @@ use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::RegenerationSolve;
 use crate::sharpened_solve::SharpenedSolve;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::{Completeness, Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::solution_set::SolutionSet;
@@ -17,7 +17,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 11;
+const VERSION: u8 = 12;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -189,6 +189,9 @@ impl PathAlgorithm for AnyAlgorithm {
     }
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
         self.get().solution_sets(system)
+    }
+    fn completeness(&self) -> Option<Completeness> {
+        self.get().completeness()
     }
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         self.get().finite_endpoints()

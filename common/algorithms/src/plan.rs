@@ -2,6 +2,7 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::certified_solve::CertifiedSolve;
+use crate::coefficient_family::coefficient_family;
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
@@ -492,7 +493,7 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
         return Err(PlanError::MonodromyOfHomotopy);
     }
     if system.parameters.is_empty() {
-        return Err(PlanError::MonodromyWithoutParameters);
+        return plan_coefficient_loops(system, options);
     }
     checked_degrees(system)?;
     check_equations(system)?;
@@ -554,6 +555,31 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
         start: StartKind::Monodromy,
         paths,
         why,
+    })
+}
+
+/// Loops through the systems with the same monomials, for a system without parameters.
+fn plan_coefficient_loops(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+    if options.start_points.is_some() {
+        return Err(PlanError::NothingToDeform);
+    }
+    checked_degrees(system)?;
+    check_equations(system)?;
+    let supports = cell_supports(system).map_err(PlanError::NoCoefficientFamily)?;
+    let family = coefficient_family(system, &supports);
+    let (family, values) = family.map_err(PlanError::NoCoefficientFamily)?;
+    let count = values.len();
+    let options = PlanOptions {
+        target_parameters: vec![values],
+        ..options.clone()
+    };
+    let plan = plan_monodromy(&family, &options)?;
+    Ok(Plan {
+        why: format!(
+            "asked for; the {count} coefficients are the parameters, so that a random point solves the \
+             system for some of them"
+        ),
+        ..plan
     })
 }
 

@@ -90,12 +90,12 @@ pub enum PlanError {
     /// Start parameters without solutions there.
     #[error("start parameters need start solutions")]
     StartParametersAlone,
-    /// Nothing to make loops in.
+    /// No parameters, and none can be made of the coefficients.
     #[error(
         "the start `monodromy` makes loops in the space of parameters; this system has no \
-         parameters (a start system, such as total degree, serves)"
+         parameters, and its coefficients cannot serve: {0}"
     )]
-    MonodromyWithoutParameters,
+    NoCoefficientFamily(String),
     /// Completeness cannot be tested.
     #[error("there is no trace test for this family: {0}")]
     NoTraceTest(NoTraceTest),

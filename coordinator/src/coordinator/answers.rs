@@ -365,7 +365,21 @@ impl Coordinator {
                     loops.crossings_found,
                     loops.crossings_resolved
                 ));
-                if let Some(estimate) = &loops.estimate {
+                let shown = loops.mixing.is_shown(loops.classes);
+                if let Some(estimate) = loops.estimate.as_ref().filter(|_| !shown) {
+                    lines.push(format!(
+                        "estimate: {} classes by capture and recapture; no probability is claimed, \
+                         since loops are not seen to permute the known classes at random ({} of {} \
+                         move some; {:.1} stay on average)",
+                        estimate
+                            .likeliest
+                            .map_or("an unknown number of".to_owned(), |n| n.to_string()),
+                        loops.mixing.moving,
+                        loops.mixing.loops,
+                        loops.mixing.fixed.unwrap_or(0.0)
+                    ));
+                }
+                if let Some(estimate) = loops.estimate.as_ref().filter(|_| shown) {
                     lines.push(format!(
                         "estimate: {} classes, all known with probability {}, by capture and \
                          recapture: N of them are likely as the product of (N)_r over places with r \
