@@ -15,6 +15,7 @@ mod nine_point;
 mod overdetermined;
 mod parameter_homotopies;
 mod polyhedral;
+mod scaled_units;
 mod singular_endpoints;
 mod start_costs;
 mod straight_line_programs;

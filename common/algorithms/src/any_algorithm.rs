@@ -17,7 +17,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 11;
+const VERSION: u8 = 12;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
