@@ -285,7 +285,11 @@ mod tests {
         assert_eq!(intake.warnings.len(), 2);
         assert!(intake.warnings[0].contains("OdePredictor"));
         let named = format!("q = [{:?}, {:?}]", values[1].re, values[1].im);
-        assert!(intake.warnings[1].ends_with(&named), "{}", intake.warnings[1]);
+        assert!(
+            intake.warnings[1].ends_with(&named),
+            "{}",
+            intake.warnings[1]
+        );
         let given = Options {
             target_parameters: vec![vec![num_complex::Complex64::ONE; 2]],
             warnings: vec!["from the client".to_owned()],

@@ -24,7 +24,8 @@ fn options(seed: u64, start: StartChoice) -> PlanOptions {
 
 fn values(set: &SolutionSet) -> Vec<Vec<Complex64>> {
     let each = set.solutions.iter();
-    each.map(|solution| solution.variables.values().collect()).collect()
+    each.map(|solution| solution.variables.values().collect())
+        .collect()
 }
 
 /// Solves with several seeds; every solution is simple and real, and the values of the first
@@ -51,12 +52,18 @@ fn first_values(text: &str, expected: &[f64]) {
 #[test]
 fn numbers_far_from_1_are_no_infinity_and_no_zero() {
     let x = "variable_group x; function f;";
-    first_values(&format!("{x} f = x + 2^100;"), &[-times_power_of_two(1.0, 100)]);
+    first_values(
+        &format!("{x} f = x + 2^100;"),
+        &[-times_power_of_two(1.0, 100)],
+    );
     first_values(&format!("{x} f = x^2 - 1e-20;"), &[-1e-10, 1e-10]);
     first_values(&format!("{x} f = x^2 - 1e300;"), &[-1e150, 1e150]);
     let xy = "variable_group x, y; function f, g;";
     let [a, b] = [1e8; 2];
-    first_values(&format!("{xy} f = x^2 - 1e16; g = y^2 - 3;"), &[-a, -b, a, b]);
+    first_values(
+        &format!("{xy} f = x^2 - 1e16; g = y^2 - 3;"),
+        &[-a, -b, a, b],
+    );
 }
 
 /// x^2 + y^2 = 5 and x y = 2 have (1, 2), (2, 1) and their negatives.
@@ -88,7 +95,8 @@ fn in_other_units(system: &System, units: &[i32], factors: &[i32]) -> System {
     let one = cognate_numeric::rational::ComplexRational::real(1);
     let mut equations = Vec::new();
     for (&equation, &factor) in system.equations.iter().zip(factors) {
-        let leaf = &mut |to: &mut cognate_systems::expression::Expressions, leaf: &Node| match leaf {
+        let leaf = &mut |to: &mut cognate_systems::expression::Expressions, leaf: &Node| match leaf
+        {
             Node::Variable(v) => {
                 let unit = to.constant(exact_times(&one, i64::from(units[*v as usize])));
                 let variable = to.variable(*v);
@@ -131,21 +139,31 @@ fn same_in_other_units(name: &str, system: &System, start: StartChoice, rounds: 
             let (paths, counts) = (&set.paths, &set.counts);
             (
                 (counts.nonsingular, counts.singular, counts.real),
-                (paths.finite, paths.singular, paths.at_infinity, paths.positive_dimensional),
+                (
+                    paths.finite,
+                    paths.singular,
+                    paths.at_infinity,
+                    paths.positive_dimensional,
+                ),
                 paths.failed,
             )
         };
         assert_eq!(counts(plain), counts(set), "{context}");
         let scaling = Scaling { exponents: units };
-        let back: Vec<Vec<Complex64>> =
-            values(set).iter().map(|point| scaling.to_variables(point)).collect();
+        let back: Vec<Vec<Complex64>> = values(set)
+            .iter()
+            .map(|point| scaling.to_variables(point))
+            .collect();
         for point in values(plain) {
             let size = point.iter().fold(1.0f64, |m, z| m.max(z.norm_sqr().sqrt()));
             let near = |other: &&Vec<Complex64>| {
                 let pairs = point.iter().zip(other.iter());
                 pairs.fold(0.0f64, |m, (a, b)| m.max((a - b).norm_sqr().sqrt())) < 1e-5 * size
             };
-            assert!(back.iter().any(|other| near(&other)), "{context}: no {point:?}");
+            assert!(
+                back.iter().any(|other| near(&other)),
+                "{context}: no {point:?}"
+            );
         }
     }
 }
@@ -212,7 +230,10 @@ fn proofs_and_digits_are_in_the_units_of_the_variables() {
     };
     let (_, sets) = solve(&system, &with, &|_| None);
     let set = &sets[0];
-    assert_eq!((set.counts.certified, set.counts.certified_real), (Some(2), Some(2)));
+    assert_eq!(
+        (set.counts.certified, set.counts.certified_real),
+        (Some(2), Some(2))
+    );
     for solution in &set.solutions {
         let digits: Vec<String> = solution
             .variables
@@ -220,7 +241,13 @@ fn proofs_and_digits_are_in_the_units_of_the_variables() {
             .iter()
             .map(|v| format!("{:?}", v.digits))
             .collect();
-        assert!(digits[0].contains("1.41421356237309504880168872420969807856"), "{digits:?}");
-        assert!(digits[1].contains("7.07106781186547524400844362104849039284"), "{digits:?}");
+        assert!(
+            digits[0].contains("1.41421356237309504880168872420969807856"),
+            "{digits:?}"
+        );
+        assert!(
+            digits[1].contains("7.07106781186547524400844362104849039284"),
+            "{digits:?}"
+        );
     }
 }

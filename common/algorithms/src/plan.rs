@@ -809,15 +809,29 @@ mod tests {
             let all = 0..13;
             all.map(|k| format!("{letter}{k}")).collect()
         };
-        let mut pairs = format!("variable_group {}, {};", names("x").join(", "), names("y").join(", "));
-        pairs += &format!("function {}, {};", names("f").join(", "), names("g").join(", "));
+        let mut pairs = format!(
+            "variable_group {}, {};",
+            names("x").join(", "),
+            names("y").join(", ")
+        );
+        pairs += &format!(
+            "function {}, {};",
+            names("f").join(", "),
+            names("g").join(", ")
+        );
         for k in 0..13 {
             pairs += &format!("f{k} = x{k}*y{k} - 1; g{k} = x{k}*y{k} + x{k} - 3*y{k};");
         }
         let error = refusal(&bertini(&pairs), &with_start(StartChoice::TotalDegree));
         assert!(error.to_string().contains("67108864 paths"), "{error}");
-        assert!(error.to_string().contains("these starts would do: "), "{error}");
-        assert!(error.to_string().contains("polyhedral with 8192"), "{error}");
+        assert!(
+            error.to_string().contains("these starts would do: "),
+            "{error}"
+        );
+        assert!(
+            error.to_string().contains("polyhedral with 8192"),
+            "{error}"
+        );
         let names: Vec<String> = (0..70).map(|k| format!("x{k}")).collect();
         let functions: Vec<String> = (0..70).map(|k| format!("f{k}")).collect();
         let equations: Vec<String> = (0..70).map(|k| format!("f{k} = x{k}^2 - 1;")).collect();

@@ -230,9 +230,11 @@ impl Starts {
         }
         let product = match &self.linear_product {
             Some(product) => product.clone(),
-            None => self.clone().with_linear_product(system).linear_product.unwrap_or_else(|| {
-                Err(String::new())
-            }),
+            None => self
+                .clone()
+                .with_linear_product(system)
+                .linear_product
+                .unwrap_or_else(|| Err(String::new())),
         };
         if let Some((_, _, number)) = product.ok().filter(|(.., number)| *number <= MAX_PATHS) {
             names.push(format!("{} with {number}", StartKind::LinearProduct));

@@ -102,7 +102,9 @@ impl StoredPoints {
         let points = self.coordinates.chunks(self.dimension.max(1));
         Self {
             dimension: self.dimension,
-            coordinates: points.flat_map(|point| scaling.to_unknowns(point)).collect(),
+            coordinates: points
+                .flat_map(|point| scaling.to_unknowns(point))
+                .collect(),
         }
     }
 

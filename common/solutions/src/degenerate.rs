@@ -177,8 +177,7 @@ impl DeclaredSets {
         tolerances: &Tolerances,
     ) -> Vec<bool> {
         let field = Bounded(ManyBits(128));
-        let variables =
-            field.variables(&self.groups, &self.scaling, values, accuracy, tolerances);
+        let variables = field.variables(&self.groups, &self.scaling, values, accuracy, tolerances);
         let parameters = field.parameters(parameters);
         let mut found: Vec<Option<Value>> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {

@@ -99,7 +99,9 @@ impl PointShape {
                 true => Cow::Borrowed(group),
                 false => {
                     let scaled = members.iter().zip(group);
-                    scaled.map(|(&v, &z)| self.scaling.to_variable(v, z)).collect()
+                    scaled
+                        .map(|(&v, &z)| self.scaling.to_variable(v, z))
+                        .collect()
                 }
             };
             let divisor = scaled[largest_index(&scaled)];

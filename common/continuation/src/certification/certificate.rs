@@ -115,7 +115,9 @@ impl Certificate {
         };
         let all = |values: &[f64]| -> Option<Vec<f64>> {
             let pairs = values.iter().zip(&exponents);
-            pairs.map(|(value, exponent)| times(value, exponent)).collect()
+            pairs
+                .map(|(value, exponent)| times(value, exponent))
+                .collect()
         };
         let centre = self.centre.iter().zip(&exponents);
         Some(Self {

@@ -7,8 +7,8 @@
 //! they are the solutions at p, and the points with a.x = 0.
 
 use crate::chart::exact;
-use cognate_systems::expression::{Expressions, Node, NodeId};
 use cognate_numeric::rational::ComplexRational;
+use cognate_systems::expression::{Expressions, Node, NodeId};
 use cognate_systems::scaling::exact_times;
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;

@@ -194,7 +194,12 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
                 _ => names.push("a sum"),
             }
         }
-        names.sort_by_key(|name| (*name == "a sum", system.variables.iter().position(|v| v == name)));
+        names.sort_by_key(|name| {
+            (
+                *name == "a sum",
+                system.variables.iter().position(|v| v == name),
+            )
+        });
         names.dedup();
         let message = format!(
             "denominators are multiplied out; where one of {} is 0 there is no solution, and what \

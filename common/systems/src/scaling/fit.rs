@@ -98,10 +98,13 @@ fn units(system: &System) -> (usize, Vec<usize>) {
         }
         v
     }
-    let permutations = system.symmetry.iter().filter_map(|generator| match generator {
-        SymmetryGenerator::Permutation(images) => Some(images.iter().copied().enumerate()),
-        SymmetryGenerator::Map(_) => None,
-    });
+    let permutations = system
+        .symmetry
+        .iter()
+        .filter_map(|generator| match generator {
+            SymmetryGenerator::Permutation(images) => Some(images.iter().copied().enumerate()),
+            SymmetryGenerator::Map(_) => None,
+        });
     let pairs = system.conjugates.iter().copied();
     for (a, b) in permutations.flatten().chain(pairs) {
         let (a, b) = (find(&root, a), find(&root, b));
@@ -139,7 +142,10 @@ fn terms(equation: &Magnitudes, of_variable: &[usize]) -> Vec<Term> {
 impl Term {
     /// The logarithm of its coefficient in these units.
     fn scaled(&self, exponents: &[f64]) -> f64 {
-        let units = self.powers.iter().map(|&(unit, power)| power * exponents[unit]);
+        let units = self
+            .powers
+            .iter()
+            .map(|&(unit, power)| power * exponents[unit]);
         self.size + units.sum::<f64>()
     }
 }
@@ -242,7 +248,10 @@ fn solve(mut matrix: Vec<Vec<f64>>) -> Option<Vec<f64>> {
         for below in rest {
             let factor = below[k] / pivot;
             if factor != 0.0 {
-                below[k..].iter_mut().zip(&row[k..]).for_each(|(b, r)| *b -= factor * r);
+                below[k..]
+                    .iter_mut()
+                    .zip(&row[k..])
+                    .for_each(|(b, r)| *b -= factor * r);
             }
         }
     }
@@ -283,7 +292,12 @@ mod tests {
         // What rounding left of 0 is no unit.
         let rounded = "f = x^2 + x*y + 2*y^2 - 3 + 1e-16*x; g = x*y + x - 2*y + 5 - 1e-15*y^2;";
         assert_eq!(of(&format!("{f} {rounded}")), [0i32; 0]);
-        for named in [named::katsura(5), named::cyclic(6), named::noon(4), named::eco(6)] {
+        for named in [
+            named::katsura(5),
+            named::cyclic(6),
+            named::noon(4),
+            named::eco(6),
+        ] {
             assert!(Scaling::of(&named.system, &[]).is_none());
         }
     }

@@ -73,7 +73,11 @@ fn of_equation(
 ) -> Option<Magnitudes> {
     let from = &system.expressions;
     let mut done: HashMap<NodeId, Magnitudes> = HashMap::new();
-    let number = |size: Option<f64>| size.map(|size| (Monomial::new(), size)).into_iter().collect();
+    let number = |size: Option<f64>| {
+        size.map(|size| (Monomial::new(), size))
+            .into_iter()
+            .collect()
+    };
     for id in below(from, &[root]) {
         let found: Magnitudes = match from.node(id) {
             Node::Constant(c) => number(log2(c)),
@@ -95,7 +99,9 @@ fn of_equation(
                 let base = &done[a];
                 match (base.len(), base.first_key_value()) {
                     (1, Some((monomial, size))) => {
-                        let raised = monomial.iter().map(|&(v, e)| (v, e.saturating_mul(*exponent)));
+                        let raised = monomial
+                            .iter()
+                            .map(|&(v, e)| (v, e.saturating_mul(*exponent)));
                         Magnitudes::from([(raised.collect(), size * f64::from(*exponent))])
                     }
                     _ => {
@@ -112,7 +118,10 @@ fn of_equation(
                     return None;
                 }
                 let below = *done[b].values().next()?;
-                done[a].iter().map(|(m, size)| (m.clone(), size - below)).collect()
+                done[a]
+                    .iter()
+                    .map(|(m, size)| (m.clone(), size - below))
+                    .collect()
             }
         };
         if found.len() > MOST_TERMS {

@@ -215,7 +215,10 @@ fn reduced(
     parameters: usize,
 ) -> Fraction {
     let all = under.keys();
-    if !all.clone().any(|&id| matches!(out.node(id), Node::Variable(_))) {
+    if !all
+        .clone()
+        .any(|&id| matches!(out.node(id), Node::Variable(_)))
+    {
         return (numerator, under);
     }
     let Some(f) = Polynomial::expand(out, numerator, variables, parameters) else {

@@ -174,7 +174,10 @@ mod tests {
         assert_eq!(degrees(&scaled).unwrap(), degrees(&system).unwrap());
         let number = |k: i64| ComplexRational::new(Rational::from((k, 7)), Rational::from((1, k)));
         let (unknowns, p) = ([number(5), number(-3)], [number(2)]);
-        let variables = [exact_times(&unknowns[0], 40), exact_times(&unknowns[1], -33)];
+        let variables = [
+            exact_times(&unknowns[0], 40),
+            exact_times(&unknowns[1], -33),
+        ];
         let roots = |s: &System| s.equations[..2].to_vec();
         let before = exact::values(&system.expressions, &roots(&system), &variables, &p);
         let after = exact::values(&scaled.expressions, &roots(&scaled), &unknowns, &p);
@@ -191,7 +194,10 @@ mod tests {
         for (before, again) in before.iter().zip(&again) {
             let ratio = before.as_ref().unwrap().divide(again.as_ref().unwrap());
             let exponent = binary_exponent(ratio.as_ref().unwrap()).unwrap();
-            assert_eq!(Some(exact_times(&ComplexRational::real(1), exponent)), ratio);
+            assert_eq!(
+                Some(exact_times(&ComplexRational::real(1), exponent)),
+                ratio
+            );
         }
     }
 }

@@ -172,7 +172,7 @@ fn declarations_and_definitions() {
     );
     check(
         &bertini("random r; r = 2; f = r*x;"),
-        "test:2:11: expected a name that is not taken, found `r`, which is declared as a random \
+        "test:2:11: expected a new name, found `r`, which is declared as a random \
          constant",
     );
     check(
@@ -501,7 +501,7 @@ fn exact_arithmetic_that_cancels_is_limited_too() {
 fn many_warnings_are_not_slow() {
     let text = format!(
         "CONFIG\n{}END;\n{}",
-        "odd: 1;\n".repeat(1_000_000),
+        "MaxNorm: 1;\n".repeat(1_000_000),
         "INPUT "
     );
     let text = text + &bertini("f = x;");

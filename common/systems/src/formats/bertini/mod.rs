@@ -21,7 +21,9 @@ enum Kind {
     Parameter,
     PathVariable,
     /// A constant that the seed decides: complex of modulus 1, or real between -1 and 1.
-    Random { real: bool },
+    Random {
+        real: bool,
+    },
 }
 
 impl Kind {
