@@ -246,7 +246,7 @@ fn proofs_and_digits_are_in_the_units_of_the_variables() {
             "{digits:?}"
         );
         assert!(
-            digits[1].contains("7.07106781186547524400844362104849039284"),
+            digits[1].contains("7071067811865475244008443621048490392848"),
             "{digits:?}"
         );
     }

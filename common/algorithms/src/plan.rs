@@ -451,6 +451,8 @@ fn plan_regeneration(
     };
     let point =
         slices::common_point(options.seed, tracked.variables.len()).ok_or(PlanError::NoPaths)?;
+    // The forms are those of the unknowns that are tracked.
+    let point = tracked.scaling.to_variables(&point);
     let paths = u64::from(levels.degrees[0].saturating_sub(1).max(1));
     let tolerances = options.tolerances.clone();
     let solve = RegenerationSolve::new(levels, point, &tracked, tolerances);
