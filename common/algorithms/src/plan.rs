@@ -26,8 +26,8 @@ use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::expression::Dependence;
-use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
+use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -211,7 +211,7 @@ fn in_units<'a>(system: &'a System, options: &PlanOptions) -> Cow<'a, System> {
             })
             .into();
     }
-    let scaling = Scaling::of(system, &values);
+    let scaling = scaling_of(system, &values);
     match scaling == system.scaling {
         true => Cow::Borrowed(system),
         false => Cow::Owned(System {

@@ -10,3 +10,4 @@ pub mod scaling;
 pub mod straight_line_program;
 pub mod system;
 pub mod transform;
+pub mod units;

@@ -12,4 +12,3 @@ pub use deflate::deflate;
 pub use fix_parameters::{FixError, fix_parameters};
 pub use homogenize::homogenize;
 pub use randomize::randomize;
-pub use rescale::rescale;

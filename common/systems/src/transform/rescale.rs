@@ -6,6 +6,7 @@ use crate::expression::{Expressions, Node, NodeId};
 use crate::scaling::{Scaling, exact_times};
 use crate::system::{DegenerateSet, System};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// The system with variable i replaced by 2^(e_i) times variable i.
@@ -13,7 +14,7 @@ use std::collections::HashMap;
 /// Every node is written as 2^s times a node whose constants and variables have ordinary sizes, and
 /// the equations' own powers are left out: coefficients of hundreds of digits, which no double
 /// holds, become such as doubles hold. The result has no scaling and no symmetry.
-pub fn rescale(system: &System, scaling: &Scaling) -> System {
+fn rescale(system: &System, scaling: &Scaling) -> System {
     let from = &system.expressions;
     let mut out = Expressions::new();
     let mut done: HashMap<NodeId, Scaled> = HashMap::new();
@@ -91,6 +92,25 @@ pub fn rescale(system: &System, scaling: &Scaling) -> System {
         scaling: Scaling::default(),
         symmetry: Vec::new(),
         ..system.clone()
+    }
+}
+
+impl System {
+    /// The system in the unknowns that are tracked, and without a scaling; itself where it has none.
+    /// Its equations are those of this system times powers of two; symmetries are left out.
+    pub fn in_unknowns(&self) -> Cow<'_, System> {
+        match self.scaling.is_none() {
+            true => Cow::Borrowed(self),
+            false => Cow::Owned(rescale(self, &self.scaling)),
+        }
+    }
+
+    /// The other way: a system in unknowns of this scaling, in the units of the variables.
+    pub fn in_variables(&self, scaling: &Scaling) -> System {
+        match scaling.is_none() {
+            true => self.clone(),
+            false => rescale(self, &scaling.inverse()),
+        }
     }
 }
 

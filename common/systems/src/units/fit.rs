@@ -6,8 +6,8 @@
 //! rounding left, where exact arithmetic has 0, then moves no unit. The factors of the equations
 //! are those that leave least, so that only differences within an equation count.
 
-use super::magnitudes::{Magnitudes, magnitudes};
-use super::{MOST_EXPONENT, Scaling};
+use super::magnitudes::{Magnitudes, Monomial, magnitudes};
+use crate::scaling::{MOST_EXPONENT, Scaling};
 use crate::system::{SymmetryGenerator, System};
 use num_complex::Complex64;
 
@@ -38,8 +38,11 @@ struct Term {
     size: f64,
 }
 
-/// See [`Scaling::of`].
-pub(super) fn fit(system: &System, parameters: &[Vec<Complex64>]) -> Scaling {
+/// The scaling that suits a checked system at these values of its parameters (those where its
+/// paths begin and end, one list for each); none where it has ordinary sizes already.
+///
+/// Variables that a declared conjugation or permutation takes to each other have one unit.
+pub fn scaling_of(system: &System, parameters: &[Vec<Complex64>]) -> Scaling {
     let (units, of_variable) = units(system);
     // Parameters that nothing is known of are of ordinary size.
     let none = vec![Complex64::new(1.0, 0.0); system.parameters.len()];
@@ -125,7 +128,7 @@ fn units(system: &System) -> (usize, Vec<usize>) {
 }
 
 fn terms(equation: &Magnitudes, of_variable: &[usize]) -> Vec<Term> {
-    let term = |(monomial, &size): (&super::magnitudes::Monomial, &f64)| {
+    let term = |(monomial, &size): (&Monomial, &f64)| {
         let mut powers: Vec<(usize, f64)> = Vec::with_capacity(monomial.len());
         for &(v, e) in monomial {
             let unit = of_variable[v as usize];
@@ -272,7 +275,7 @@ mod tests {
     fn of(input: &str) -> Vec<i32> {
         let text = format!("CONFIG\nEND;\nINPUT\n{input}\nEND;\n");
         let system = read("test", text.as_bytes()).unwrap().system;
-        Scaling::of(&system, &[]).exponents
+        scaling_of(&system, &[]).exponents
     }
 
     #[test]
@@ -298,7 +301,7 @@ mod tests {
             named::noon(4),
             named::eco(6),
         ] {
-            assert!(Scaling::of(&named.system, &[]).is_none());
+            assert!(scaling_of(&named.system, &[]).is_none());
         }
     }
 
@@ -313,7 +316,7 @@ mod tests {
         let text = r#"{"variables": ["x", "y"], "equations": ["x*y - 1e20", "x + y - 3e12"],
                        "symmetry": [{"permutation": {"x": "y", "y": "x"}}]}"#;
         let system = read("test", text.as_bytes()).unwrap().system;
-        let found = Scaling::of(&system, &[]).exponents;
+        let found = scaling_of(&system, &[]).exponents;
         assert_eq!(found[0], found[1]);
         assert!((30..=42).contains(&found[0]), "{found:?}");
     }

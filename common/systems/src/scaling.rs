@@ -5,15 +5,9 @@
 //! unknowns X_i = x_i / 2^(e_i) are tracked, with the equations multiplied by powers of two, and
 //! everything that is shown or read is in x. The exponents are integers: going over is exact.
 
-mod fit;
-mod magnitudes;
-
-use crate::system::System;
-use crate::transform::rescale;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 
 /// Largest exponent of a unit: products of a few of these are doubles still.
 pub const MOST_EXPONENT: i32 = 900;
@@ -57,14 +51,6 @@ pub fn exact_times(value: &ComplexRational, exponent: i64) -> ComplexRational {
 }
 
 impl Scaling {
-    /// The scaling that suits a checked system at these values of its parameters (those where its
-    /// paths begin and end, one list for each); none where it has ordinary sizes already.
-    ///
-    /// Variables that a declared conjugation or permutation takes to each other have one unit.
-    pub fn of(system: &System, parameters: &[Vec<Complex64>]) -> Self {
-        fit::fit(system, parameters)
-    }
-
     /// True where the system is tracked as it is.
     pub fn is_none(&self) -> bool {
         self.exponents.is_empty()
@@ -113,25 +99,6 @@ impl Scaling {
     pub fn inverse(&self) -> Self {
         Self {
             exponents: self.exponents.iter().map(|e| -e).collect(),
-        }
-    }
-}
-
-impl System {
-    /// The system in the unknowns that are tracked, and without a scaling; itself where it has none.
-    /// Its equations are those of this system times powers of two; symmetries are left out.
-    pub fn in_unknowns(&self) -> Cow<'_, System> {
-        match self.scaling.is_none() {
-            true => Cow::Borrowed(self),
-            false => Cow::Owned(rescale(self, &self.scaling)),
-        }
-    }
-
-    /// The other way: a system in unknowns of this scaling, in the units of the variables.
-    pub fn in_variables(&self, scaling: &Scaling) -> System {
-        match scaling.is_none() {
-            true => self.clone(),
-            false => rescale(self, &scaling.inverse()),
         }
     }
 }
