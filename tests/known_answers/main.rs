@@ -18,6 +18,7 @@ mod overdetermined;
 mod parameter_homotopies;
 mod planted;
 mod polyhedral;
+mod scaled_units;
 mod singular_endpoints;
 mod start_costs;
 mod straight_line_programs;

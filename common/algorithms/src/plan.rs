@@ -28,8 +28,10 @@ use cognate_solutions::classification::Tolerances;
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
+use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Most paths of one solve where all results are held in memory, about 300 bytes a path.
 pub const MAX_PATHS: u64 = 4_000_000;
@@ -165,6 +167,8 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
     if options.sets.is_some() && (given || options.start == StartChoice::Monodromy) {
         return Err(PlanError::SetsWithoutLinearProduct);
     }
+    let in_units = in_units(system, options);
+    let system = &*in_units;
     let mut plan = match (given, options.start) {
         (_, StartChoice::Monodromy) => plan_monodromy(system, options),
         (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),
@@ -181,11 +185,41 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
             return Err(PlanError::TooManyPaths {
                 start: plan.start,
                 number: plan.paths,
+                instead: String::new(),
             });
         }
         plan.algorithm = AnyAlgorithm::Certified(Box::new(CertifiedSolve::new(plan.algorithm)));
     }
     Ok(plan)
+}
+
+/// The system with the units in which it is tracked, decided from its coefficients where its paths
+/// begin and end: a family's at the start parameters and at the first target.
+fn in_units<'a>(system: &'a System, options: &PlanOptions) -> Cow<'a, System> {
+    let ends = options.start_parameters.iter();
+    let ends = ends.chain(options.target_parameters.first());
+    let mut values: Vec<Vec<Complex64>> = ends.cloned().collect();
+    values.retain(|set| set.len() == system.parameters.len());
+    if let Some(t) = system.path_variable {
+        // At both ends of the user's own homotopy.
+        let given = values.pop();
+        let given = given.unwrap_or_else(|| vec![Complex64::default(); system.parameters.len()]);
+        values = [1.0, 0.0]
+            .map(|at| {
+                let mut set = given.clone();
+                set[t] = Complex64::new(at, 0.0);
+                set
+            })
+            .into();
+    }
+    let scaling = scaling_of(system, &values);
+    match scaling == system.scaling {
+        true => Cow::Borrowed(system),
+        false => Cow::Owned(System {
+            scaling,
+            ..system.clone()
+        }),
+    }
 }
 
 fn check_parameters(system: &System, options: &PlanOptions) -> Result<(), PlanError> {
@@ -261,6 +295,14 @@ fn plan_start_system(
         return plan_regeneration(system, parameters, options);
     }
     let mut starts = Starts::of(system, options.seed)?;
+    let named = |error: PlanError, starts: &Starts| match error {
+        PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
+            start,
+            number,
+            instead: starts.that_would_do(system),
+        },
+        other => other,
+    };
     if choice == StartChoice::Auto {
         starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
     }
@@ -291,14 +333,15 @@ fn plan_start_system(
             };
             (StartKind::LinearProduct, format!("{asked}; {sets}"))
         }
-        _ => starts.choose()?,
+        _ => starts.choose().map_err(|error| named(error, &starts))?,
     };
     if kind == StartKind::Polyhedral {
         return plan_polyhedral(system, parameters, why, options);
     }
     let (tracked, start_points) = match kind {
         StartKind::TotalDegree => {
-            let (tracked, start, _) = starts.total_degree?;
+            let start = starts.total_degree.clone();
+            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
             (tracked, start)
         }
         StartKind::LinearProduct => {
@@ -309,12 +352,18 @@ fn plan_start_system(
                 .map_err(PlanError::NoLinearProduct)?;
             if count > MAX_PATHS {
                 let (start, number) = (StartKind::LinearProduct, Some(count));
-                return Err(PlanError::TooManyPaths { start, number });
+                let instead = String::new();
+                return Err(PlanError::TooManyPaths {
+                    start,
+                    number,
+                    instead,
+                });
             }
             (tracked, start)
         }
         _ => {
-            let (tracked, start, _) = starts.multihomogeneous?;
+            let start = starts.multihomogeneous.clone();
+            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
             (tracked, start)
         }
     };
@@ -376,6 +425,7 @@ pub(crate) fn checked_volume(volume: u64) -> Result<u64, PlanError> {
         number if number > MAX_PATHS => Err(PlanError::TooManyPaths {
             start: StartKind::Polyhedral,
             number: Some(number),
+            instead: String::new(),
         }),
         number => Ok(number),
     }
@@ -402,6 +452,8 @@ fn plan_regeneration(
     };
     let point =
         slices::common_point(options.seed, tracked.variables.len()).ok_or(PlanError::NoPaths)?;
+    // The forms are those of the unknowns that are tracked.
+    let point = tracked.scaling.to_variables(&point);
     let paths = u64::from(levels.degrees[0].saturating_sub(1).max(1));
     let tolerances = options.tolerances.clone();
     let solve = RegenerationSolve::new(levels, point, &tracked, tolerances);
@@ -426,6 +478,7 @@ fn check_given(system: &System, start: &GivenStart) -> Result<(), PlanError> {
         return Err(PlanError::TooManyPaths {
             start: StartKind::Given,
             number: Some(start.count),
+            instead: String::new(),
         });
     }
     if start.dimension != system.variables.len() {
@@ -471,6 +524,7 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
         return Err(PlanError::TooManyPaths {
             start: StartKind::Given,
             number,
+            instead: String::new(),
         });
     }
     let start_points = StartPoints::Stored {
@@ -776,6 +830,34 @@ mod tests {
         assert!(error.to_string().contains("81000000 paths"), "{error}");
         assert!(
             error.to_string().starts_with("not in this version"),
+            "{error}"
+        );
+        // Pairs of bilinear equations: 4^13 by total degree, 2^13 by mixed cells.
+        let names = |letter: &str| -> Vec<String> {
+            let all = 0..13;
+            all.map(|k| format!("{letter}{k}")).collect()
+        };
+        let mut pairs = format!(
+            "variable_group {}, {};",
+            names("x").join(", "),
+            names("y").join(", ")
+        );
+        pairs += &format!(
+            "function {}, {};",
+            names("f").join(", "),
+            names("g").join(", ")
+        );
+        for k in 0..13 {
+            pairs += &format!("f{k} = x{k}*y{k} - 1; g{k} = x{k}*y{k} + x{k} - 3*y{k};");
+        }
+        let error = refusal(&bertini(&pairs), &with_start(StartChoice::TotalDegree));
+        assert!(error.to_string().contains("67108864 paths"), "{error}");
+        assert!(
+            error.to_string().contains("these starts would do: "),
+            "{error}"
+        );
+        assert!(
+            error.to_string().contains("polyhedral with 8192"),
             "{error}"
         );
         let names: Vec<String> = (0..70).map(|k| format!("x{k}")).collect();

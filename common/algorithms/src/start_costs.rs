@@ -216,6 +216,45 @@ impl Starts {
         self.degrees.by_group.first().map_or(0, Vec::len)
     }
 
+    /// The starts whose paths can be followed, as the end of a sentence that refuses another.
+    pub(crate) fn that_would_do(&self, system: &System) -> String {
+        let mut names = Vec::new();
+        let starts = [
+            (StartKind::TotalDegree, &self.total_degree),
+            (StartKind::Multihomogeneous, &self.multihomogeneous),
+        ];
+        for (kind, start) in starts {
+            if let Ok((_, _, number)) = start {
+                names.push(format!("{kind} with {number}"));
+            }
+        }
+        let product = match &self.linear_product {
+            Some(product) => product.clone(),
+            None => self
+                .clone()
+                .with_linear_product(system)
+                .linear_product
+                .unwrap_or_else(|| Err(String::new())),
+        };
+        if let Some((_, _, number)) = product.ok().filter(|(.., number)| *number <= MAX_PATHS) {
+            names.push(format!("{} with {number}", StartKind::LinearProduct));
+        }
+        let polyhedral = StartKind::Polyhedral;
+        match cell_supports(system).map(|supports| mixed_cells(&supports, 0, COUNTING_OPERATIONS)) {
+            Ok(Ok(found)) if (1..=MAX_PATHS).contains(&found.mixed_volume) => {
+                names.push(format!("{polyhedral} with {}", found.mixed_volume));
+            }
+            Ok(Err(MixedCellsError::TooLong)) => {
+                names.push(format!("{polyhedral}, whose paths the workers count"));
+            }
+            _ => {}
+        }
+        match names.is_empty() {
+            true => "; no other start is known to have fewer".to_string(),
+            false => format!("; these starts would do: {}", names.join("; ")),
+        }
+    }
+
     /// The cheaper one, and why, in words.
     pub fn choose(&self) -> Result<(StartKind, String), PlanError> {
         let bezout = self.cheaper();
@@ -621,6 +660,7 @@ fn counted(system: &System, start: &StartPoints, kind: StartKind) -> Result<u64,
         number => Err(PlanError::TooManyPaths {
             start: kind,
             number,
+            instead: String::new(),
         }),
     }
 }

@@ -186,6 +186,7 @@ impl Draw {
             degenerate: degenerate.into_iter().collect(),
             symmetry,
             expressions,
+            scaling: Default::default(),
         };
         system.check().expect("the generator makes checked systems");
         system
@@ -247,6 +248,7 @@ impl Draw {
             confidence: (count > 1).then_some(0.999),
             digits: (count > 1).then_some(50),
             deflate: length > 2,
+            warnings: Vec::new(),
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
         }
     }

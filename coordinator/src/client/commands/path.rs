@@ -42,7 +42,7 @@ struct Traced {
 /// Tracks the path and shows it.
 pub fn run(a: &TracePath) -> Result<Exit, ClientError> {
     let prepared = problem::prepare(&a.problem)?;
-    for warning in &prepared.warnings {
+    for warning in &prepared.submission.options.warnings {
         eprintln!("warning: {warning}");
     }
     let name = prepared.name.clone();

@@ -163,7 +163,6 @@ fn submission(
             options,
         },
         name: how.name.clone(),
-        warnings: vec![],
     }
 }
 
