@@ -12,12 +12,15 @@
 //! dimension, since the local ring stays the same.
 
 pub mod candidates;
+mod dual_space;
+mod moved_slice;
 pub mod prepared;
 pub mod series;
 
 use crate::asked_system::{AskedSystem, Linearization};
 use crate::chart::norm;
 use cognate_numeric::linear_algebra::svd::Svd;
+use dual_space::{DualSpace, Stop};
 use num_complex::Complex64;
 use series::{Monomials, Series};
 
@@ -32,7 +35,7 @@ const LEAST_ERROR: f64 = 1e-11;
 /// Rounding errors of the expansion, relative to what is expanded.
 const ROUNDING: f64 = 1e-13;
 /// More monomials than this are not handled: their matrix would take seconds.
-const MOST_MONOMIALS: usize = 500;
+const MOST_MONOMIALS: usize = 3000;
 /// That the dimension outgrows the bound is believed from this order on, so that endpoints of one
 /// point that were taken for two do not make it one of a curve.
 const LEAST_ORDER: u32 = 2;
@@ -62,6 +65,7 @@ pub fn local_dimension(
         dual_dimensions: vec![1],
         bound: question.bound,
         margin: f64::INFINITY,
+        moved_slices: Vec::new(),
     };
     let size = norm(point);
     let error = question.accuracy.max(LEAST_ERROR) * size;
@@ -73,6 +77,15 @@ pub fn local_dimension(
     if kernel == 0 {
         return found;
     }
+    found.moved_slices = moved_slice::moved_slices(system, target, &split, error);
+    let on_a_set = moved_slice::meets(&found.moved_slices);
+    if std::env::var_os("V_DEBUG").is_some() {
+        eprintln!(
+            "kernel {kernel} error {error:.1e} bound {} slices {:?}",
+            question.bound, found.moved_slices
+        );
+    }
+    let mut space = DualSpace::new(kernel);
     for order in 2..=question.depth {
         // One order more than asked tells how the coefficients move with the point.
         let expanded = order + 1;
@@ -83,13 +96,22 @@ pub fn local_dimension(
         let Some(reduced) = split.reduce(system, target, &monomials) else {
             break;
         };
-        let nullity = dual_dimension(&monomials, &reduced, order, error, &mut found.margin);
-        let last = *found.dual_dimensions.last().expect("it began with one");
-        found.dual_dimensions.push(nullity);
-        let closed = nullity <= last;
-        if closed || (u64::from(nullity) > question.bound && order >= LEAST_ORDER) {
+        let noise = reduced.noise(&monomials, order, error);
+        let stop = space.extend(&monomials, &reduced.equations, noise, &mut found.margin);
+        if let Err(Stop::TooLarge) = stop {
             break;
         }
+        found.dual_dimensions.push(space.dimension() as u32);
+        let outgrown = u64::from(space.dimension() as u32) > question.bound;
+        if stop.is_err() || (outgrown && order >= LEAST_ORDER && on_a_set) {
+            break;
+        }
+    }
+    if std::env::var_os("V_DEBUG").is_some() {
+        eprintln!(
+            "   dual {:?} margin {:.1e}",
+            found.dual_dimensions, found.margin
+        );
     }
     found
 }
@@ -256,48 +278,18 @@ impl Split {
     }
 }
 
-/// Dimension of the dual space up to an order, of equations that begin with order 2: monomials up
-/// to it less the rank of Macaulay's matrix of all multiples.
-fn dual_dimension(
-    monomials: &Monomials,
-    reduced: &Reduced,
-    order: u32,
-    error: f64,
-    margin: &mut f64,
-) -> u32 {
-    let within = monomials.of_degree(order).end;
-    let first = monomials.of_degree(2).start;
-    let mut rows: Vec<Vec<Complex64>> = Vec::new();
-    let mut moves = 0.0;
-    for equation in &reduced.equations {
-        // How far the coefficients up to this order move when the point does by its error:
-        // d/dz of those of one order more.
-        let moved: f64 = (3..=order + 1)
-            .map(|d| f64::from(d * d) * square(&equation[monomials.of_degree(d)]))
-            .sum();
-        for shift in 0..monomials.of_degree(order - 2).end {
-            let mut row = vec![Complex64::default(); within - first];
-            for (place, &value) in equation[..within].iter().enumerate().skip(first) {
-                if let Some(product) = monomials.product(shift, place)
-                    && product < within
-                {
-                    row[product - first] = value;
-                }
-            }
-            moves += moved;
-            rows.push(row);
-        }
+impl Reduced {
+    /// How far the coefficients up to this order may be off: they move when the point does by its error,
+    /// by d/dz of those of one order more.
+    fn noise(&self, monomials: &Monomials, order: u32, error: f64) -> f64 {
+        let moved = |equation: &Series| -> f64 {
+            (3..=order + 1)
+                .map(|d| f64::from(d * d) * square(&equation[monomials.of_degree(d)]))
+                .sum()
+        };
+        let moves: f64 = self.equations.iter().map(moved).sum();
+        error * moves.sqrt() + self.rounding
     }
-    let noise = error * moves.sqrt() + reduced.rounding;
-    // The singular values of the transpose are the same, and there are fewer of the shorter side.
-    let columns = within - first;
-    let values = if rows.len() <= columns {
-        Svd::of(rows).values
-    } else {
-        let column = |j: usize| rows.iter().map(|row| row[j]).collect();
-        Svd::of((0..columns).map(column).collect()).values
-    };
-    (within - rank(&values, noise, margin)) as u32
 }
 
 #[cfg(test)]
