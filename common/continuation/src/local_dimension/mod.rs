@@ -36,6 +36,8 @@ const LEAST_ERROR: f64 = 1e-11;
 const ROUNDING: f64 = 1e-13;
 /// More monomials than this are not handled: their matrix would take seconds.
 const MOST_MONOMIALS: usize = 3000;
+/// Below this margin nothing is asked any more.
+const UNCLEAR: f64 = 1.5;
 /// That the dimension outgrows the bound is believed from this order on, so that endpoints of one
 /// point that were taken for two do not make it one of a curve.
 const LEAST_ORDER: u32 = 2;
@@ -103,7 +105,9 @@ pub fn local_dimension(
         }
         found.dual_dimensions.push(space.dimension() as u32);
         let outgrown = u64::from(space.dimension() as u32) > question.bound;
-        if stop.is_err() || (outgrown && order >= LEAST_ORDER && on_a_set) {
+        // Where values and noise cannot be told apart higher orders say nothing.
+        let unclear = found.margin < UNCLEAR;
+        if stop.is_err() || unclear || (outgrown && order >= LEAST_ORDER && on_a_set) {
             break;
         }
     }

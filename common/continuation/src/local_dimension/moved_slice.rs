@@ -22,7 +22,7 @@ const DISTANCES: [f64; 4] = [0.1, 0.0125, 0.0016, 0.0002];
 /// A slice has at least this many times the point's error as its distance.
 const ABOVE_ERROR: f64 = 40.0;
 /// Directions, within the null space, in which the first point on a slice is sought.
-const DIRECTIONS: u64 = 4;
+const DIRECTIONS: u64 = 3;
 /// Gauss-Newton steps on one slice: towards a set of multiplicity 3 each makes the error smaller by a
 /// third only.
 const MOST_STEPS: usize = 60;
@@ -42,8 +42,8 @@ const ROUNDING: f64 = 1e-28;
 /// A point in double-doubles.
 type Precise = Vec<Complex<DoubleDouble<f64>>>;
 
-/// What the slices at each distance meet; empty where the point has no null space or the distances are
-/// below its error.
+/// What the slices at each distance meet, up to one that meets nothing; none at distances that the point's
+/// error does not allow.
 pub(super) fn moved_slices(
     system: &AskedSystem,
     target: u64,
@@ -52,28 +52,30 @@ pub(super) fn moved_slices(
 ) -> Vec<MovedSlice> {
     let size = norm(&split.point);
     let slices = DISTANCES.iter().map(|distance| distance * size);
-    let far = slices.filter(|&distance| distance > ABOVE_ERROR * error);
-    far.map(|distance| {
-        let tries = (0..DIRECTIONS).map(|k| {
-            let slice = Slice::new(split, distance, k);
-            slice.nearest(system, target, split)
-        });
+    let mut found = Vec::new();
+    for distance in slices.filter(|&distance| distance > ABOVE_ERROR * error) {
         let mut best = MovedSlice {
             distance: distance / size,
             residual: f64::INFINITY,
             reached: f64::INFINITY,
         };
-        for (residual, reached) in tries {
+        for attempt in 0..DIRECTIONS {
+            let slice = Slice::new(split, distance, attempt);
+            let (residual, reached) = slice.nearest(system, target, split);
             if residual < best.residual {
                 (best.residual, best.reached) = (residual, reached / size);
             }
-            if residual <= ROUNDING {
+            if best.residual <= MET {
                 break;
             }
         }
-        best
-    })
-    .collect()
+        found.push(best);
+        // Only the farthest slice may miss a set.
+        if found.len() > 1 && best.residual > MET {
+            break;
+        }
+    }
+    found
 }
 
 /// Whether a slice was met that is not too near to mean something.
@@ -141,8 +143,8 @@ impl Slice {
         let mut without_gain = 0;
         for _ in 0..MOST_STEPS {
             let found = system.linearize_precisely(&x, target);
-            let residual = norm(&found.values) / split.scale;
-            let reached = norm(&offset);
+            let residual = square(&found.values).sqrt() / split.scale;
+            let reached = square(&offset).sqrt();
             if !residual.is_finite() || reached > REACH * self.distance {
                 break;
             }
@@ -175,7 +177,7 @@ impl Slice {
             let mut step = svd.least_squares(&values, rank);
             step.iter_mut().for_each(|s| *s = -*s);
             // Where the equations are nearly singular a step is long without reason.
-            let length = norm(&step);
+            let length = square(&step).sqrt();
             if length > self.distance {
                 step.iter_mut().for_each(|s| *s *= self.distance / length);
             }
