@@ -237,10 +237,10 @@ fn is_met(found: &LocalDimension, tolerances: &Tolerances) -> bool {
     let (far, near): (Vec<_>, Vec<_>) = slices.iter().partition(|s| s.distance > FAR_SLICE);
     // Far away Newton's method may find nothing; but a residual that is small there and falls with
     // the distance is that of a point of high multiplicity.
-    let clear = |slice: &&MovedSlice| met(slice) || slice.residual > tolerances.slice_missed;
+    let clear = |slice: &MovedSlice| met(slice) || slice.residual > tolerances.slice_missed;
     near.iter().all(|slice| met(slice))
         && near.iter().any(|slice| slice.distance > NEAR_SLICE)
-        && far.iter().all(clear)
+        && far.iter().all(|slice| clear(slice))
 }
 
 /// Whether the endpoint solves the system as well as its estimated error says.
