@@ -13,8 +13,8 @@ use cognate_numeric::linear_algebra::svd::Svd;
 use num_complex::Complex64;
 
 /// More multiplications than this in one sweep of a singular value decomposition are not made: they
-/// would take seconds.
-const MOST_WORK: usize = 200_000_000;
+/// would take a second.
+const MOST_WORK: usize = 40_000_000;
 
 /// Functionals of order 0 to k that vanish on the ideal, of equations that begin with order 2.
 pub(super) struct DualSpace {

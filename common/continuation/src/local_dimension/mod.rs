@@ -14,6 +14,7 @@
 pub mod candidates;
 mod dual_space;
 mod moved_slice;
+mod precise_point;
 pub mod prepared;
 pub mod series;
 
@@ -21,7 +22,9 @@ use crate::asked_system::{AskedSystem, Linearization};
 use crate::chart::norm;
 use cognate_numeric::linear_algebra::svd::Svd;
 use dual_space::{DualSpace, Stop};
+use moved_slice::{meets, moved_slices};
 use num_complex::Complex64;
+use precise_point::regular_nearby;
 use series::{Monomials, Series};
 
 use crate::path_result::LocalDimension;
@@ -38,9 +41,12 @@ const ROUNDING: f64 = 1e-13;
 const MOST_MONOMIALS: usize = 3000;
 /// Below this margin nothing is asked any more.
 const UNCLEAR: f64 = 1.5;
-/// That the dimension outgrows the bound is believed from this order on, so that endpoints of one
-/// point that were taken for two do not make it one of a curve.
-const LEAST_ORDER: u32 = 2;
+/// Where slices meet a set, dual spaces that do not stop up to this order do not contradict.
+const ORDER_ON_A_SET: u32 = 3;
+/// Where dual spaces did not stop at this order, slices are searched in more directions.
+const ORDER_OF_DOUBT: u32 = 6;
+/// A point may be moved by at most this many times its error.
+const FARTHEST: f64 = 100.0;
 /// Newton steps that bring the point nearer in the regular directions.
 const MOST_STEPS: usize = 4;
 
@@ -71,6 +77,11 @@ pub fn local_dimension(
     };
     let size = norm(point);
     let error = question.accuracy.max(LEAST_ERROR) * size;
+    if let Some(margin) = regular_nearby(system, target, point, FARTHEST * error) {
+        found.dual_dimensions.push(1);
+        found.margin = margin;
+        return found;
+    }
     let Some(split) = Split::new(system, target, point, error, &mut found) else {
         return found;
     };
@@ -79,14 +90,7 @@ pub fn local_dimension(
     if kernel == 0 {
         return found;
     }
-    found.moved_slices = moved_slice::moved_slices(system, target, &split, error);
-    let on_a_set = moved_slice::meets(&found.moved_slices);
-    if std::env::var_os("V_DEBUG").is_some() {
-        eprintln!(
-            "kernel {kernel} error {error:.1e} bound {} slices {:?}",
-            question.bound, found.moved_slices
-        );
-    }
+    found.moved_slices = moved_slices(system, target, &split, error, false);
     let mut space = DualSpace::new(kernel);
     for order in 2..=question.depth {
         // One order more than asked tells how the coefficients move with the point.
@@ -104,18 +108,26 @@ pub fn local_dimension(
             break;
         }
         found.dual_dimensions.push(space.dimension() as u32);
-        let outgrown = u64::from(space.dimension() as u32) > question.bound;
         // Where values and noise cannot be told apart higher orders say nothing.
-        let unclear = found.margin < UNCLEAR;
-        if stop.is_err() || unclear || (outgrown && order >= LEAST_ORDER && on_a_set) {
+        if stop.is_err() || found.margin < UNCLEAR {
             break;
         }
+        if order >= ORDER_ON_A_SET && meets(&found.moved_slices) {
+            break;
+        }
+        if order == ORDER_OF_DOUBT {
+            found.moved_slices = moved_slices(system, target, &split, error, true);
+        }
+    }
+    // What is not isolated by low orders deserves a thorough search for others nearby.
+    let order = found.dual_dimensions.len() as u32 - 1;
+    let closed = found.dual_dimensions.windows(2).any(|w| w[1] <= w[0]) && found.margin >= UNCLEAR;
+    if order < ORDER_OF_DOUBT && !closed && !meets(&found.moved_slices) {
+        found.moved_slices = moved_slices(system, target, &split, error, true);
     }
     if std::env::var_os("V_DEBUG").is_some() {
-        eprintln!(
-            "   dual {:?} margin {:.1e}",
-            found.dual_dimensions, found.margin
-        );
+        eprintln!("kernel {kernel} error {error:.1e} bound {} slices {:?}", question.bound, found.moved_slices);
+        eprintln!("   dual {:?} margin {:.1e}", found.dual_dimensions, found.margin);
     }
     found
 }
@@ -173,7 +185,7 @@ impl Split {
         found: &mut LocalDimension,
     ) -> Option<Self> {
         let mut point = point.to_vec();
-        let farthest = 100.0 * error;
+        let farthest = FARTHEST * error;
         let mut moved = 0.0;
         let mut last = f64::INFINITY;
         for step in 0.. {

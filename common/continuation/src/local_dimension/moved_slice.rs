@@ -8,39 +8,44 @@
 //! at several distances is evidence for a set that does not depend on dual spaces, or on how many paths
 //! end at p. Residuals are evaluated in double-doubles.
 
+use super::precise_point::PrecisePoint;
 use super::{Split, square};
 use crate::asked_system::AskedSystem;
 use crate::chart::norm;
 use crate::path_result::MovedSlice;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
-use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
 use num_complex::Complex64;
 
-/// Distances of the slices, relative to the point's size, farthest first.
-const DISTANCES: [f64; 4] = [0.1, 0.0125, 0.0016, 0.0002];
+/// Distances of the slices, relative to the point's size, farthest first. The near ones tell a set
+/// through the point from one that passes it.
+const DISTANCES: [f64; 6] = [0.1, 0.0125, 0.0016, 0.0002, 1e-5, 2e-7];
 /// A slice has at least this many times the point's error as its distance.
 const ABOVE_ERROR: f64 = 40.0;
-/// Directions, within the null space, in which the first point on a slice is sought.
-const DIRECTIONS: u64 = 3;
+/// Directions, within the null space, in which the first point on a slice is sought: at first,
+const FEW_DIRECTIONS: u64 = 2;
+/// ... and where dual spaces of a low order did not stop.
+pub(super) const MANY_DIRECTIONS: u64 = 12;
+/// Most hyperplanes through the point that cut a set besides the one that is moved, except as many as
+/// the null space has dimensions.
+const MOST_CUTS: usize = 2;
 /// Gauss-Newton steps on one slice: towards a set of multiplicity 3 each makes the error smaller by a
 /// third only.
 const MOST_STEPS: usize = 60;
 /// Points farther away than this many distances of the slice are not near.
 const REACH: f64 = 30.0;
-/// Singular values below this part of the largest are rounding errors of the Jacobian.
-const LEAST_VALUE: f64 = 1e-15;
-/// Residuals below this are as good as 0: towards a set of multiplicity 3 or more Newton's method comes to about
-/// 1e-22, where the Jacobian in doubles has no more digits.
+/// Singular values below this part of the largest are rounding errors of the Jacobian in doubles.
+const LEAST_VALUE: f64 = 1e-14;
+/// Residuals below this are as good as 0: towards a set of multiplicity 3 Newton's method comes to about
+/// 1e-21, where the Jacobian in doubles has no more digits.
 const MET: f64 = 1e-20;
-/// A slice at least this far away that is met decides that the endpoint is on no isolated point of
+/// A slice at least this far away that is met decides that the endpoint is no isolated point of
 /// multiplicity below 10.
 const TELLING: f64 = 0.01;
+/// A slice farther away than this need not meet a set through the point.
+const FAR: f64 = 0.05;
 /// Residuals of a double-double evaluation, equations and coordinates scaled to 1, that are rounding.
 const ROUNDING: f64 = 1e-28;
-
-/// A point in double-doubles.
-type Precise = Vec<Complex<DoubleDouble<f64>>>;
 
 /// What the slices at each distance meet, up to one that meets nothing; none at distances that the point's
 /// error does not allow.
@@ -49,161 +54,203 @@ pub(super) fn moved_slices(
     target: u64,
     split: &Split,
     error: f64,
+    many: bool,
 ) -> Vec<MovedSlice> {
-    let size = norm(&split.point);
-    let slices = DISTANCES.iter().map(|distance| distance * size);
-    let mut found = Vec::new();
-    for distance in slices.filter(|&distance| distance > ABOVE_ERROR * error) {
-        let mut best = MovedSlice {
-            distance: distance / size,
-            residual: f64::INFINITY,
-            reached: f64::INFINITY,
-        };
-        for attempt in 0..DIRECTIONS {
-            let slice = Slice::new(split, distance, attempt);
-            let (residual, reached) = slice.nearest(system, target, split);
-            if residual < best.residual {
-                (best.residual, best.reached) = (residual, reached / size);
+    let kernel = split.kernel.len();
+    let mut cuts: Vec<usize> = (0..kernel.min(MOST_CUTS + 1)).collect();
+    // A set that fills the null space is cut to a regular point by as many hyperplanes.
+    if kernel > MOST_CUTS + 1 {
+        cuts.push(kernel - 1);
+    }
+    cuts.reverse();
+    let mut best = Vec::new();
+    for cut in cuts {
+        let found = Slices::new(system, target, split, cut).meet(error, many);
+        if meets(&found) {
+            return found;
+        }
+        if nearer(&found, &best) {
+            best = found;
+        }
+    }
+    best
+}
+
+/// Whether a slice was met that is not too near to mean something, and all that are nearer.
+pub(super) fn meets(slices: &[MovedSlice]) -> bool {
+    let met = |slice: &MovedSlice| slice.residual <= MET;
+    let mut near = slices.iter().filter(|slice| slice.distance < FAR);
+    near.clone().any(|slice| slice.distance >= TELLING) && near.all(met)
+}
+
+/// Whether the first slices came nearer to a solution than the others did.
+fn nearer(slices: &[MovedSlice], others: &[MovedSlice]) -> bool {
+    let last = |slices: &[MovedSlice]| slices.last().map_or(f64::INFINITY, |s| s.residual);
+    others.is_empty() || last(slices) < last(others)
+}
+
+/// Hyperplanes l_0(x - p) = δ and l_k(x - p) = 0 in the neighbourhood of p.
+struct Slices<'a> {
+    system: &'a AskedSystem,
+    target: u64,
+    split: &'a Split,
+    /// l_0, l_1, ..., of length 1 and 0 outside the null space.
+    forms: Vec<Vec<Complex64>>,
+}
+
+impl<'a> Slices<'a> {
+    /// With so many hyperplanes besides the one that is moved.
+    fn new(system: &'a AskedSystem, target: u64, split: &'a Split, cuts: usize) -> Self {
+        // The same forms at all distances: the points that are met are those of one curve.
+        let mut random = RandomStream::new(cuts as u64, Purpose::Probe, 3);
+        let forms = (0..=cuts).map(|_| {
+            let mut form = vec![Complex64::default(); split.point.len()];
+            for direction in &split.kernel {
+                let weight = random.disc();
+                for (l, v) in form.iter_mut().zip(direction) {
+                    *l += weight * v.conj();
+                }
             }
-            if best.residual <= MET {
+            let length = square(&form).sqrt();
+            form.iter_mut().for_each(|l| *l /= length);
+            form
+        });
+        Self {
+            forms: forms.collect(),
+            system,
+            target,
+            split,
+        }
+    }
+
+    fn meet(&self, error: f64, many: bool) -> Vec<MovedSlice> {
+        let size = norm(&self.split.point);
+        let slices = DISTANCES.iter().map(|distance| distance * size);
+        let mut found: Vec<MovedSlice> = Vec::new();
+        // Where a slice was met, the next one is met in the same direction.
+        let mut direction: Option<Vec<Complex64>> = None;
+        for distance in slices.filter(|&distance| distance > ABOVE_ERROR * error) {
+            let mut best = (f64::INFINITY, Vec::new());
+            let attempts = if many {
+                MANY_DIRECTIONS
+            } else {
+                FEW_DIRECTIONS
+            };
+            let known = direction.iter().cloned();
+            let others = (0..attempts).map(|attempt| self.direction(attempt));
+            for begin in known.chain(others) {
+                let tried = self.nearest(&begin, distance);
+                if tried.0 < best.0 {
+                    best = tried;
+                }
+                if best.0 <= MET {
+                    break;
+                }
+            }
+            let (residual, offset) = best;
+            let met = residual <= MET;
+            found.push(MovedSlice {
+                distance: distance / size,
+                residual,
+                reached: square(&offset).sqrt() / size,
+            });
+            direction = met.then_some(offset);
+            // Only the farthest slice may miss a set.
+            if found.len() > 1 && !met {
                 break;
             }
         }
-        found.push(best);
-        // Only the farthest slice may miss a set.
-        if found.len() > 1 && best.residual > MET {
-            break;
-        }
+        found
     }
-    found
-}
 
-/// Whether a slice was met that is not too near to mean something.
-pub(super) fn meets(slices: &[MovedSlice]) -> bool {
-    let telling = |slice: &MovedSlice| slice.distance >= TELLING && slice.residual <= MET;
-    slices.iter().any(telling)
-}
-
-/// The hyperplane l(x - p) = δ and where to begin on it.
-struct Slice {
-    /// l, of length 1 and 0 outside the null space.
-    form: Vec<Complex64>,
-    /// From p to the first point on the slice.
-    begin: Vec<Complex64>,
-    distance: f64,
-}
-
-impl Slice {
-    fn new(split: &Split, distance: f64, attempt: u64) -> Self {
-        let dimension = split.point.len();
-        // One form for all attempts and distances: the points that are met are those of one curve.
-        let mut random = RandomStream::new(0, Purpose::Probe, 3);
-        let mut form = vec![Complex64::default(); dimension];
-        for direction in &split.kernel {
-            let weight = random.unit();
-            for (l, v) in form.iter_mut().zip(direction) {
-                *l += weight * v.conj();
-            }
-        }
-        let length = square(&form).sqrt();
-        form.iter_mut().for_each(|l| *l /= length);
-        let mut begin = vec![Complex64::default(); dimension];
-        let mut random = RandomStream::new(attempt, Purpose::Probe, 4);
-        for direction in &split.kernel {
-            let weight = random.disc();
-            for (b, v) in begin.iter_mut().zip(direction) {
-                *b += weight * v;
-            }
-        }
-        // l applied to the direction, made δ; the direction that is nearest to l first.
+    /// A direction within the null space: that of l_0 at first, then others at random.
+    fn direction(&self, attempt: u64) -> Vec<Complex64> {
         if attempt == 0 {
-            begin = form.iter().map(Complex64::conj).collect();
+            return self.forms[0].iter().map(Complex64::conj).collect();
         }
-        let value = apply(&form, &begin);
-        let value = if value.norm_sqr() > 1e-4 * square(&begin) {
-            value
-        } else {
-            begin = form.iter().map(Complex64::conj).collect();
-            Complex64::new(1.0, 0.0)
-        };
-        begin.iter_mut().for_each(|b| *b *= distance / value);
-        Self {
-            form,
-            begin,
-            distance,
+        let mut random = RandomStream::new(attempt, Purpose::Probe, 4);
+        let mut direction = vec![Complex64::default(); self.split.point.len()];
+        for basis in &self.split.kernel {
+            let weight = random.disc();
+            for (d, v) in direction.iter_mut().zip(basis) {
+                *d += weight * v;
+            }
         }
+        direction
     }
 
-    /// The least residual that Gauss-Newton steps find near p on the slice, and how far from p.
-    fn nearest(&self, system: &AskedSystem, target: u64, split: &Split) -> (f64, f64) {
-        let mut offset = self.begin.clone();
-        let mut x: Precise = split.point.iter().map(precise).collect();
-        add(&mut x, &offset);
-        let mut best = (f64::INFINITY, f64::INFINITY);
+    /// The least residual that Gauss-Newton steps find near p on the slice at this distance, beginning in
+    /// this direction, and where that is, from p.
+    fn nearest(&self, direction: &[Complex64], distance: f64) -> (f64, Vec<Complex64>) {
+        let value = apply(&self.forms[0], direction);
+        let mut best = (f64::INFINITY, Vec::new());
+        // Nearly parallel to the slice.
+        if value.norm_sqr() < 1e-4 * square(direction) {
+            return best;
+        }
+        let scale = self.split.scale;
+        let mut offset: Vec<Complex64> = direction.iter().map(|d| d * (distance / value)).collect();
+        let mut x = PrecisePoint::new(&self.split.point);
+        x.add(&offset);
         let mut without_gain = 0;
         for _ in 0..MOST_STEPS {
-            let found = system.linearize_precisely(&x, target);
-            let residual = square(&found.values).sqrt() / split.scale;
-            let reached = square(&offset).sqrt();
-            if !residual.is_finite() || reached > REACH * self.distance {
+            let found = self
+                .system
+                .linearize_precisely(x.coordinates(), self.target);
+            let residual = square(&found.values).sqrt() / scale;
+            if !residual.is_finite() || square(&offset).sqrt() > REACH * distance {
                 break;
             }
-            without_gain = if residual < 0.8 * best.0 {
-                0
-            } else {
-                without_gain + 1
-            };
+            let gained = residual < 0.8 * best.0;
+            without_gain = if gained { 0 } else { without_gain + 1 };
             if residual < best.0 {
-                best = (residual, reached);
+                best = (residual, offset.clone());
             }
             if residual <= ROUNDING || without_gain > 6 {
                 break;
             }
-            // The slice as one more equation, as large as the others.
-            let mut values = found.values;
-            let missed = apply(&self.form, &offset) - self.distance;
-            values.push(missed * split.scale);
-            let mut columns = found.columns;
-            for (column, l) in columns.iter_mut().zip(&self.form) {
-                column.push(l * split.scale);
+            // The slices as equations as large as the others.
+            let (mut values, mut columns) = (found.values, found.columns);
+            for (k, form) in self.forms.iter().enumerate() {
+                let wanted = if k == 0 { distance } else { 0.0 };
+                values.push((apply(form, &offset) - wanted) * scale);
+                for (column, l) in columns.iter_mut().zip(form) {
+                    column.push(l * scale);
+                }
             }
-            let svd = Svd::of(columns);
-            let largest = svd.values.first().copied().unwrap_or(0.0);
-            let rank = svd
-                .values
-                .iter()
-                .filter(|&&s| s > LEAST_VALUE * largest)
-                .count();
-            let mut step = svd.least_squares(&values, rank);
-            step.iter_mut().for_each(|s| *s = -*s);
-            // Where the equations are nearly singular a step is long without reason.
-            let length = square(&step).sqrt();
-            if length > self.distance {
-                step.iter_mut().for_each(|s| *s *= self.distance / length);
-            }
-            add(&mut x, &step);
-            for (o, s) in offset.iter_mut().zip(&step) {
-                *o += s;
-            }
+            let step = limited_step(&Svd::of(columns), &values, distance);
+            x.add(&step);
+            offset.iter_mut().zip(&step).for_each(|(o, s)| *o += s);
         }
         best
     }
 }
 
+/// The least-squares Newton step, in no singular direction longer than the limit: where the equations are
+/// nearly singular it is long without reason.
+fn limited_step(svd: &Svd, values: &[Complex64], limit: f64) -> Vec<Complex64> {
+    let largest = svd.values.first().copied().unwrap_or(0.0);
+    let mut step = vec![Complex64::default(); svd.domain.len()];
+    let regular = svd
+        .values
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| **s > LEAST_VALUE * largest);
+    for (k, value) in regular {
+        let pairs = svd.images[k].iter().zip(values);
+        let product: Complex64 = pairs.map(|(u, b)| u.conj() * b).sum();
+        let mut factor = -product / (value * value);
+        let length = factor.norm_sqr().sqrt();
+        if length > limit {
+            factor *= limit / length;
+        }
+        for (s, v) in step.iter_mut().zip(&svd.domain[k]) {
+            *s += factor * v;
+        }
+    }
+    step
+}
+
 fn apply(form: &[Complex64], x: &[Complex64]) -> Complex64 {
     form.iter().zip(x).map(|(l, x)| l * x).sum()
-}
-
-fn precise(z: &Complex64) -> Complex<DoubleDouble<f64>> {
-    Complex {
-        re: DoubleDouble::<f64>::from_f64((), z.re),
-        im: DoubleDouble::<f64>::from_f64((), z.im),
-    }
-}
-
-fn add(x: &mut Precise, step: &[Complex64]) {
-    for (x, s) in x.iter_mut().zip(step) {
-        x.re.add(&DoubleDouble::<f64>::from_f64((), s.re));
-        x.im.add(&DoubleDouble::<f64>::from_f64((), s.im));
-    }
 }
