@@ -16,6 +16,9 @@ use num_complex::Complex64;
 /// would take a second.
 const MOST_WORK: usize = 40_000_000;
 
+/// Leading coefficients below this, squared, are rounding errors.
+const LEADING: f64 = 1e-12;
+
 /// Functionals of order 0 to k that vanish on the ideal, of equations that begin with order 2.
 pub(super) struct DualSpace {
     variables: usize,
@@ -123,6 +126,41 @@ impl DualSpace {
             self.append(monomials, &shares, integrand, mu);
         }
         Ok(())
+    }
+
+    /// The tangent of the only branch of a curve that the functionals of the highest order differentiate
+    /// along: where one was added its leading coefficients are the monomials of that direction. `None` where
+    /// more than one was added. `order`: the highest.
+    pub(super) fn tangent(&self, monomials: &Monomials, order: u32) -> Option<Vec<Complex64>> {
+        let [.., before, last] = self.basis.as_slice() else {
+            return None;
+        };
+        let highest = monomials.of_degree(order).start;
+        let leads = |functional: &Series| {
+            let leading = functional.get(highest..).unwrap_or(&[]);
+            leading.iter().any(|c| c.norm_sqr() > LEADING)
+        };
+        if leads(before) || !leads(last) {
+            return None;
+        }
+        let coefficient = |place: Option<usize>| place.and_then(|m| last.get(m).copied());
+        let pure = |v: usize| -> Option<usize> {
+            (1..order - 1).try_fold(monomials.variable(v), |place, _| {
+                monomials.product(monomials.variable(v), place)
+            })
+        };
+        let times = |w: usize, place: usize| monomials.product(monomials.variable(w), place);
+        let leading = |v: usize| {
+            let power = pure(v)?;
+            let values: Option<Vec<Complex64>> = (0..self.variables)
+                .map(|w| Some(coefficient(times(w, power)).unwrap_or_default()))
+                .collect();
+            values
+        };
+        let candidates = (0..self.variables).filter_map(|v| Some((v, leading(v)?)));
+        let size = |(v, values): &(usize, Vec<Complex64>)| values[*v].norm_sqr();
+        let best = candidates.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        (size(&best) > 0.0).then_some(best.1)
     }
 
     /// Adds the integral of what is given by its coefficients for each variable and functional.

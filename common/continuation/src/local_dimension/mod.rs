@@ -22,7 +22,7 @@ use crate::asked_system::{AskedSystem, Linearization};
 use crate::chart::norm;
 use cognate_numeric::linear_algebra::svd::Svd;
 use dual_space::{DualSpace, Stop};
-use moved_slice::{meets, moved_slices};
+use moved_slice::{Search, meets, moved_slices};
 use num_complex::Complex64;
 use precise_point::regular_nearby;
 use series::{Monomials, Series};
@@ -41,7 +41,8 @@ const ROUNDING: f64 = 1e-13;
 const MOST_MONOMIALS: usize = 3000;
 /// Below this margin nothing is asked any more.
 const UNCLEAR: f64 = 1.5;
-/// Where slices meet a set, dual spaces that do not stop up to this order do not contradict.
+/// Where slices meet a set, dual spaces that do not stop up to this order do not contradict; else they may
+/// know a tangent.
 const ORDER_ON_A_SET: u32 = 3;
 /// Where dual spaces did not stop at this order, slices are searched in more directions.
 const ORDER_OF_DOUBT: u32 = 6;
@@ -90,7 +91,8 @@ pub fn local_dimension(
     if kernel == 0 {
         return found;
     }
-    found.moved_slices = moved_slices(system, target, &split, error, false);
+    let slices = |search| moved_slices(system, target, &split, error, search);
+    found.moved_slices = slices(Search::default());
     let mut space = DualSpace::new(kernel);
     for order in 2..=question.depth {
         // One order more than asked tells how the coefficients move with the point.
@@ -115,19 +117,36 @@ pub fn local_dimension(
         if order >= ORDER_ON_A_SET && meets(&found.moved_slices) {
             break;
         }
-        if order == ORDER_OF_DOUBT {
-            found.moved_slices = moved_slices(system, target, &split, error, true);
+        if order == ORDER_ON_A_SET || order == ORDER_OF_DOUBT {
+            let tangent = space.tangent(&monomials, order);
+            let again = slices(Search {
+                many: order == ORDER_OF_DOUBT,
+                tangent: tangent.as_deref(),
+            });
+            if meets(&again) {
+                found.moved_slices = again;
+                break;
+            }
         }
     }
     // What is not isolated by low orders deserves a thorough search for others nearby.
     let order = found.dual_dimensions.len() as u32 - 1;
     let closed = found.dual_dimensions.windows(2).any(|w| w[1] <= w[0]) && found.margin >= UNCLEAR;
     if order < ORDER_OF_DOUBT && !closed && !meets(&found.moved_slices) {
-        found.moved_slices = moved_slices(system, target, &split, error, true);
+        found.moved_slices = slices(Search {
+            many: true,
+            tangent: None,
+        });
     }
     if std::env::var_os("V_DEBUG").is_some() {
-        eprintln!("kernel {kernel} error {error:.1e} bound {} slices {:?}", question.bound, found.moved_slices);
-        eprintln!("   dual {:?} margin {:.1e}", found.dual_dimensions, found.margin);
+        eprintln!(
+            "kernel {kernel} error {error:.1e} bound {} slices {:?}",
+            question.bound, found.moved_slices
+        );
+        eprintln!(
+            "   dual {:?} margin {:.1e}",
+            found.dual_dimensions, found.margin
+        );
     }
     found
 }

@@ -25,7 +25,7 @@ const ABOVE_ERROR: f64 = 40.0;
 /// Directions, within the null space, in which the first point on a slice is sought: at first,
 const FEW_DIRECTIONS: u64 = 2;
 /// ... and where dual spaces of a low order did not stop.
-pub(super) const MANY_DIRECTIONS: u64 = 12;
+const MANY_DIRECTIONS: u64 = 12;
 /// Most hyperplanes through the point that cut a set besides the one that is moved, except as many as
 /// the null space has dimensions.
 const MOST_CUTS: usize = 2;
@@ -47,6 +47,15 @@ const FAR: f64 = 0.05;
 /// Residuals of a double-double evaluation, equations and coordinates scaled to 1, that are rounding.
 const ROUNDING: f64 = 1e-28;
 
+/// Where points on slices are sought.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Search<'a> {
+    /// In many directions instead of a few.
+    pub(super) many: bool,
+    /// A direction that is likely to be a tangent, by its components in the null space.
+    pub(super) tangent: Option<&'a [Complex64]>,
+}
+
 /// What the slices at each distance meet, up to one that meets nothing; none at distances that the point's
 /// error does not allow.
 pub(super) fn moved_slices(
@@ -54,7 +63,7 @@ pub(super) fn moved_slices(
     target: u64,
     split: &Split,
     error: f64,
-    many: bool,
+    search: Search<'_>,
 ) -> Vec<MovedSlice> {
     let kernel = split.kernel.len();
     let mut cuts: Vec<usize> = (0..kernel.min(MOST_CUTS + 1)).collect();
@@ -65,7 +74,7 @@ pub(super) fn moved_slices(
     cuts.reverse();
     let mut best = Vec::new();
     for cut in cuts {
-        let found = Slices::new(system, target, split, cut).meet(error, many);
+        let found = Slices::new(system, target, split, cut).meet(error, search);
         if meets(&found) {
             return found;
         }
@@ -123,18 +132,17 @@ impl<'a> Slices<'a> {
         }
     }
 
-    fn meet(&self, error: f64, many: bool) -> Vec<MovedSlice> {
+    fn meet(&self, error: f64, search: Search<'_>) -> Vec<MovedSlice> {
         let size = norm(&self.split.point);
         let slices = DISTANCES.iter().map(|distance| distance * size);
         let mut found: Vec<MovedSlice> = Vec::new();
         // Where a slice was met, the next one is met in the same direction.
-        let mut direction: Option<Vec<Complex64>> = None;
+        let mut direction: Option<Vec<Complex64>> = search.tangent.map(|t| self.along(t));
         for distance in slices.filter(|&distance| distance > ABOVE_ERROR * error) {
             let mut best = (f64::INFINITY, Vec::new());
-            let attempts = if many {
-                MANY_DIRECTIONS
-            } else {
-                FEW_DIRECTIONS
+            let attempts = match search.many {
+                true => MANY_DIRECTIONS,
+                false => FEW_DIRECTIONS,
             };
             let known = direction.iter().cloned();
             let others = (0..attempts).map(|attempt| self.direction(attempt));
@@ -154,7 +162,9 @@ impl<'a> Slices<'a> {
                 residual,
                 reached: square(&offset).sqrt() / size,
             });
-            direction = met.then_some(offset);
+            if met {
+                direction = Some(offset);
+            }
             // Only the farthest slice may miss a set.
             if found.len() > 1 && !met {
                 break;
@@ -169,11 +179,16 @@ impl<'a> Slices<'a> {
             return self.forms[0].iter().map(Complex64::conj).collect();
         }
         let mut random = RandomStream::new(attempt, Purpose::Probe, 4);
+        let weights: Vec<Complex64> = self.split.kernel.iter().map(|_| random.disc()).collect();
+        self.along(&weights)
+    }
+
+    /// The direction with these components in the null space.
+    fn along(&self, components: &[Complex64]) -> Vec<Complex64> {
         let mut direction = vec![Complex64::default(); self.split.point.len()];
-        for basis in &self.split.kernel {
-            let weight = random.disc();
+        for (basis, component) in self.split.kernel.iter().zip(components) {
             for (d, v) in direction.iter_mut().zip(basis) {
-                *d += weight * v;
+                *d += component * v;
             }
         }
         direction

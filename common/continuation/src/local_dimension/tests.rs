@@ -79,7 +79,13 @@ fn on_curves_and_surfaces_the_dimension_outgrows_every_bound() {
     // A double plane: x^2 twice, in three variables.
     let plane =
         read("variable_group x, y, z; function f, g, h; f = x^2; g = x^2*y; h = x^2 + x^3;");
-    check("a double plane", &plane, &[0.0, 0.3, -0.7], 2, &[1, 4, 9, 16]);
+    check(
+        "a double plane",
+        &plane,
+        &[0.0, 0.3, -0.7],
+        2,
+        &[1, 4, 9, 16],
+    );
     // Cyclic 4 on its curve (a, b, -a, -b) with a^2 b^2 = 1.
     let cyclic = cognate_systems::named::cyclic(4).system;
     check(
