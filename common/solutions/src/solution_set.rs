@@ -103,11 +103,13 @@ pub struct SolutionSet {
 
 impl SolutionSet {
     /// True when no path failed, every crossing came apart, of every endpoint it is known whether
-    /// it is isolated, and none is finite or at infinity only by the limit of the precision.
+    /// it is isolated, none is finite or at infinity only by the limit of the precision, and
+    /// multiplicities are what the numbers of paths say.
     pub fn settled(&self) -> bool {
         self.paths.failed == 0
             && self.paths.undecided == 0
             && self.paths.decided_by_precision_limit == 0
+            && self.counts.doubtful_multiplicity == 0
             && self.paths.crossings_found == self.paths.crossings_resolved
     }
 
@@ -171,6 +173,7 @@ impl<'a> Draft<'a> {
     fn finish(mut self, history: &History) -> SolutionSet {
         self.fail_what_still_crosses();
         self.settle_declared_sets();
+        self.absorb_regular_ends();
         self.list_failures();
         self.count_paths(history);
         let representatives = self.merge(history);
@@ -225,6 +228,39 @@ impl<'a> Draft<'a> {
             }
             let counts = &mut self.set.paths.degenerate;
             counts.insert(name.to_string(), members.len() as u64);
+        }
+    }
+
+    /// One point is not both regular and singular: an endpoint that was taken for regular and coincides
+    /// with singular ones is one of theirs; with one on a set of solutions it is not decided.
+    fn absorb_regular_ends(&mut self) {
+        let finite = |verdict: Verdict| verdict == Verdict::Finite;
+        let singular =
+            |verdict: Verdict| verdict.may_be_multiple() || verdict == Verdict::PositiveDimensional;
+        if !self.decisions.iter().any(|d| singular(d.verdict)) {
+            return;
+        }
+        let points = coincidences(
+            self.results,
+            &self.shape,
+            self.tolerances,
+            self.seed,
+            |place| {
+                finite(self.decisions[place].verdict) || singular(self.decisions[place].verdict)
+            },
+        );
+        for members in points {
+            let others = members.iter().map(|&m| self.decisions[m].verdict);
+            let verdict = match others.filter(|&v| !finite(v)).min() {
+                None => continue,
+                Some(Verdict::Singular) => Verdict::Singular,
+                Some(_) => Verdict::Undecided,
+            };
+            for member in members {
+                if finite(self.decisions[member].verdict) {
+                    self.decisions[member].verdict = verdict;
+                }
+            }
         }
     }
 
@@ -332,7 +368,8 @@ impl<'a> Draft<'a> {
     }
 
     /// As many paths end at an isolated point as its dual space has dimensions, where all paths of
-    /// a complete start are known and the equations were tracked as they are.
+    /// a complete start are known and the equations were tracked as they are. Where that is not so, points were
+    /// taken for one, or one for several.
     fn compare_multiplicities(&mut self, history: &History, found: &[(usize, Solution)]) {
         let square = self.system.equation_count() == self.system.dimension();
         if !history.complete_start || !square || !self.set.failed.is_empty() {
@@ -340,20 +377,22 @@ impl<'a> Draft<'a> {
         }
         let differing: Vec<u64> = found
             .iter()
+            .filter(|(_, solution)| solution.singular)
             .filter(
                 |(place, solution)| match isolation(&self.results[*place], self.tolerances) {
                     Isolation::Isolated { multiplicity } => {
                         u64::from(multiplicity) != solution.multiplicity
                     }
-                    _ => false,
+                    Isolation::PositiveDimensional | Isolation::Undecided => true,
                 },
             )
             .map(|(_, solution)| solution.paths[0])
             .collect();
+        self.set.counts.doubtful_multiplicity = differing.len() as u64;
         if !differing.is_empty() {
             self.set.warnings.push(format!(
-                "at {} isolated singular point{} another number of paths ends than the \
-                 multiplicity by the dual space (first paths: {})",
+                "at {} isolated singular point{} the number of paths is not confirmed by the \
+                 multiplicity of the dual space (first paths: {}): solutions may have been taken for one",
                 differing.len(),
                 plural(differing.len()),
                 some_of(&differing),
@@ -366,9 +405,10 @@ impl<'a> Draft<'a> {
         let best = *members
             .iter()
             .min_by(|&&a, &&b| {
-                self.results[a]
-                    .accuracy
-                    .total_cmp(&self.results[b].accuracy)
+                let unasked = |m: usize| self.results[m].local_dimension.is_none();
+                let accuracy = |m: usize| self.results[m].accuracy;
+                let first = unasked(a).cmp(&unasked(b));
+                first.then(accuracy(a).total_cmp(&accuracy(b)))
             })
             .expect("a cluster has a member");
         let result = &self.results[best];
@@ -490,6 +530,8 @@ impl<'a> Draft<'a> {
             "singular point",
             "of which it is not known whether isolated",
         );
+        let multiplicities = self.set.counts.doubtful_multiplicity;
+        say(multiplicities, "singular point", "of doubtful multiplicity");
         open.extend(history.may_miss.clone());
         let counts = &mut self.set.counts;
         (counts.complete, counts.complete_reason) = if !open.is_empty() {
@@ -732,6 +774,23 @@ mod tests {
             reason.is_some_and(|why| why.contains("isolated")),
             "{reason:?}"
         );
+    }
+
+    /// (x - 1)^3 from the roots of unity: one path does not move, and its end looks regular.
+    #[test]
+    fn a_regular_end_at_a_singular_point_is_one_of_its_paths() {
+        let results = [
+            regular(0, &[(0.5, 0.0), (0.5, 0.0)]),
+            isolated(1, &[(0.5, 0.0), (0.5, 1e-12)], 2, &[0], 3),
+            isolated(2, &[(0.5, 0.0), (0.5, 1e-12)], 2, &[0], 3),
+        ];
+        let set = set_of(&results, &complete());
+        assert_eq!((set.paths.finite, set.paths.singular), (0, 3));
+        assert_eq!((set.counts.distinct, set.counts.with_multiplicity), (1, 3));
+        assert_eq!(set.counts.doubtful_multiplicity, 0);
+        let set = set_of(&results[1..], &complete());
+        assert_eq!(set.counts.doubtful_multiplicity, 1);
+        assert!(!set.settled(), "two paths at a triple point");
     }
 
     #[test]

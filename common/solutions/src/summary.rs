@@ -94,6 +94,9 @@ pub struct SolutionCounts {
     /// Finite singular points of which it is not known whether they are isolated; in no other count.
     #[serde(default)]
     pub undecided: u64,
+    /// Singular solutions of which the number of paths is not confirmed by the multiplicity.
+    #[serde(default)]
+    pub doubtful_multiplicity: u64,
     /// Whether these are all isolated solutions.
     #[serde(default)]
     pub complete: Completeness,
@@ -152,7 +155,7 @@ mod tests {
             "{\"distinct\":0,\"nonsingular\":0,\"singular\":0,\"real\":null,\"real_reason\":null,\
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
              \"degenerate\":{},\"sharpened\":null,\"undecided\":0,\
-             \"complete\":\"not known\",\"complete_reason\":null}"
+             \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),

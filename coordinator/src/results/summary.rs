@@ -291,6 +291,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             degenerate,
             sharpened,
             undecided,
+            doubtful_multiplicity,
             complete,
             complete_reason,
         } = &set.counts;
@@ -298,6 +299,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         counts.nonsingular += nonsingular;
         counts.singular += singular;
         counts.undecided += undecided;
+        counts.doubtful_multiplicity += doubtful_multiplicity;
         if counts.complete == Completeness::Yes && *complete != Completeness::Yes {
             counts.complete_reason.clone_from(complete_reason);
         }

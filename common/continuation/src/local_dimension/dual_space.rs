@@ -7,8 +7,8 @@
 //! 117-118, 1997; Zeng: The closedness subspace method for computing the multiplicity structure of a
 //! polynomial system, Contemp. Math. 496, 2009).
 
-use super::rank;
 use super::series::{Monomials, Series};
+use super::split::rank;
 use cognate_numeric::linear_algebra::svd::Svd;
 use num_complex::Complex64;
 

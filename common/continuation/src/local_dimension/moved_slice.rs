@@ -9,7 +9,7 @@
 //! end at p. Residuals are evaluated in double-doubles.
 
 use super::precise_point::PrecisePoint;
-use super::{Split, square};
+use super::split::{Split, square};
 use crate::asked_system::AskedSystem;
 use crate::chart::norm;
 use crate::path_result::MovedSlice;
@@ -56,33 +56,39 @@ pub(super) struct Search<'a> {
     pub(super) tangent: Option<&'a [Complex64]>,
 }
 
-/// What the slices at each distance meet, up to one that meets nothing; none at distances that the point's
-/// error does not allow.
-pub(super) fn moved_slices(
-    system: &AskedSystem,
-    target: u64,
-    split: &Split,
-    error: f64,
-    search: Search<'_>,
-) -> Vec<MovedSlice> {
-    let kernel = split.kernel.len();
-    let mut cuts: Vec<usize> = (0..kernel.min(MOST_CUTS + 1)).collect();
-    // A set that fills the null space is cut to a regular point by as many hyperplanes.
-    if kernel > MOST_CUTS + 1 {
-        cuts.push(kernel - 1);
-    }
-    cuts.reverse();
-    let mut best = Vec::new();
-    for cut in cuts {
-        let found = Slices::new(system, target, split, cut).meet(error, search);
-        if meets(&found) {
-            return found;
+/// A singular point and the system of which slices are taken there.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    pub(super) system: &'a AskedSystem,
+    pub(super) target: u64,
+    pub(super) split: &'a Split,
+    /// How far the point may be off.
+    pub(super) error: f64,
+}
+
+impl Around<'_> {
+    /// What the slices at each distance meet, up to one that meets nothing; none at distances that the
+    /// point's error does not allow.
+    pub(super) fn moved_slices(&self, search: Search<'_>) -> Vec<MovedSlice> {
+        let kernel = self.split.kernel.len();
+        let mut cuts: Vec<usize> = (0..kernel.min(MOST_CUTS + 1)).collect();
+        // A set that fills the null space is cut to a regular point by as many hyperplanes.
+        if kernel > MOST_CUTS + 1 {
+            cuts.push(kernel - 1);
         }
-        if nearer(&found, &best) {
-            best = found;
+        cuts.reverse();
+        let mut best = Vec::new();
+        for cut in cuts {
+            let found = Slices::new(*self, cut).meet(search);
+            if meets(&found) {
+                return found;
+            }
+            if nearer(&found, &best) {
+                best = found;
+            }
         }
+        best
     }
-    best
 }
 
 /// Whether a slice was met that is not too near to mean something, and all that are nearer.
@@ -100,16 +106,15 @@ fn nearer(slices: &[MovedSlice], others: &[MovedSlice]) -> bool {
 
 /// Hyperplanes l_0(x - p) = δ and l_k(x - p) = 0 in the neighbourhood of p.
 struct Slices<'a> {
-    system: &'a AskedSystem,
-    target: u64,
-    split: &'a Split,
+    around: Around<'a>,
     /// l_0, l_1, ..., of length 1 and 0 outside the null space.
     forms: Vec<Vec<Complex64>>,
 }
 
 impl<'a> Slices<'a> {
     /// With so many hyperplanes besides the one that is moved.
-    fn new(system: &'a AskedSystem, target: u64, split: &'a Split, cuts: usize) -> Self {
+    fn new(around: Around<'a>, cuts: usize) -> Self {
+        let split = around.split;
         // The same forms at all distances: the points that are met are those of one curve.
         let mut random = RandomStream::new(cuts as u64, Purpose::Probe, 3);
         let forms = (0..=cuts).map(|_| {
@@ -126,19 +131,17 @@ impl<'a> Slices<'a> {
         });
         Self {
             forms: forms.collect(),
-            system,
-            target,
-            split,
+            around,
         }
     }
 
-    fn meet(&self, error: f64, search: Search<'_>) -> Vec<MovedSlice> {
-        let size = norm(&self.split.point);
+    fn meet(&self, search: Search<'_>) -> Vec<MovedSlice> {
+        let size = norm(&self.around.split.point);
         let slices = DISTANCES.iter().map(|distance| distance * size);
         let mut found: Vec<MovedSlice> = Vec::new();
         // Where a slice was met, the next one is met in the same direction.
         let mut direction: Option<Vec<Complex64>> = search.tangent.map(|t| self.along(t));
-        for distance in slices.filter(|&distance| distance > ABOVE_ERROR * error) {
+        for distance in slices.filter(|&distance| distance > ABOVE_ERROR * self.around.error) {
             let mut best = (f64::INFINITY, Vec::new());
             let attempts = match search.many {
                 true => MANY_DIRECTIONS,
@@ -179,14 +182,20 @@ impl<'a> Slices<'a> {
             return self.forms[0].iter().map(Complex64::conj).collect();
         }
         let mut random = RandomStream::new(attempt, Purpose::Probe, 4);
-        let weights: Vec<Complex64> = self.split.kernel.iter().map(|_| random.disc()).collect();
+        let weights: Vec<Complex64> = self
+            .around
+            .split
+            .kernel
+            .iter()
+            .map(|_| random.disc())
+            .collect();
         self.along(&weights)
     }
 
     /// The direction with these components in the null space.
     fn along(&self, components: &[Complex64]) -> Vec<Complex64> {
-        let mut direction = vec![Complex64::default(); self.split.point.len()];
-        for (basis, component) in self.split.kernel.iter().zip(components) {
+        let mut direction = vec![Complex64::default(); self.around.split.point.len()];
+        for (basis, component) in self.around.split.kernel.iter().zip(components) {
             for (d, v) in direction.iter_mut().zip(basis) {
                 *d += component * v;
             }
@@ -203,15 +212,14 @@ impl<'a> Slices<'a> {
         if value.norm_sqr() < 1e-4 * square(direction) {
             return best;
         }
-        let scale = self.split.scale;
+        let scale = self.around.split.scale;
         let mut offset: Vec<Complex64> = direction.iter().map(|d| d * (distance / value)).collect();
-        let mut x = PrecisePoint::new(&self.split.point);
+        let mut x = PrecisePoint::new(&self.around.split.point);
         x.add(&offset);
         let mut without_gain = 0;
         for _ in 0..MOST_STEPS {
-            let found = self
-                .system
-                .linearize_precisely(x.coordinates(), self.target);
+            let Around { system, target, .. } = self.around;
+            let found = system.linearize_precisely(x.coordinates(), target);
             let residual = square(&found.values).sqrt() / scale;
             if !residual.is_finite() || square(&offset).sqrt() > REACH * distance {
                 break;

@@ -1,7 +1,7 @@
 //! PrecisePoint: a point in double-doubles that Newton's method in doubles moves; a nearly singular but
 //! regular solution is known by it.
 
-use super::square;
+use super::split::square;
 use crate::asked_system::AskedSystem;
 use crate::chart::norm;
 use cognate_numeric::linear_algebra::svd::Svd;

@@ -36,6 +36,13 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
             counted(paths.undecided, "path")
         ));
     }
+    let doubtful = summary.solutions.doubtful_multiplicity;
+    if doubtful > 0 {
+        let points = counted(doubtful, "singular point");
+        open.push(format!(
+            "{points} at which another number of paths ends than its multiplicity"
+        ));
+    }
     if open.is_empty() && !summary.settled {
         open.push("a count of one of the targets".into());
     }
