@@ -3,7 +3,7 @@
 use crate::certified_solve::CertifiedSolve;
 use crate::closing_stage::FiniteEndpoints;
 use crate::monodromy::MonodromySolve;
-use crate::monodromy::counts::LoopCounts;
+use crate::monodromy::counts::{LoopCounts, Stop};
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::RegenerationSolve;
@@ -12,6 +12,7 @@ use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Completeness, Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
@@ -171,6 +172,28 @@ impl AnyAlgorithm {
     }
 }
 
+/// Whether loops found all: what a trace test or the number that was asked for says.
+fn judge_loops(loops: &LoopCounts, set: &mut SolutionSet) {
+    let settled = set.settled();
+    let counts = &mut set.counts;
+    let (complete, why) = match (&loops.trace_test, loops.stop) {
+        (Some(test), _) if !test.complete => {
+            (Completeness::No, "a trace test says that some are missing")
+        }
+        _ if !settled => return,
+        (Some(_), _) => (
+            Completeness::Yes,
+            "a trace test says that loops missed none",
+        ),
+        (None, Some(Stop::Count)) => (Completeness::Yes, "as many as were said to be there"),
+        (None, _) => (
+            Completeness::NotKnown,
+            "loops ended without a trace test or a number that is known otherwise",
+        ),
+    };
+    (counts.complete, counts.complete_reason) = (complete, Some(why.to_string()));
+}
+
 impl PathAlgorithm for AnyAlgorithm {
     fn next(&mut self) -> Next {
         self.get_mut().next()
@@ -188,7 +211,11 @@ impl PathAlgorithm for AnyAlgorithm {
         self.to_bytes()
     }
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        self.get().solution_sets(system)
+        let mut sets = self.get().solution_sets(system);
+        if let Some(loops) = self.loops() {
+            sets.iter_mut().for_each(|set| judge_loops(loops, set));
+        }
+        sets
     }
     fn completeness(&self) -> Option<Completeness> {
         self.get().completeness()

@@ -264,10 +264,13 @@ impl Starts {
             Err(_) => u64::MAX,
         };
         let polyhedral = match self.mixed_volume {
-            Some(Ok(volume)) if polyhedral_is_cheaper(volume, fewest) => Some(volume),
+            // A start by mixed cells has no path where the mixed volume is 0: special coefficients may
+            // still have isolated solutions at infinity or sets of solutions, which others meet.
+            Some(Ok(volume)) if volume > 0 && polyhedral_is_cheaper(volume, fewest) => Some(volume),
             _ => None,
         };
         if let Some(Ok((tracked, start, number))) = &self.linear_product
+            && *number > 0
             && linear_product_is_cheaper(*number, fewest)
             // Then it has no more paths to infinity than the mixed cells have. Others often end
             // on the sets at infinity where products of forms vanish, and are dear.

@@ -58,6 +58,12 @@ pub const DUAL_DIMENSIONS: Limit = Limit {
     what: "dimensions of dual spaces",
     value: 1000,
 };
+/// Slices that were moved away from an endpoint.
+pub const MOVED_SLICES: Limit = Limit {
+    name: "MOVED_SLICES",
+    what: "slices beside an endpoint",
+    value: 100,
+};
 /// Coordinates of an endpoint: every variable may have a group of its own.
 pub const COORDINATES: Limit = Limit {
     name: "COORDINATES",

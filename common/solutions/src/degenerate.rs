@@ -206,7 +206,7 @@ impl DeclaredSets {
         for (place, (result, decision)) in results.iter().zip(decisions).enumerate() {
             if !matches!(
                 decision.verdict,
-                Verdict::Singular | Verdict::PositiveDimensional
+                Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional
             ) {
                 continue;
             }

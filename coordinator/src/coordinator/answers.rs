@@ -336,13 +336,15 @@ impl Coordinator {
         if let Some(summary) = &summary {
             let paths = &summary.paths;
             lines.push(format!(
-                "paths: {} finite, {} singular, {} on positive-dimensional sets, {} excess (no solutions before randomisation), \
-                 {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
+                "paths: {} finite, {} singular, {} on positive-dimensional sets, {} undecided (isolated or not), {} within the \
+                 accuracy of the data, {} excess (no solutions before randomisation), {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
                 paths.finite,
                 paths.singular,
                 paths
                     .positive_dimensional
                     .map_or("an unknown number".to_owned(), |n| n.to_string()),
+                paths.undecided,
+                paths.within_data_accuracy,
                 paths.excess.unwrap_or(0),
                 paths.at_infinity,
                 paths.failed,
@@ -463,7 +465,7 @@ fn classified(
     let (mut failed, mut on_sets) = (HashSet::new(), HashSet::new());
     let mut number = 0;
     for set in sets {
-        for solution in &set.solutions {
+        for solution in set.points() {
             solution_of.extend(solution.paths.iter().map(|&path| (path, number)));
             number += 1;
         }
