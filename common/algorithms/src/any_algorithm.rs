@@ -2,17 +2,17 @@
 
 use crate::certified_solve::CertifiedSolve;
 use crate::closing_stage::FiniteEndpoints;
+use crate::completeness::{Complete, Completeness};
 use crate::monodromy::MonodromySolve;
-use crate::monodromy::counts::{LoopCounts, Stop};
+use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::RegenerationSolve;
 use crate::sharpened_solve::SharpenedSolve;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
-use crate::{Completeness, Next, PathAlgorithm, Progress};
+use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
@@ -172,26 +172,19 @@ impl AnyAlgorithm {
     }
 }
 
-/// Whether loops found all: what a trace test or the number that was asked for says.
-fn judge_loops(loops: &LoopCounts, set: &mut SolutionSet) {
+/// Whether loops found all: what a trace test says, or `known`, what the loops say of themselves.
+fn judge_loops(loops: &LoopCounts, known: Option<&Completeness>, set: &mut SolutionSet) {
     let settled = set.settled();
     let counts = &mut set.counts;
-    let (complete, why) = match (&loops.trace_test, loops.stop) {
+    let (complete, why) = match (&loops.trace_test, known) {
         (Some(test), _) if !test.complete => {
-            (Completeness::No, "a trace test says that some are missing")
+            let why = "a trace test says that some are missing";
+            (Complete::No, why.to_string())
         }
-        _ if !settled => return,
-        (Some(_), _) => (
-            Completeness::Yes,
-            "a trace test says that loops missed none",
-        ),
-        (None, Some(Stop::Count)) => (Completeness::Yes, "as many as were said to be there"),
-        (None, _) => (
-            Completeness::NotKnown,
-            "loops ended without a trace test or a number that is known otherwise",
-        ),
+        (_, Some(known)) if settled => (known.complete, known.reason.clone()),
+        _ => return,
     };
-    (counts.complete, counts.complete_reason) = (complete, Some(why.to_string()));
+    (counts.complete, counts.complete_reason) = (complete, Some(why));
 }
 
 impl PathAlgorithm for AnyAlgorithm {
@@ -213,7 +206,10 @@ impl PathAlgorithm for AnyAlgorithm {
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
         let mut sets = self.get().solution_sets(system);
         if let Some(loops) = self.loops() {
-            sets.iter_mut().for_each(|set| judge_loops(loops, set));
+            let known = self.completeness();
+            for set in &mut sets {
+                judge_loops(loops, known.as_ref(), set);
+            }
         }
         sets
     }

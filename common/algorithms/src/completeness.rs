@@ -1,19 +1,7 @@
 //! Completeness: whether a method says that it misses no isolated solution.
 
+pub use cognate_solutions::completeness::Completeness as Complete;
 use serde::{Deserialize, Serialize};
-
-/// What a method knows of that.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Complete {
-    /// None is missing.
-    Yes,
-    /// Some are missing.
-    No,
-    /// It may be that some are missing.
-    #[serde(rename = "not known")]
-    NotKnown,
-}
 
 /// What a method knows of that, and why.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -246,9 +246,9 @@ fn is_met(found: &LocalDimension, tolerances: &Tolerances) -> bool {
     // Far away Newton's method may find nothing; but a residual that is small there and falls with
     // the distance is that of a point of high multiplicity.
     let clear = |slice: &MovedSlice| met(slice) || slice.residual > tolerances.slice_missed;
-    near.iter().all(|slice| met(slice))
+    near.iter().all(met)
         && near.iter().any(|slice| slice.distance > NEAR_SLICE)
-        && far.iter().all(|slice| clear(slice))
+        && far.iter().all(clear)
 }
 
 /// Whether the endpoint solves the system as well as its estimated error says.

@@ -168,7 +168,7 @@ fn factors(dice: &mut Dice, style: Style, degree: u32) -> Vec<Factor> {
             && let Some(beside) = factors.last()
             && chance(dice, 70)
         {
-            a = Rational::from(&beside.a + ten(-between(dice, 4, 12)));
+            a = &beside.a + ten(-between(dice, 4, 12));
             b = beside.b.clone();
         }
         let factor = Factor { a, b, power };
@@ -535,7 +535,7 @@ fn tangents(dice: &mut Dice) -> Planted {
         let a = fraction(dice);
         let b = match dice.below(3) {
             0 => a.clone(),
-            1 => Rational::from(&a + ten(-between(dice, 4, 12))),
+            1 => &a + ten(-between(dice, 4, 12)),
             _ => fraction(dice),
         };
         // y = (a + b) x - a b meets y = x^2 at x = a and x = b.
