@@ -31,6 +31,7 @@ pub mod certified_solve;
 pub mod closing_stage;
 mod coefficient_family;
 pub mod completeness;
+mod given_start;
 pub mod monodromy;
 pub mod opening;
 pub mod parameter_solve;

@@ -3,6 +3,8 @@
 use crate::any_algorithm::AnyAlgorithm;
 use crate::certified_solve::CertifiedSolve;
 use crate::coefficient_family::coefficient_family;
+pub use crate::given_start::GivenStart;
+use crate::given_start::check_given;
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
@@ -66,17 +68,6 @@ pub enum StartChoice {
     LinearProduct,
     /// Equation by equation.
     Regeneration,
-}
-
-/// Start solutions that are stored as an object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct GivenStart {
-    /// Digest of the object.
-    pub object: Digest,
-    /// How many points it holds.
-    pub count: u64,
-    /// Coordinates of each point: the variables of the system, in order.
-    pub dimension: usize,
 }
 
 /// Everything that decides how a system is solved, besides the system.
@@ -468,26 +459,6 @@ fn plan_regeneration(
              are singular, or become so on the way, may be missed"
         ),
     })
-}
-
-fn check_given(system: &System, start: &GivenStart) -> Result<(), PlanError> {
-    if start.count == 0 {
-        return Err(PlanError::EmptyStart);
-    }
-    if start.count > MAX_PATHS {
-        return Err(PlanError::TooManyPaths {
-            start: StartKind::Given,
-            number: Some(start.count),
-            instead: String::new(),
-        });
-    }
-    if start.dimension != system.variables.len() {
-        return Err(PlanError::StartDimension {
-            found: start.dimension,
-            expected: system.variables.len(),
-        });
-    }
-    Ok(())
 }
 
 fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {

@@ -134,16 +134,6 @@ pub fn local_dimension(
             tangent: None,
         });
     }
-    if std::env::var_os("V_DEBUG").is_some() {
-        eprintln!(
-            "kernel {kernel} error {error:.1e} bound {} slices {:?}",
-            question.bound, found.moved_slices
-        );
-        eprintln!(
-            "   dual {:?} margin {:.1e}",
-            found.dual_dimensions, found.margin
-        );
-    }
     found
 }
 
