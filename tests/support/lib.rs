@@ -11,7 +11,6 @@ pub mod dice;
 pub mod families;
 pub mod measures;
 pub mod namespaces;
-pub mod planted;
 pub mod processes;
 pub mod six_revolute;
 pub mod skip;

@@ -90,12 +90,12 @@ pub enum PlanError {
     /// Start parameters without solutions there.
     #[error("start parameters need start solutions")]
     StartParametersAlone,
-    /// No parameters, and none can be made of the coefficients.
+    /// Nothing to make loops in.
     #[error(
         "the start `monodromy` makes loops in the space of parameters; this system has no \
-         parameters, and its coefficients cannot serve: {0}"
+         parameters (a start system, such as total degree, serves)"
     )]
-    NoCoefficientFamily(String),
+    MonodromyWithoutParameters,
     /// Completeness cannot be tested.
     #[error("there is no trace test for this family: {0}")]
     NoTraceTest(NoTraceTest),
@@ -119,7 +119,7 @@ pub enum PlanError {
     /// Too large.
     #[error(
         "not in this version: the {start} start has {} paths, more than the limit of {MAX_PATHS} \
-         paths of one solve ({MAX_PLAIN_PATHS} by degrees where nothing needs all of them in memory){instead}",
+         paths of one solve ({MAX_PLAIN_PATHS} by degrees where nothing needs all of them in memory)",
         .number.map_or("2^64 or more".to_string(), |n| n.to_string())
     )]
     TooManyPaths {
@@ -127,8 +127,6 @@ pub enum PlanError {
         start: StartKind,
         /// How many paths, where that fits in 64 bits.
         number: Option<u64>,
-        /// Which other starts would do, as an end of the sentence; empty where that is not known.
-        instead: String,
     },
     /// Too many ways to count.
     #[error(

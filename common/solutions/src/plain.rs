@@ -157,7 +157,6 @@ impl Sieve {
             paths: vec![result.origin.0],
             certificate: None,
             deflations: None,
-            undecided: false,
         };
         (verdict, Some(solution))
     }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// A stage of `Work::Sharpen`, ready for any of its items in any order.
 #[derive(Debug)]
 pub struct SharpeningStage {
-    /// All equations, also where combinations of them were tracked, in the unknowns.
+    /// All equations, also where combinations of them were tracked.
     system: System,
     points: PointsAtTargets,
     digits: u32,
@@ -36,7 +36,7 @@ impl SharpeningStage {
         }
         Ok(Self {
             points: PointsAtTargets::new(system, stage, objects)?,
-            system: system.in_unknowns().into_owned(),
+            system: system.clone(),
             digits,
             seed: stage.seed,
         })
@@ -57,11 +57,9 @@ impl SharpeningStage {
             .map(|item| {
                 let Item { target, point, .. } = self.points.item(item);
                 let parameters = self.points.parameters(target);
-                let scaling = self.points.scaling();
-                let unknowns = scaling.to_unknowns(point);
-                let found = sharpen(&self.system, parameters, &unknowns, self.digits, self.seed);
+                let found = sharpen(&self.system, parameters, point, self.digits, self.seed);
                 let before = self.points.result(item);
-                match found.map(|found| found.in_variables(scaling, &self.system.groups)) {
+                match found {
                     Ok(found) => PathResult {
                         precision_bits: found.precision_bits,
                         accuracy: found.accuracy,

@@ -44,7 +44,11 @@ pub async fn send(
     request_id: &str,
     prepared: Prepared,
 ) -> Result<(String, Vec<String>), ClientError> {
-    let Prepared { submission, .. } = prepared;
+    let Prepared {
+        submission,
+        mut warnings,
+        ..
+    } = prepared;
     let message = to_proto::problem::submission(&uploaded(connection, submission).await?);
     let mut attempt = 1;
     let answer = loop {
@@ -56,7 +60,8 @@ pub async fn send(
             other => break other?,
         }
     };
-    Ok((answer.job, answer.warnings))
+    warnings.extend(answer.warnings);
+    Ok((answer.job, warnings))
 }
 
 /// Large start solutions go ahead as an object.

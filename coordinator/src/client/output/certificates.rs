@@ -140,7 +140,6 @@ mod tests {
                 ..SolutionCertificate::default()
             }),
             deflations: None,
-            undecided: false,
         }
     }
 

@@ -142,10 +142,6 @@ impl Folder {
     pub fn solution(&mut self, solution: &Solution) -> Result<(), ClientError> {
         self.lines
             .write(&format!("{}\n", json::solution_line(solution)))?;
-        // Bertini's files have no mark for a point that may be no solution.
-        if solution.undecided {
-            return Ok(());
-        }
         self.finite.point(solution)?;
         if solution.real == Some(true) {
             self.real_finite.point(solution)?;
@@ -217,7 +213,6 @@ mod tests {
             paths: vec![0],
             certificate: None,
             deflations: None,
-            undecided: false,
         }
     }
 
@@ -253,10 +248,6 @@ mod tests {
             solution(1.0, true, false),
             solution(2.0, false, false),
             solution(3.0, true, true),
-            Solution {
-                undecided: true,
-                ..solution(4.0, true, true)
-            },
         ] {
             files.solution(&s).expect("written");
         }
@@ -280,9 +271,7 @@ mod tests {
                 ""
             ]
         );
-        let lines = read("solutions.jsonl");
-        assert_eq!(lines.lines().count(), 4);
-        assert_eq!(lines.matches("\"undecided\":true").count(), 1);
+        assert_eq!(read("solutions.jsonl").lines().count(), 3);
         assert!(read("summary.json").contains("\"total\": 3"));
     }
 }
