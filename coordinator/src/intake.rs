@@ -21,7 +21,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
         source,
         mut options,
     } = submission;
-    let mut warnings = Vec::new();
+    let mut warnings = std::mem::take(&mut options.warnings);
     let mut file = FileSettings::default();
     let mut system = match source {
         Source::System(system) => *system,
@@ -49,6 +49,13 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
         .map_err(|e| e.within("system"))?;
     check_options(&options)?;
     warnings.extend(precision_warning(&file));
+    if options.start_parameters.is_empty()
+        && options.target_parameters.is_empty()
+        && let Some((values, warning)) = file.random_parameters(&system, options.seed)
+    {
+        options.target_parameters.push(values);
+        warnings.push(warning);
+    }
     let fixed = match options.precision {
         PrecisionChoice::Adaptive => None,
         PrecisionChoice::Double => Some(DOUBLE),
@@ -264,6 +271,34 @@ mod tests {
         assert_eq!(intake.system.conjugates, [(0, 1)]);
         let plain = text(CIRCLES, Options::default()).unwrap();
         assert_ne!(intake.options.seed, plain.options.seed);
+    }
+
+    #[test]
+    fn a_family_to_be_solved_from_nothing_gets_random_parameters() {
+        let family = "CONFIG ParameterHomotopy: 1; OdePredictor: 5; END; INPUT variable_group x;
+            parameter p, q; function f; f = x^2 + p*x + q; END;";
+        let intake = text(family, Options::default()).unwrap();
+        let [values] = intake.options.target_parameters.as_slice() else {
+            panic!("{:?}", intake.options.target_parameters);
+        };
+        assert!(values.iter().all(|z| (z.norm_sqr() - 1.0).abs() < 1e-14));
+        assert_eq!(intake.warnings.len(), 2);
+        assert!(intake.warnings[0].contains("OdePredictor"));
+        let named = format!("q = [{:?}, {:?}]", values[1].re, values[1].im);
+        assert!(
+            intake.warnings[1].ends_with(&named),
+            "{}",
+            intake.warnings[1]
+        );
+        let given = Options {
+            target_parameters: vec![vec![num_complex::Complex64::ONE; 2]],
+            warnings: vec!["from the client".to_owned()],
+            ..Options::default()
+        };
+        let intake = text(family, given.clone()).unwrap();
+        assert_eq!(intake.options.target_parameters, given.target_parameters);
+        assert_eq!(intake.warnings[0], "from the client");
+        assert!(intake.options.warnings.is_empty(), "they are the job's");
     }
 
     #[test]

@@ -129,11 +129,13 @@ fn main() -> ExitCode {
         wanted.size, wanted.seed
     );
     println!(
-        "  {} paths: {} finite, {} singular, {} on positive-dimensional sets, {} at infinity, {} failed",
+        "  {} paths: {} finite, {} singular, {} on positive-dimensional sets, {} undecided, {} within the accuracy of the data, {} at infinity, {} failed",
         counts.paths_total,
         counts.paths_finite,
         counts.paths_singular,
         counts.paths_positive_dimensional.unwrap_or(0),
+        counts.paths_undecided,
+        counts.paths_within_data_accuracy,
         counts.paths_at_infinity,
         counts.paths_failed
     );

@@ -73,6 +73,7 @@ pub fn complaints(set: &SolutionSet, answer: &Answer) -> String {
     );
     expect("nonsingular", counts.nonsingular, answer.nonsingular);
     expect("finite paths", paths.finite, answer.nonsingular);
+    expect("undecided", paths.undecided, 0);
     expect("singular paths", paths.singular, answer.singular_paths);
     let on_sets = paths.positive_dimensional.unwrap_or(u64::MAX);
     expect("positive-dimensional", on_sets, answer.positive_dimensional);

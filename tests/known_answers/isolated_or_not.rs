@@ -136,3 +136,108 @@ fn a_point_beside_a_line_is_told_from_it() {
         },
     );
 }
+
+/// A line that is counted twice, and a point beside it: x^2 (x - 1) = 0, x^2 (y - 2) = 0 holds on x = 0 and
+/// at (1, 2). No slice of a double line has a regular solution.
+#[test]
+fn a_point_beside_a_double_line_is_told_from_it() {
+    let system = written("variable_group x, y; function f, g; f = x^2*(x - 1); g = x^2*(y - 2);");
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            start: StartChoice::TotalDegree,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let (paths, counts) = (&sets[0].paths, &sets[0].counts);
+        let found = (
+            counts.distinct,
+            counts.singular,
+            counts.positive_dimensional,
+        );
+        assert_eq!(found, (1, 0, Some(true)), "seed {seed}: {paths:?}");
+        assert!(
+            paths.positive_dimensional > Some(0),
+            "seed {seed}: {paths:?}"
+        );
+    }
+}
+
+/// 22 points of 64 paths: (1, ..., 1) has multiplicity 42 (Dayton and Zeng 2005, KSS).
+#[test]
+fn kss_6_has_a_point_of_multiplicity_42() {
+    let answer = Answer {
+        paths: 64,
+        nonsingular: 22,
+        singular_paths: 42,
+        singular: Some(1),
+        ..Answer::default()
+    };
+    let options = PlanOptions {
+        seed: 1,
+        start: StartChoice::TotalDegree,
+        ..PlanOptions::default()
+    };
+    let (_, sets) = solve(&kss(6).system, &options, &|_| None);
+    let wrong = complaints(&sets[0], &answer);
+    assert!(wrong.is_empty(), "{wrong}");
+    assert_eq!(multiplicities(&sets[0]).last(), Some(&42));
+}
+
+/// The exact answer of a system without multiple points on curves: points of multiplicity 4 and 8 at which
+/// paths end that are not all recognised as one cluster are never taken for points of a curve.
+#[test]
+fn quadruple_and_eightfold_points_lie_on_no_curve() {
+    let text = "variable_group x, y, z; function f, g, h; \
+                f = (x - 1)^2*(x + 2); g = (y - 3)^2*(y - x); h = (z + x)^2*(z - 5);";
+    let system = written(text);
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let paths = &sets[0].paths;
+        assert_eq!(
+            paths.positive_dimensional,
+            Some(0),
+            "seed {seed}: {paths:?}"
+        );
+        assert!(
+            sets[0].counts.with_multiplicity == 27 || !sets[0].settled(),
+            "seed {seed}: {:?}",
+            sets[0].counts
+        );
+    }
+}
+
+/// A polynomial in one unknown has no set of solutions: (x - 1)^3 (x + 2)^2 has two roots.
+#[test]
+fn multiple_roots_in_one_unknown_lie_on_no_set() {
+    for (text, roots) in [
+        ("f = (x - 1)^3;", 1),
+        ("f = (x - 1)^3*(x + 2)^2;", 2),
+        ("f = x^4 - 4*x^3 + 6*x^2 - 4*x + 1;", 1),
+    ] {
+        let system = written(&format!("variable_group x; function f; {text}"));
+        for seed in SEEDS {
+            let options = PlanOptions {
+                seed,
+                ..PlanOptions::default()
+            };
+            let (_, sets) = solve(&system, &options, &|_| None);
+            let paths = &sets[0].paths;
+            assert_eq!(
+                paths.positive_dimensional,
+                Some(0),
+                "{text} {seed}: {paths:?}"
+            );
+            let right = sets[0].counts.distinct == roots;
+            assert!(
+                right || !sets[0].settled(),
+                "{text} {seed}: {:?}",
+                sets[0].counts
+            );
+        }
+    }
+}

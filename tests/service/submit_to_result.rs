@@ -24,6 +24,8 @@ fn check(summary: &Value, paths: u64, nonsingular: u64, real: u64) {
         "finite",
         "singular",
         "positive_dimensional",
+        "undecided",
+        "within_data_accuracy",
         "excess",
         "at_infinity",
         "failed",

@@ -1,11 +1,8 @@
 //! Families of mechanisms: systems with parameters, and members of them by number.
 
 use crate::systems::{SerialArm, axis_equations};
-use cognate_systems::expression::Expressions;
 use cognate_systems::formats;
-use cognate_systems::polynomial::Polynomial;
 use cognate_systems::system::System;
-use num_complex::Complex64;
 
 /// A family and how its members are drawn.
 pub struct Family {
@@ -253,51 +250,4 @@ pub fn six_revolute() -> Family {
             values
         },
     }
-}
-
-/// All systems with the same monomials and constants: every coefficient is a parameter. With it
-/// the parameters of the system that is given, which has none itself.
-///
-/// Without constants solutions with a coordinate 0 would be among themselves: katsura-8 has 16 with
-/// every second coordinate 0 that no loop connects to the 240 others.
-///
-/// # Panics
-/// When an equation cannot be multiplied out.
-pub fn of_coefficients(system: &System) -> (System, Vec<Complex64>) {
-    let mut out = Expressions::new();
-    let (mut values, mut equations) = (Vec::new(), Vec::new());
-    for &equation in &system.equations {
-        let n = system.variables.len();
-        let polynomial = Polynomial::expand(&system.expressions, equation, n, 0);
-        let mut polynomial = polynomial.expect("it is small, and its coefficients are rational");
-        polynomial.terms.entry(vec![0; n]).or_default();
-        let mut sum = out.integer(0);
-        for (exponents, coefficient) in &polynomial.terms {
-            let mut term = out.parameter(values.len() as u32);
-            values.push(Complex64::new(
-                coefficient.re.to_f64(),
-                coefficient.im.to_f64(),
-            ));
-            for (v, &exponent) in (0..).zip(exponents) {
-                for _ in 0..exponent {
-                    let x = out.variable(v);
-                    term = out.multiply(term, x);
-                }
-            }
-            sum = out.add(sum, term);
-        }
-        equations.push(sum);
-    }
-    let family = System {
-        expressions: out,
-        variables: system.variables.clone(),
-        parameters: (0..values.len())
-            .map(|k| format!("coefficient{k}"))
-            .collect(),
-        groups: system.groups.clone(),
-        equations,
-        equation_names: system.equation_names.clone(),
-        ..System::default()
-    };
-    (family, values)
 }

@@ -11,6 +11,7 @@ pub mod dice;
 pub mod families;
 pub mod measures;
 pub mod namespaces;
+pub mod planted;
 pub mod processes;
 pub mod six_revolute;
 pub mod skip;

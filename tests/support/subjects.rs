@@ -11,6 +11,8 @@ pub fn paths_in_classes(counts: &SummaryCounts) -> u64 {
     counts.paths_finite
         + counts.paths_singular
         + counts.paths_positive_dimensional.unwrap_or(0)
+        + counts.paths_undecided
+        + counts.paths_within_data_accuracy
         + counts.paths_excess.unwrap_or(0)
         + counts.paths_at_infinity
         + counts.paths_failed

@@ -6,7 +6,17 @@ use super::{File, check, sources};
 const PAGE: usize = 120;
 
 /// Functions that are longer: file, name, reason. One that has become shorter must leave the list.
-const LONGER: [(&str, &str, &str); 15] = [
+const LONGER: [(&str, &str, &str); 17] = [
+    (
+        "coordinator/src/client/output/table.rs",
+        "solution_list",
+        "columns of a table; to be one function per column",
+    ),
+    (
+        "coordinator/src/client/problem.rs",
+        "prepare",
+        "carries every option once; to be options that stand with their method",
+    ),
     (
         "common/continuation/src/stage.rs",
         "new",

@@ -2,6 +2,7 @@
 
 use crate::certified_solve::CertifiedSolve;
 use crate::closing_stage::FiniteEndpoints;
+use crate::completeness::{Complete, Completeness};
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
@@ -17,7 +18,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 11;
+const VERSION: u8 = 12;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -171,6 +172,21 @@ impl AnyAlgorithm {
     }
 }
 
+/// Whether loops found all: what a trace test says, or `known`, what the loops say of themselves.
+fn judge_loops(loops: &LoopCounts, known: Option<&Completeness>, set: &mut SolutionSet) {
+    let settled = set.settled();
+    let counts = &mut set.counts;
+    let (complete, why) = match (&loops.trace_test, known) {
+        (Some(test), _) if !test.complete => {
+            let why = "a trace test says that some are missing";
+            (Complete::No, why.to_string())
+        }
+        (_, Some(known)) if settled => (known.complete, known.reason.clone()),
+        _ => return,
+    };
+    (counts.complete, counts.complete_reason) = (complete, Some(why));
+}
+
 impl PathAlgorithm for AnyAlgorithm {
     fn next(&mut self) -> Next {
         self.get_mut().next()
@@ -188,7 +204,17 @@ impl PathAlgorithm for AnyAlgorithm {
         self.to_bytes()
     }
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        self.get().solution_sets(system)
+        let mut sets = self.get().solution_sets(system);
+        if let Some(loops) = self.loops() {
+            let known = self.completeness();
+            for set in &mut sets {
+                judge_loops(loops, known.as_ref(), set);
+            }
+        }
+        sets
+    }
+    fn completeness(&self) -> Option<Completeness> {
+        self.get().completeness()
     }
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         self.get().finite_endpoints()

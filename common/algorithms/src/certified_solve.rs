@@ -6,7 +6,7 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::closing_stage::{ClosingStage, FiniteEndpoints};
-use crate::{Next, PathAlgorithm, Progress};
+use crate::{Completeness, Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::points_at_targets::parameters_at_targets;
 use cognate_continuation::work::{StageId, Work};
@@ -104,6 +104,10 @@ impl PathAlgorithm for CertifiedSolve {
 
     fn failure(&self) -> Option<String> {
         self.solve.failure()
+    }
+
+    fn completeness(&self) -> Option<Completeness> {
+        self.solve.completeness()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {

@@ -29,6 +29,9 @@
 pub mod any_algorithm;
 pub mod certified_solve;
 pub mod closing_stage;
+mod coefficient_family;
+pub mod completeness;
+mod given_start;
 pub mod monodromy;
 pub mod opening;
 pub mod parameter_solve;
@@ -48,6 +51,7 @@ pub mod zero_dimensional_solve;
 pub use any_algorithm::{AnyAlgorithm, RestoreError};
 pub use certified_solve::CertifiedSolve;
 pub use closing_stage::{FiniteEndpoint, FiniteEndpoints};
+pub use completeness::{Complete, Completeness};
 pub use opening::Opening;
 pub use plan::{Plan, PlanOptions, plan};
 pub use plan_error::PlanError;
@@ -87,6 +91,11 @@ pub trait PathAlgorithm: Send {
     /// What was found, one set for each target; meant for when `next` has said `Done`.
     /// `system` is the one that was planned for.
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
+    /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
+    /// say all that is known of that.
+    fn completeness(&self) -> Option<Completeness> {
+        None
+    }
     /// Its finite endpoints when it is done; `None` where it does not say.
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         None

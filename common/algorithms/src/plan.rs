@@ -2,6 +2,9 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::certified_solve::CertifiedSolve;
+use crate::coefficient_family::coefficient_family;
+pub use crate::given_start::GivenStart;
+use crate::given_start::check_given;
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::PlanError;
@@ -27,8 +30,10 @@ use cognate_solutions::classification::Tolerances;
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
+use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Most paths of one solve where all results are held in memory, about 300 bytes a path.
 pub const MAX_PATHS: u64 = 4_000_000;
@@ -63,17 +68,6 @@ pub enum StartChoice {
     LinearProduct,
     /// Equation by equation.
     Regeneration,
-}
-
-/// Start solutions that are stored as an object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct GivenStart {
-    /// Digest of the object.
-    pub object: Digest,
-    /// How many points it holds.
-    pub count: u64,
-    /// Coordinates of each point: the variables of the system, in order.
-    pub dimension: usize,
 }
 
 /// Everything that decides how a system is solved, besides the system.
@@ -164,6 +158,8 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
     if options.sets.is_some() && (given || options.start == StartChoice::Monodromy) {
         return Err(PlanError::SetsWithoutLinearProduct);
     }
+    let in_units = in_units(system, options);
+    let system = &*in_units;
     let mut plan = match (given, options.start) {
         (_, StartChoice::Monodromy) => plan_monodromy(system, options),
         (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),
@@ -180,11 +176,41 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
             return Err(PlanError::TooManyPaths {
                 start: plan.start,
                 number: plan.paths,
+                instead: String::new(),
             });
         }
         plan.algorithm = AnyAlgorithm::Certified(Box::new(CertifiedSolve::new(plan.algorithm)));
     }
     Ok(plan)
+}
+
+/// The system with the units in which it is tracked, decided from its coefficients where its paths
+/// begin and end: a family's at the start parameters and at the first target.
+fn in_units<'a>(system: &'a System, options: &PlanOptions) -> Cow<'a, System> {
+    let ends = options.start_parameters.iter();
+    let ends = ends.chain(options.target_parameters.first());
+    let mut values: Vec<Vec<Complex64>> = ends.cloned().collect();
+    values.retain(|set| set.len() == system.parameters.len());
+    if let Some(t) = system.path_variable {
+        // At both ends of the user's own homotopy.
+        let given = values.pop();
+        let given = given.unwrap_or_else(|| vec![Complex64::default(); system.parameters.len()]);
+        values = [1.0, 0.0]
+            .map(|at| {
+                let mut set = given.clone();
+                set[t] = Complex64::new(at, 0.0);
+                set
+            })
+            .into();
+    }
+    let scaling = scaling_of(system, &values);
+    match scaling == system.scaling {
+        true => Cow::Borrowed(system),
+        false => Cow::Owned(System {
+            scaling,
+            ..system.clone()
+        }),
+    }
 }
 
 fn check_parameters(system: &System, options: &PlanOptions) -> Result<(), PlanError> {
@@ -260,6 +286,14 @@ fn plan_start_system(
         return plan_regeneration(system, parameters, options);
     }
     let mut starts = Starts::of(system, options.seed)?;
+    let named = |error: PlanError, starts: &Starts| match error {
+        PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
+            start,
+            number,
+            instead: starts.that_would_do(system),
+        },
+        other => other,
+    };
     if choice == StartChoice::Auto {
         starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
     }
@@ -290,14 +324,15 @@ fn plan_start_system(
             };
             (StartKind::LinearProduct, format!("{asked}; {sets}"))
         }
-        _ => starts.choose()?,
+        _ => starts.choose().map_err(|error| named(error, &starts))?,
     };
     if kind == StartKind::Polyhedral {
         return plan_polyhedral(system, parameters, why, options);
     }
     let (tracked, start_points) = match kind {
         StartKind::TotalDegree => {
-            let (tracked, start, _) = starts.total_degree?;
+            let start = starts.total_degree.clone();
+            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
             (tracked, start)
         }
         StartKind::LinearProduct => {
@@ -308,12 +343,18 @@ fn plan_start_system(
                 .map_err(PlanError::NoLinearProduct)?;
             if count > MAX_PATHS {
                 let (start, number) = (StartKind::LinearProduct, Some(count));
-                return Err(PlanError::TooManyPaths { start, number });
+                let instead = String::new();
+                return Err(PlanError::TooManyPaths {
+                    start,
+                    number,
+                    instead,
+                });
             }
             (tracked, start)
         }
         _ => {
-            let (tracked, start, _) = starts.multihomogeneous?;
+            let start = starts.multihomogeneous.clone();
+            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
             (tracked, start)
         }
     };
@@ -375,6 +416,7 @@ pub(crate) fn checked_volume(volume: u64) -> Result<u64, PlanError> {
         number if number > MAX_PATHS => Err(PlanError::TooManyPaths {
             start: StartKind::Polyhedral,
             number: Some(number),
+            instead: String::new(),
         }),
         number => Ok(number),
     }
@@ -401,6 +443,8 @@ fn plan_regeneration(
     };
     let point =
         slices::common_point(options.seed, tracked.variables.len()).ok_or(PlanError::NoPaths)?;
+    // The forms are those of the unknowns that are tracked.
+    let point = tracked.scaling.to_variables(&point);
     let paths = u64::from(levels.degrees[0].saturating_sub(1).max(1));
     let tolerances = options.tolerances.clone();
     let solve = RegenerationSolve::new(levels, point, &tracked, tolerances);
@@ -415,25 +459,6 @@ fn plan_regeneration(
              are singular, or become so on the way, may be missed"
         ),
     })
-}
-
-fn check_given(system: &System, start: &GivenStart) -> Result<(), PlanError> {
-    if start.count == 0 {
-        return Err(PlanError::EmptyStart);
-    }
-    if start.count > MAX_PATHS {
-        return Err(PlanError::TooManyPaths {
-            start: StartKind::Given,
-            number: Some(start.count),
-        });
-    }
-    if start.dimension != system.variables.len() {
-        return Err(PlanError::StartDimension {
-            found: start.dimension,
-            expected: system.variables.len(),
-        });
-    }
-    Ok(())
 }
 
 fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
@@ -470,6 +495,7 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
         return Err(PlanError::TooManyPaths {
             start: StartKind::Given,
             number,
+            instead: String::new(),
         });
     }
     let start_points = StartPoints::Stored {
@@ -492,7 +518,7 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
         return Err(PlanError::MonodromyOfHomotopy);
     }
     if system.parameters.is_empty() {
-        return Err(PlanError::MonodromyWithoutParameters);
+        return plan_coefficient_loops(system, options);
     }
     checked_degrees(system)?;
     check_equations(system)?;
@@ -554,6 +580,31 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
         start: StartKind::Monodromy,
         paths,
         why,
+    })
+}
+
+/// Loops through the systems with the same monomials, for a system without parameters.
+fn plan_coefficient_loops(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+    if options.start_points.is_some() {
+        return Err(PlanError::NothingToDeform);
+    }
+    checked_degrees(system)?;
+    check_equations(system)?;
+    let supports = cell_supports(system).map_err(PlanError::NoCoefficientFamily)?;
+    let family = coefficient_family(system, &supports);
+    let (family, values) = family.map_err(PlanError::NoCoefficientFamily)?;
+    let count = values.len();
+    let options = PlanOptions {
+        target_parameters: vec![values],
+        ..options.clone()
+    };
+    let plan = plan_monodromy(&family, &options)?;
+    Ok(Plan {
+        why: format!(
+            "asked for; the {count} coefficients are the parameters, so that a random point solves the \
+             system for some of them"
+        ),
+        ..plan
     })
 }
 
@@ -750,6 +801,34 @@ mod tests {
         assert!(error.to_string().contains("81000000 paths"), "{error}");
         assert!(
             error.to_string().starts_with("not in this version"),
+            "{error}"
+        );
+        // Pairs of bilinear equations: 4^13 by total degree, 2^13 by mixed cells.
+        let names = |letter: &str| -> Vec<String> {
+            let all = 0..13;
+            all.map(|k| format!("{letter}{k}")).collect()
+        };
+        let mut pairs = format!(
+            "variable_group {}, {};",
+            names("x").join(", "),
+            names("y").join(", ")
+        );
+        pairs += &format!(
+            "function {}, {};",
+            names("f").join(", "),
+            names("g").join(", ")
+        );
+        for k in 0..13 {
+            pairs += &format!("f{k} = x{k}*y{k} - 1; g{k} = x{k}*y{k} + x{k} - 3*y{k};");
+        }
+        let error = refusal(&bertini(&pairs), &with_start(StartChoice::TotalDegree));
+        assert!(error.to_string().contains("67108864 paths"), "{error}");
+        assert!(
+            error.to_string().contains("these starts would do: "),
+            "{error}"
+        );
+        assert!(
+            error.to_string().contains("polyhedral with 8192"),
             "{error}"
         );
         let names: Vec<String> = (0..70).map(|k| format!("x{k}")).collect();

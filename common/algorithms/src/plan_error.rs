@@ -90,12 +90,12 @@ pub enum PlanError {
     /// Start parameters without solutions there.
     #[error("start parameters need start solutions")]
     StartParametersAlone,
-    /// Nothing to make loops in.
+    /// No parameters, and none can be made of the coefficients.
     #[error(
         "the start `monodromy` makes loops in the space of parameters; this system has no \
-         parameters (a start system, such as total degree, serves)"
+         parameters, and its coefficients cannot serve: {0}"
     )]
-    MonodromyWithoutParameters,
+    NoCoefficientFamily(String),
     /// Completeness cannot be tested.
     #[error("there is no trace test for this family: {0}")]
     NoTraceTest(NoTraceTest),
@@ -119,7 +119,7 @@ pub enum PlanError {
     /// Too large.
     #[error(
         "not in this version: the {start} start has {} paths, more than the limit of {MAX_PATHS} \
-         paths of one solve ({MAX_PLAIN_PATHS} by degrees where nothing needs all of them in memory)",
+         paths of one solve ({MAX_PLAIN_PATHS} by degrees where nothing needs all of them in memory){instead}",
         .number.map_or("2^64 or more".to_string(), |n| n.to_string())
     )]
     TooManyPaths {
@@ -127,6 +127,8 @@ pub enum PlanError {
         start: StartKind,
         /// How many paths, where that fits in 64 bits.
         number: Option<u64>,
+        /// Which other starts would do, as an end of the sentence; empty where that is not known.
+        instead: String,
     },
     /// Too many ways to count.
     #[error(

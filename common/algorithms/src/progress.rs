@@ -23,8 +23,12 @@ pub struct StageProgress {
 pub struct VerdictCounts {
     /// Nonsingular and finite.
     pub finite: u64,
-    /// Singular and finite.
+    /// Singular, finite and isolated.
     pub singular: u64,
+    /// Singular and finite; isolated or not is not known yet.
+    pub undecided: u64,
+    /// Of another class within the accuracy of the decimals that were given.
+    pub within_data_accuracy: u64,
     /// On positive-dimensional solution sets.
     pub positive_dimensional: u64,
     /// At infinity.

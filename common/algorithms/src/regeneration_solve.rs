@@ -58,6 +58,9 @@ pub struct RegenerationSolve {
     behind: Vec<StageProgress>,
     /// What was tracked again on them, crossings that were found there and resolved.
     repeated: [u64; 3],
+    /// Singular points of the first equations that no level went on from: solutions that lie there
+    /// may be missing.
+    left_behind: u64,
     /// No level is to be opened any more.
     last: bool,
 }
@@ -99,6 +102,7 @@ impl RegenerationSolve {
             lost: Vec::new(),
             behind: Vec::new(),
             repeated: [0; 3],
+            left_behind: 0,
         }
     }
 
@@ -129,6 +133,9 @@ impl RegenerationSolve {
             } else if slid || decision.verdict == Verdict::Failed {
                 // From one generic slice to another all solutions are regular.
                 self.lost.push(result.clone());
+            } else if decision.verdict != Verdict::AtInfinity {
+                // The ends of the last level are all in the answer.
+                self.left_behind += u64::from(!self.reached_the_system());
             }
         }
         let number = self.levels.order.len() as u32;
@@ -184,6 +191,19 @@ impl RegenerationSolve {
     /// Whether the present stage ends at the system that is asked.
     fn reached_the_system(&self) -> bool {
         self.stage.first().homotopy.ends_at_the_system()
+    }
+
+    /// Why not all solutions may have been found.
+    fn may_miss(&self) -> Option<String> {
+        let ends = match self.left_behind {
+            0 => return None,
+            1 => "1 path to a singular point of the first equations was".to_string(),
+            n => format!("{n} paths to singular points of the first equations were"),
+        };
+        Some(format!(
+            "{ends} not gone on from: solutions there, which are singular or lie on a set of \
+             solutions of these equations, may be missing"
+        ))
     }
 
     fn description(&self) -> String {
@@ -304,7 +324,8 @@ impl PathAlgorithm for RegenerationSolve {
             retracked: self.repeated[0],
             crossings_found: self.repeated[1],
             crossings_resolved: self.repeated[2],
-            complete_start: false,
+            complete_start: self.left_behind == 0,
+            may_miss: self.may_miss(),
             images: 0,
         };
         for target in 0..targets(self.stage.first()) as usize {
@@ -314,6 +335,8 @@ impl PathAlgorithm for RegenerationSolve {
             history.crossings_resolved += present.crossings_resolved;
         }
         let parameters = &self.levels.parameters;
-        vec![self.stage.set_of(system, parameters, &results, &history)]
+        let mut set = self.stage.set_of(system, parameters, &results, &history);
+        set.warnings.extend(self.may_miss());
+        vec![set]
     }
 }

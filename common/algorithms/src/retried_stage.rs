@@ -453,7 +453,7 @@ impl RetriedStage {
             let decisions: Vec<Decision> = results.iter().map(decide).collect();
             let mut singular: Vec<bool> = decisions
                 .iter()
-                .map(|decision| decision.verdict == Verdict::Singular)
+                .map(|decision| decision.verdict.may_be_multiple())
                 .collect();
             for place in self.not_asked(target, results, &decisions) {
                 singular[place] = false;
@@ -533,6 +533,8 @@ impl RetriedStage {
                 match decision.verdict {
                     Verdict::Finite => book.verdicts.finite += 1,
                     Verdict::Singular => book.verdicts.singular += 1,
+                    Verdict::Undecided => book.verdicts.undecided += 1,
+                    Verdict::WithinDataAccuracy => book.verdicts.within_data_accuracy += 1,
                     Verdict::AtInfinity => book.verdicts.at_infinity += 1,
                     Verdict::PositiveDimensional => book.verdicts.positive_dimensional += 1,
                     Verdict::Excess => book.verdicts.excess += 1,
@@ -555,7 +557,7 @@ impl RetriedStage {
             suspects.extend(book.crossings.paths().map(of_path));
             // Where a path failed it may be what a cycle lacks, and where paths are left out too.
             if book.verdicts.failed == 0 && self.first.homotopy.takes_all_paths() {
-                let singular = |place: usize| decisions[place].verdict == Verdict::Singular;
+                let singular = |place: usize| decisions[place].verdict.may_be_multiple();
                 let (shape, tolerances) = (&self.shape, &self.tolerances);
                 let points = coincidences(results, shape, tolerances, self.first.seed, singular);
                 for members in points {
@@ -576,6 +578,8 @@ impl RetriedStage {
         for book in &self.targets {
             paths.finite += book.verdicts.finite;
             paths.singular += book.verdicts.singular;
+            paths.undecided += book.verdicts.undecided;
+            paths.within_data_accuracy += book.verdicts.within_data_accuracy;
             paths.at_infinity += book.verdicts.at_infinity;
             paths.excess += book.verdicts.excess;
             paths.positive_dimensional += book.verdicts.positive_dimensional;
@@ -672,6 +676,7 @@ impl RetriedStage {
             crossings_found: book.crossings.found(),
             crossings_resolved: book.crossings.resolved(),
             complete_start,
+            may_miss: None,
             images: match self.first.start_points.exchange() {
                 Some(_) => self.paths_per_target,
                 None => 0,

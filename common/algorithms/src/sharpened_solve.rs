@@ -5,7 +5,7 @@
 
 use crate::any_algorithm::AnyAlgorithm;
 use crate::closing_stage::{ClosingStage, FiniteEndpoints};
-use crate::{Next, PathAlgorithm, Progress};
+use crate::{Completeness, Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::sharpened::{Attempt, DIGITS_OF_DOUBLES, sharpen};
@@ -117,6 +117,10 @@ impl PathAlgorithm for SharpenedSolve {
 
     fn failure(&self) -> Option<String> {
         self.solve.failure()
+    }
+
+    fn completeness(&self) -> Option<Completeness> {
+        self.solve.completeness()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {

@@ -216,6 +216,45 @@ impl Starts {
         self.degrees.by_group.first().map_or(0, Vec::len)
     }
 
+    /// The starts whose paths can be followed, as the end of a sentence that refuses another.
+    pub(crate) fn that_would_do(&self, system: &System) -> String {
+        let mut names = Vec::new();
+        let starts = [
+            (StartKind::TotalDegree, &self.total_degree),
+            (StartKind::Multihomogeneous, &self.multihomogeneous),
+        ];
+        for (kind, start) in starts {
+            if let Ok((_, _, number)) = start {
+                names.push(format!("{kind} with {number}"));
+            }
+        }
+        let product = match &self.linear_product {
+            Some(product) => product.clone(),
+            None => self
+                .clone()
+                .with_linear_product(system)
+                .linear_product
+                .unwrap_or_else(|| Err(String::new())),
+        };
+        if let Some((_, _, number)) = product.ok().filter(|(.., number)| *number <= MAX_PATHS) {
+            names.push(format!("{} with {number}", StartKind::LinearProduct));
+        }
+        let polyhedral = StartKind::Polyhedral;
+        match cell_supports(system).map(|supports| mixed_cells(&supports, 0, COUNTING_OPERATIONS)) {
+            Ok(Ok(found)) if (1..=MAX_PATHS).contains(&found.mixed_volume) => {
+                names.push(format!("{polyhedral} with {}", found.mixed_volume));
+            }
+            Ok(Err(MixedCellsError::TooLong)) => {
+                names.push(format!("{polyhedral}, whose paths the workers count"));
+            }
+            _ => {}
+        }
+        match names.is_empty() {
+            true => "; no other start is known to have fewer".to_string(),
+            false => format!("; these starts would do: {}", names.join("; ")),
+        }
+    }
+
     /// The cheaper one, and why, in words.
     pub fn choose(&self) -> Result<(StartKind, String), PlanError> {
         let bezout = self.cheaper();
@@ -225,10 +264,13 @@ impl Starts {
             Err(_) => u64::MAX,
         };
         let polyhedral = match self.mixed_volume {
-            Some(Ok(volume)) if polyhedral_is_cheaper(volume, fewest) => Some(volume),
+            // A start by mixed cells has no path where the mixed volume is 0: special coefficients may
+            // still have isolated solutions at infinity or sets of solutions, which others meet.
+            Some(Ok(volume)) if volume > 0 && polyhedral_is_cheaper(volume, fewest) => Some(volume),
             _ => None,
         };
         if let Some(Ok((tracked, start, number))) = &self.linear_product
+            && *number > 0
             && linear_product_is_cheaper(*number, fewest)
             // Then it has no more paths to infinity than the mixed cells have. Others often end
             // on the sets at infinity where products of forms vanish, and are dear.
@@ -621,6 +663,7 @@ fn counted(system: &System, start: &StartPoints, kind: StartKind) -> Result<u64,
         number => Err(PlanError::TooManyPaths {
             start: kind,
             number,
+            instead: String::new(),
         }),
     }
 }

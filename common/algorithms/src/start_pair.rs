@@ -74,6 +74,8 @@ pub fn start_pair(
     system: &System,
     seed: u64,
 ) -> Result<(Vec<Complex64>, Vec<Complex64>), StartPairError> {
+    let scaling = &system.scaling;
+    let system = &*system.in_unknowns();
     let (equations, count) = (system.equation_count(), system.parameters.len());
     let not_free = StartPairError::NotFree {
         equations,
@@ -142,7 +144,7 @@ pub fn start_pair(
     });
     let bounded = p.iter().all(|z| z.norm_sqr() < 1e12);
     if solved && bounded {
-        Ok((x, p))
+        Ok((scaling.to_variables(&x), p))
     } else {
         Err(not_free)
     }

@@ -1,7 +1,7 @@
 //! A make-believe tracker for this crate's tests: what each path does at each attempt is written down.
 
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::{BoundaryKey, NUMBERS, PathResult};
+use cognate_continuation::path_result::{BoundaryKey, LocalDimension, NUMBERS, PathResult};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
@@ -88,6 +88,13 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                         numbers: [place; NUMBERS],
                         margin: 1e-6,
                     })
+                }),
+                // Singular points are triple ones, where that is asked.
+                local_dimension: (stage.work == Work::LocalDimension).then(|| LocalDimension {
+                    dual_dimensions: vec![1, 2, 3, 3],
+                    bound: u64::MAX,
+                    margin: 1e9,
+                    moved_slices: Vec::new(),
                 }),
                 ..PathResult::untracked(origin, stage.attempt, outcome, coordinates)
             }

@@ -14,7 +14,7 @@ use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
-use cognate_numeric::scalar::Complex;
+use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::polynomial::Degrees;
@@ -133,6 +133,43 @@ impl AskedSystem {
         });
         let column = |j: usize| -> Vec<Complex64> {
             let entry = |i: usize| Complex64::new(matrix.at(i, j).re, matrix.at(i, j).im);
+            (0..rows).map(entry).collect()
+        };
+        Linearization {
+            values: column(n),
+            columns: (0..n).map(column).collect(),
+        }
+    }
+
+    /// The same at a point in double-doubles: small values keep their digits.
+    pub(crate) fn linearize_precisely(
+        &self,
+        point: &[Complex<DoubleDouble<f64>>],
+        target: u64,
+    ) -> Linearization {
+        let zero = || DoubleDouble::<f64>::from_f64((), 0.0);
+        let number = |z: &Complex64| Complex {
+            re: DoubleDouble::<f64>::from_f64((), z.re),
+            im: DoubleDouble::<f64>::from_f64((), z.im),
+        };
+        let p: Vec<_> = self.targets[target as usize].iter().map(number).collect();
+        let still: Vec<_> = p
+            .iter()
+            .map(|_| Complex {
+                re: zero(),
+                im: zero(),
+            })
+            .collect();
+        let (rows, n) = (self.program.shape().equations, point.len());
+        let mut matrix = Matrix::zeros((), rows, n + 2);
+        let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.program, ());
+        self.program
+            .linearize(point, &p, &still, &mut matrix, &mut scratch);
+        let column = |j: usize| -> Vec<Complex64> {
+            let entry = |i: usize| {
+                let z: &Complex<DoubleDouble<f64>> = matrix.at(i, j);
+                Complex64::new(z.re.control(), z.im.control())
+            };
             (0..rows).map(entry).collect()
         };
         Linearization {

@@ -7,6 +7,7 @@ use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::tracker::outcome::PathOutcome;
 use crate::work::Stage;
+use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -19,6 +20,8 @@ pub struct PointsAtTargets {
     /// Values of all parameters, for each target.
     targets: Vec<Vec<Complex64>>,
     points: Arc<StoredPoints>,
+    /// The units in which the system is tracked.
+    scaling: Scaling,
     items: u64,
 }
 
@@ -115,6 +118,7 @@ impl PointsAtTargets {
             stage: stage.clone(),
             targets,
             points,
+            scaling: system.scaling.clone(),
             items,
         })
     }
@@ -134,6 +138,11 @@ impl PointsAtTargets {
             target: place(origin / count),
             point: self.points.point(place(origin % count)),
         }
+    }
+
+    /// The units in which the system is tracked.
+    pub fn scaling(&self) -> &Scaling {
+        &self.scaling
     }
 
     /// The parameters of one target.

@@ -18,6 +18,7 @@ use crate::tracker::settings::Settings;
 use crate::work::{Stage, Work};
 use cognate_numeric::lanes::dispatch::InstructionSet;
 use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees, supports};
+use cognate_systems::scaling::Scaling;
 use cognate_systems::system::{System, SystemError};
 use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
@@ -121,12 +122,14 @@ struct Checked<'a> {
 }
 
 impl<'a> Checked<'a> {
+    /// `system` is in the unknowns that are tracked; stored points are values of the variables,
+    /// which are `scaling` times as large.
     fn new(
         system: &'a System,
+        scaling: &Scaling,
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
-        system.check()?;
         if stage.work != Work::Track {
             return Err(PrepareError::Work);
         }
@@ -332,7 +335,10 @@ impl<'a> Checked<'a> {
                         "stored points start a parameter homotopy or a user homotopy".into(),
                     ));
                 }
-                Points::Stored(stored)
+                Points::Stored(match scaling.is_none() {
+                    true => stored,
+                    false => Arc::new(stored.in_unknowns(scaling)),
+                })
             }
             StartPoints::MixedCells { count, branches } => {
                 let generic = generic.clone().filter(|_| toric).ok_or_else(|| {
@@ -422,7 +428,9 @@ impl PreparedStage {
         if let Some((curve, along)) = on_sections(system, stage)? {
             return Self::new(&curve, &along, objects);
         }
-        let checked = Checked::new(system, stage, objects)?;
+        system.check()?;
+        let in_unknowns = system.in_unknowns();
+        let checked = Checked::new(&in_unknowns, &system.scaling, stage, objects)?;
         let homotopy = Homotopy::new(
             &checked.system,
             &checked.degrees,
@@ -459,10 +467,13 @@ impl PreparedStage {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<(), PrepareError> {
-        match on_sections(system, stage)? {
-            Some((curve, along)) => Checked::new(&curve, &along, objects).map(|_| ()),
-            None => Checked::new(system, stage, objects).map(|_| ()),
-        }
+        let on_curve = on_sections(system, stage)?;
+        let (system, stage) = match &on_curve {
+            Some((curve, along)) => (curve, along),
+            None => (system, stage),
+        };
+        system.check()?;
+        Checked::new(&system.in_unknowns(), &system.scaling, stage, objects).map(|_| ())
     }
 
     /// Number of items.

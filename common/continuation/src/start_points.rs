@@ -4,6 +4,7 @@ use crate::start_systems::exchange::Exchange;
 use crate::start_systems::linear_product::SetStructure;
 use crate::start_systems::multihomogeneous::Choices;
 use crate::start_systems::polyhedral::branches::CellBranches;
+use cognate_systems::scaling::Scaling;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -94,6 +95,17 @@ impl StoredPoints {
     /// One point.
     pub fn point(&self, index: usize) -> &[Complex64] {
         &self.coordinates[index * self.dimension..(index + 1) * self.dimension]
+    }
+
+    /// The same points in the unknowns that are tracked, where these are values of variables.
+    pub fn in_unknowns(&self, scaling: &Scaling) -> Self {
+        let points = self.coordinates.chunks(self.dimension.max(1));
+        Self {
+            dimension: self.dimension,
+            coordinates: points
+                .flat_map(|point| scaling.to_unknowns(point))
+                .collect(),
+        }
     }
 
     /// The points as they are named: by the digest of [`Self::to_bytes`].

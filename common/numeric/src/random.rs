@@ -29,6 +29,8 @@ pub enum Purpose {
     Randomization = 12,
     /// Multipliers of deflated systems.
     Deflation = 13,
+    /// Constants that a file declares to be random.
+    DeclaredConstant = 14,
     /// Liftings of supports.
     Lifting = 20,
 }

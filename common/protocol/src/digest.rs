@@ -92,6 +92,11 @@ pub fn encode_system(system: &System) -> Vec<u8> {
             }
         }
     });
+    // Nothing where there is no scaling: the names of such systems are older.
+    if !m.unit_exponents.is_empty() {
+        let exponents = m.unit_exponents.iter();
+        w.words(&exponents.map(|e| e.cast_unsigned()).collect::<Vec<u32>>());
+    }
     w.0
 }
 
@@ -149,6 +154,10 @@ pub fn decode_system(bytes: &[u8]) -> Result<System, DamagedSystem> {
                 }),
             })
         })?,
+        unit_exponents: match r.at < bytes.len() {
+            true => r.words()?.into_iter().map(u32::cast_signed).collect(),
+            false => Vec::new(),
+        },
     };
     if r.at != bytes.len() {
         return Err(r.damaged("there is more than the system"));

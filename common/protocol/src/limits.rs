@@ -58,6 +58,12 @@ pub const DUAL_DIMENSIONS: Limit = Limit {
     what: "dimensions of dual spaces",
     value: 1000,
 };
+/// Slices that were moved away from an endpoint.
+pub const MOVED_SLICES: Limit = Limit {
+    name: "MOVED_SLICES",
+    what: "slices beside an endpoint",
+    value: 100,
+};
 /// Coordinates of an endpoint: every variable may have a group of its own.
 pub const COORDINATES: Limit = Limit {
     name: "COORDINATES",
@@ -82,6 +88,18 @@ pub const PRECISION_BITS: Limit = Limit {
     what: "bits of precision",
     value: 1 << 20,
 };
+/// Remarks of a client about the files that it read.
+pub const WARNINGS: Limit = Limit {
+    name: "WARNINGS",
+    what: "warnings",
+    value: 200,
+};
+/// Bytes of one of them.
+pub const WARNING_BYTES: Limit = Limit {
+    name: "WARNING_BYTES",
+    what: "bytes in a warning",
+    value: 10_000,
+};
 /// Named sets of endpoints that are no answers.
 pub const DEGENERATE_SETS: Limit = Limit {
     name: "DEGENERATE_SETS",
@@ -105,6 +123,8 @@ pub const ALL: &[Limit] = &[
     PATHS,
     SELECTED_PATHS,
     PRECISION_BITS,
+    WARNINGS,
+    WARNING_BYTES,
     DEGENERATE_SETS,
     SYMMETRY_GENERATORS,
     limits::FILE_BYTES,

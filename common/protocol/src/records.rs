@@ -9,7 +9,8 @@
 
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::path_result::{
-    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, NUMBERS, PathIndex, PathResult,
+    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, NUMBERS, PathIndex,
+    PathResult,
 };
 use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::Digest;
@@ -32,6 +33,7 @@ mod tag {
     pub const BOUNDARY: u8 = 7;
     pub const MIXED_CELLS: u8 = 8;
     pub const UNCOUNTED: u8 = 9;
+    pub const MOVED_SLICES: u8 = 10;
 }
 
 /// Bytes that hold no records.
@@ -211,6 +213,7 @@ impl Writer {
             dual_dimensions,
             bound,
             margin,
+            moved_slices,
         }) = local_dimension
         {
             self.0.push(tag::LOCAL_DIMENSION);
@@ -218,6 +221,15 @@ impl Writer {
             dual_dimensions.iter().for_each(|&d| self.u32(d));
             self.u64(*bound);
             self.f64(*margin);
+            if !moved_slices.is_empty() {
+                self.0.push(tag::MOVED_SLICES);
+                self.length(moved_slices.len());
+                for slice in moved_slices {
+                    self.f64(slice.distance);
+                    self.f64(slice.residual);
+                    self.f64(slice.reached);
+                }
+            }
         }
         match sharpening {
             None => {}
@@ -473,7 +485,27 @@ impl<'a> Reader<'a> {
                             .collect::<Result<_, _>>()?,
                         bound: self.u64()?,
                         margin: self.f64()?,
+                        moved_slices: Vec::new(),
                     });
+                }
+                tag::MOVED_SLICES => {
+                    let count = self.length(24)?;
+                    let slice = |reader: &mut Self| {
+                        Ok(MovedSlice {
+                            distance: reader.f64()?,
+                            residual: reader.f64()?,
+                            reached: reader.f64()?,
+                        })
+                    };
+                    let slices: Vec<MovedSlice> =
+                        (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
+                    let Some(found) = &mut result.local_dimension else {
+                        return Err(self.damaged("moved slices without a dual space"));
+                    };
+                    if !slices.iter().all(MovedSlice::is_sound) {
+                        return Err(self.damaged("a moved slice that is none"));
+                    }
+                    found.moved_slices = slices;
                 }
                 tag::SHARPENED => {
                     let found = Sharpened {

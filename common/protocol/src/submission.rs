@@ -66,6 +66,8 @@ pub struct Options {
     pub digits: Option<u32>,
     /// Whether isolated singular solutions are brought to their digits by deflation.
     pub deflate: bool,
+    /// What the client did not follow of the files that it read; kept with the job.
+    pub warnings: Vec<String>,
     /// For [`StartKind::LinearProduct`]: the variables of each factor of each equation.
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
 }

@@ -149,6 +149,7 @@ fn solutions_come_back() {
         paths: vec![3, 4, 17],
         certificate: None,
         deflations: Some(2),
+        undecided: true,
     };
     let message: v1::Solution = sent(&to_proto::solution::solution(&solution, 0));
     assert_eq!(from_proto::solution::solution(&message).unwrap(), solution);

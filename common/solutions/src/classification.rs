@@ -4,7 +4,7 @@
 //! stored results. The first class that holds is the path's class.
 
 use crate::point_shape::{PointShape, largest, modulus};
-use cognate_continuation::path_result::{AskedFit, LocalDimension, PathResult};
+use cognate_continuation::path_result::{AskedFit, LocalDimension, MovedSlice, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +47,12 @@ pub struct Tolerances {
     /// The rank of a multiplicity matrix is believed when every singular value is this many times
     /// larger or smaller than the border between values and noise.
     pub rank_margin: f64,
+    /// A moved slice meets a solution where the equations, scaled to 1, are at most this in
+    /// double-doubles. Near a point of multiplicity m they are up to the distance to the power m; near a
+    /// set of multiplicity 3 and more Newton's method in doubles comes to about 1e-22.
+    pub slice_residual: f64,
+    /// Above this residual nothing was found on a slice at all.
+    pub slice_missed: f64,
     /// An expression of a degenerate set is 0 within this many times the error that
     /// the endpoint's estimated error makes in it.
     pub degenerate_factor: f64,
@@ -70,6 +76,8 @@ impl Default for Tolerances {
             singular_coincidence_factor: 50.0,
             singular_coincidence_floor: 1e-8,
             rank_margin: 3.0,
+            slice_residual: 1e-20,
+            slice_missed: 1e-8,
             degenerate_factor: 10.0,
             degenerate_floor: 1e-13,
         }
@@ -77,9 +85,6 @@ impl Default for Tolerances {
 }
 
 /// What a path's end is, in the order in which the classes are asked.
-///
-/// A singular endpoint of which it is not decided whether it lies on a
-/// positive-dimensional set stands in `Singular`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Verdict {
     /// Not tracked to the end.
@@ -90,10 +95,22 @@ pub enum Verdict {
     Excess,
     /// Finite, on a curve, surface, ... of solutions.
     PositiveDimensional,
-    /// Finite, with a singular Jacobian.
+    /// Finite, with a singular Jacobian; isolated or not is not known.
+    Undecided,
+    /// Finite and isolated or at infinity, at a regular or a multiple point, depending on digits of the
+    /// coefficients that were not given.
+    WithinDataAccuracy,
+    /// Finite and isolated, with a singular Jacobian.
     Singular,
     /// Finite, nonsingular and so isolated.
     Finite,
+}
+
+impl Verdict {
+    /// True for a finite endpoint with a singular Jacobian that may be an isolated solution.
+    pub fn may_be_multiple(self) -> bool {
+        matches!(self, Self::Undecided | Self::Singular)
+    }
 }
 
 /// A verdict and how it was reached.
@@ -159,9 +176,12 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     let verdict = match singular {
         _ if at_infinity => Verdict::AtInfinity,
         _ if !solves_what_is_asked(result, tolerances) => Verdict::Excess,
+        // A polynomial in one unknown, unless it is 0, has finitely many roots.
+        true if one_unknown(shape) => Verdict::Singular,
         true => match isolation(result, tolerances) {
             Isolation::PositiveDimensional => Verdict::PositiveDimensional,
-            Isolation::Isolated { .. } | Isolation::Undecided => Verdict::Singular,
+            Isolation::Isolated { .. } => Verdict::Singular,
+            Isolation::Undecided => Verdict::Undecided,
         },
         false => Verdict::Finite,
     };
@@ -171,44 +191,64 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     }
 }
 
-/// What the dual spaces at a singular endpoint say.
+/// Slices farther away than this, relative to the endpoint's size, need not meet a set through it.
+const FAR_SLICE: f64 = 0.05;
+/// Slices nearer than this do not tell a set from a point of multiplicity 7 and more.
+const NEAR_SLICE: f64 = 0.01;
+
+/// Whether the points are those of one affine or projective line.
+fn one_unknown(shape: &PointShape) -> bool {
+    let mut spans = shape.spans();
+    let first = spans.next().map(|span| span.range.len());
+    first == Some(2) && spans.next().is_none()
+}
+
+/// What dual spaces and moved slices at a singular endpoint say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Isolation {
-    /// It is isolated: they stop growing.
+    /// It is isolated: dual spaces stop growing.
     Isolated {
         /// Its multiplicity as a solution of the system that is asked.
         multiplicity: u32,
     },
-    /// They outgrow what an isolated point could have.
+    /// Solutions were met on slices beside it, at every small distance, and dual spaces do not stop.
     PositiveDimensional,
-    /// They were not asked for, or not clear, or neither happened within reach.
+    /// Nothing was asked, or nothing is clear, or one contradicts the other.
     Undecided,
 }
 
 /// Whether an endpoint is isolated, from its dual spaces.
 pub fn isolation(result: &PathResult, tolerances: &Tolerances) -> Isolation {
-    let Some(LocalDimension {
-        dual_dimensions,
-        bound,
-        margin,
-    }) = &result.local_dimension
-    else {
+    let Some(found) = &result.local_dimension else {
         return Isolation::Undecided;
     };
-    let [.., before, last] = dual_dimensions.as_slice() else {
-        return Isolation::Undecided;
-    };
-    if margin.is_nan() || *margin < tolerances.rank_margin {
-        Isolation::Undecided
-    } else if last <= before {
-        Isolation::Isolated {
-            multiplicity: *last,
-        }
-    } else if u64::from(*last) > *bound {
-        Isolation::PositiveDimensional
-    } else {
-        Isolation::Undecided
+    match (multiplicity(found, tolerances), is_met(found, tolerances)) {
+        (Some(multiplicity), false) => Isolation::Isolated { multiplicity },
+        (None, true) => Isolation::PositiveDimensional,
+        // No evidence, or two kinds that contradict each other.
+        (None, false) | (Some(_), true) => Isolation::Undecided,
     }
+}
+
+/// The dimension at which the dual space clearly stops growing.
+fn multiplicity(found: &LocalDimension, tolerances: &Tolerances) -> Option<u32> {
+    let [.., before, last] = found.dual_dimensions.as_slice() else {
+        return None;
+    };
+    (found.margin >= tolerances.rank_margin && last <= before).then_some(*last)
+}
+
+/// Whether solutions were met on all slices that pass the endpoint at small distances.
+fn is_met(found: &LocalDimension, tolerances: &Tolerances) -> bool {
+    let met = |slice: &MovedSlice| slice.residual <= tolerances.slice_residual;
+    let slices = &found.moved_slices;
+    let (far, near): (Vec<_>, Vec<_>) = slices.iter().partition(|s| s.distance > FAR_SLICE);
+    // Far away Newton's method may find nothing; but a residual that is small there and falls with
+    // the distance is that of a point of high multiplicity.
+    let clear = |slice: &MovedSlice| met(slice) || slice.residual > tolerances.slice_missed;
+    near.iter().all(met)
+        && near.iter().any(|slice| slice.distance > NEAR_SLICE)
+        && far.iter().all(clear)
 }
 
 /// Whether the endpoint solves the system as well as its estimated error says.
@@ -276,6 +316,16 @@ mod tests {
     }
 
     #[test]
+    fn a_root_of_a_polynomial_in_one_unknown_is_isolated() {
+        let double = [(1.0, 0.0), (0.5, 0.0)];
+        let expected = (Verdict::Singular, false);
+        assert_eq!(verdict(&singular(0, &double, 2, &[0])), expected);
+        let elsewhere = [(1.0, 0.0), (0.5, 0.0), (0.5, 0.0)];
+        let expected = (Verdict::Undecided, false);
+        assert_eq!(verdict(&singular(0, &elsewhere, 2, &[0])), expected);
+    }
+
+    #[test]
     fn size_alone_is_not_infinity() {
         for norm in [1.0, 1e4, 1e6, 1e8, 1e11] {
             let result = regular(0, &[(1.0 / norm, 0.0), (1.0, 0.0), (0.3, -0.2)]);
@@ -303,14 +353,14 @@ mod tests {
 
     #[test]
     fn singular_endpoints_need_both_indications() {
-        let point = |x0: f64| [(x0, 0.0), (1.0, 0.0)];
+        let point = |x0: f64| [(x0, 0.0), (1.0, 0.0), (0.0, 0.0)];
         assert_eq!(
             verdict(&singular(0, &point(1e-11), 2, &[1])),
             (Verdict::AtInfinity, true)
         );
         assert_eq!(
             verdict(&singular(0, &point(1e-11), 2, &[0])),
-            (Verdict::Singular, true)
+            (Verdict::Undecided, true)
         );
         assert_eq!(
             verdict(&singular(0, &point(1e-16), 3, &[0])),
@@ -318,20 +368,20 @@ mod tests {
         );
         assert_eq!(
             verdict(&singular(0, &point(1e-3), 2, &[1])),
-            (Verdict::Singular, true)
+            (Verdict::Undecided, true)
         );
         assert_eq!(
             verdict(&singular(0, &point(0.5), 2, &[0])),
-            (Verdict::Singular, false)
+            (Verdict::Undecided, false)
         );
     }
 
     #[test]
     fn an_endpoint_that_solves_nothing_fails() {
-        let point = [(1.0, 0.0), (0.5, 0.0)];
+        let point = [(1.0, 0.0), (0.5, 0.0), (0.0, 0.0)];
         let claimed = singular(0, &point, 1, &[0]);
         for (residual, expected) in [
-            (1e-12, Verdict::Singular),
+            (1e-12, Verdict::Undecided),
             (1e-6, Verdict::Failed),
             (f64::NAN, Verdict::Failed),
         ] {
@@ -352,7 +402,7 @@ mod tests {
             }),
             ..base
         };
-        let point = [(1.0, 0.0), (0.5, 0.0)];
+        let point = [(1.0, 0.0), (0.5, 0.0), (0.0, 0.0)];
         let expect = |result: PathResult, expected| assert_eq!(verdict(&result).0, expected);
         expect(with(regular(0, &point), 1e-16, 1e-15), Verdict::Finite);
         expect(with(regular(0, &point), 0.3, 0.2), Verdict::Excess);
@@ -363,7 +413,7 @@ mod tests {
         );
         expect(
             with(singular(0, &point, 2, &[0]), 1e-9, 0.1),
-            Verdict::Singular,
+            Verdict::Undecided,
         );
         expect(
             with(singular(0, &point, 2, &[0]), 1e-3, 0.1),
@@ -374,15 +424,21 @@ mod tests {
     }
 
     #[test]
-    fn dual_spaces_say_whether_a_singular_endpoint_is_isolated() {
-        let with = |dimensions: &[u32], bound, margin| {
+    fn dual_spaces_and_moved_slices_say_whether_a_singular_endpoint_is_isolated() {
+        let with = |dimensions: &[u32], residuals: &[f64], margin| {
+            let slice = |(k, &residual): (usize, &f64)| MovedSlice {
+                distance: 0.1 * 0.125f64.powi(k as i32),
+                residual,
+                reached: 0.1,
+            };
             let result = PathResult {
                 local_dimension: Some(LocalDimension {
                     dual_dimensions: dimensions.to_vec(),
-                    bound,
+                    bound: 1,
                     margin,
+                    moved_slices: residuals.iter().enumerate().map(slice).collect(),
                 }),
-                ..singular(0, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0])
+                ..singular(0, &[(1.0, 0.0), (0.5, 0.0), (0.0, 0.0)], 1, &[0])
             };
             (
                 isolation(&result, &Tolerances::default()),
@@ -390,16 +446,34 @@ mod tests {
             )
         };
         let isolated = |multiplicity| (Isolation::Isolated { multiplicity }, Verdict::Singular);
-        let undecided = (Isolation::Undecided, Verdict::Singular);
+        let undecided = (Isolation::Undecided, Verdict::Undecided);
         let on_a_set = (Isolation::PositiveDimensional, Verdict::PositiveDimensional);
-        assert_eq!(with(&[1, 2, 3, 3], 3, 1e5), isolated(3));
-        assert_eq!(with(&[1, 1], 1, 1e5), isolated(1));
-        assert_eq!(with(&[1, 3, 5], 1, 1e5), on_a_set);
-        assert_eq!(with(&[1, 3, 5], 1, 1.5), undecided, "not clear");
-        assert_eq!(with(&[1, 3, 5], 5, 1e5), undecided, "not far enough");
-        assert_eq!(with(&[1, 3, 5], u64::MAX, 1e5), undecided, "no bound");
-        assert_eq!(with(&[1], 1, 1e5), undecided);
-        assert_eq!(with(&[1, 2, 2], 1, f64::NAN), undecided);
+        let (met, missed) = ([1e-3, 1e-30, 1e-29], [1e-3, 1e-6, 1e-9]);
+        assert_eq!(with(&[1, 2, 3, 3], &missed, 1e5), isolated(3));
+        assert_eq!(with(&[1, 1], &[], 1e5), isolated(1));
+        assert_eq!(with(&[1, 3, 5], &met, 1e5), on_a_set);
+        assert_eq!(
+            with(&[1, 3, 5], &met, 1.5),
+            on_a_set,
+            "ranks are not needed"
+        );
+        assert_eq!(
+            with(&[1, 3, 5], &missed, 1e5),
+            undecided,
+            "more than paths end there"
+        );
+        assert_eq!(with(&[1, 3, 5], &[], 1e5), undecided);
+        assert_eq!(with(&[1, 3, 5], &[1e-30], 1e5), undecided, "one slice only");
+        assert_eq!(
+            with(&[1, 3, 5], &[1e-9, 1e-12, 1e-30], 1e5),
+            undecided,
+            "the nearest only"
+        );
+        assert_eq!(with(&[1, 3, 3], &met, 1e5), undecided, "a contradiction");
+        let high = [1e-12, 1e-23, 1e-30];
+        assert_eq!(with(&[1, 2, 3], &high, 1e5), undecided, "the twelfth power");
+        assert_eq!(with(&[1], &missed, 1.0), undecided);
+        assert_eq!(with(&[1, 2, 2], &missed, f64::NAN), undecided);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::point_shape::{PointShape, largest};
 use cognate_continuation::path_result::PathResult;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::{Function, Node, NodeId};
+use cognate_systems::scaling::{Scaling, times_power_of_two};
 use cognate_systems::system::{DegenerateSet, System, VariableGroup};
 use num_complex::Complex64;
 use rug::Complex;
@@ -42,10 +43,11 @@ impl Bounded {
         Complex::with_val(self.0.0, (z.re, z.im))
     }
 
-    /// Each may be off as far as its group's largest.
+    /// Each may be off as far as its group's largest, in the units of the unknowns that are tracked.
     fn variables(
         &self,
         groups: &[VariableGroup],
+        scaling: &Scaling,
         values: &[Complex64],
         accuracy: f64,
         tolerances: &Tolerances,
@@ -58,11 +60,13 @@ impl Bounded {
         let known = values.iter().map(|&z| Self::known(self.double(z)));
         let mut variables: Vec<Value> = known.collect();
         for group in groups {
-            let members: Vec<Complex64> = group.variables.iter().map(|&v| values[v]).collect();
+            let members = group.variables.iter();
+            let members: Vec<Complex64> =
+                members.map(|&v| scaling.to_unknown(v, values[v])).collect();
             // The homogenising coordinate of an affine group is 1 here.
             let scale = largest(&members).max(if group.homogeneous { 0.0 } else { 1.0 });
             for &v in &group.variables {
-                variables[v].1 = error * scale;
+                variables[v].1 = times_power_of_two(error * scale, scaling.exponent(v));
             }
         }
         variables
@@ -116,7 +120,8 @@ pub fn lies_in(
         DegenerateSet::Equations(nodes) => nodes,
     };
     let field = Bounded(ManyBits(128));
-    let variables = field.variables(&system.groups, values, accuracy, tolerances);
+    let groups = &system.groups;
+    let variables = field.variables(groups, &system.scaling, values, accuracy, tolerances);
     let parameters = field.parameters(parameters);
     let found = evaluate(&field, &system.expressions, roots, &variables, &parameters);
     found.is_some_and(|values| values.iter().all(vanishes))
@@ -131,6 +136,7 @@ pub struct DeclaredSets {
     /// Names, and what vanishes.
     sets: Vec<(String, Vec<NodeId>)>,
     groups: Vec<VariableGroup>,
+    scaling: Scaling,
 }
 
 /// So many endpoints of each declared set are asked whether they are isolated: what they are, the
@@ -153,6 +159,7 @@ impl DeclaredSets {
             nodes,
             sets,
             groups: system.groups.clone(),
+            scaling: system.scaling.clone(),
         }
     }
 
@@ -170,7 +177,7 @@ impl DeclaredSets {
         tolerances: &Tolerances,
     ) -> Vec<bool> {
         let field = Bounded(ManyBits(128));
-        let variables = field.variables(&self.groups, values, accuracy, tolerances);
+        let variables = field.variables(&self.groups, &self.scaling, values, accuracy, tolerances);
         let parameters = field.parameters(parameters);
         let mut found: Vec<Option<Value>> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
@@ -199,7 +206,7 @@ impl DeclaredSets {
         for (place, (result, decision)) in results.iter().zip(decisions).enumerate() {
             if !matches!(
                 decision.verdict,
-                Verdict::Singular | Verdict::PositiveDimensional
+                Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional
             ) {
                 continue;
             }

@@ -3,7 +3,7 @@
 //! In reading order: [`point_shape`] says which coordinate is whose;
 //! [`classification`] gives each path a verdict by rules on its own facts;
 //! [`unique_points`] finds the endpoints that are one point; [`path_crossing`]
-//! names the paths that must be tracked again; [`real`] decides whether a
+//! names the paths that must be tracked again; [`completeness`] says whether there are no more; [`real`] decides whether a
 //! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
 //! that add up; [`plain`] does the same without holding every end; [`sharpened`] gives solutions more
 //! digits, [`certificates`] adds what was proved. Nothing here tracks a path: everything can be decided again
@@ -12,6 +12,7 @@
 
 pub mod certificates;
 pub mod classification;
+pub mod completeness;
 pub mod degenerate;
 pub mod field;
 pub mod images;

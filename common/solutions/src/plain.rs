@@ -157,6 +157,7 @@ impl Sieve {
             paths: vec![result.origin.0],
             certificate: None,
             deflations: None,
+            undecided: false,
         };
         (verdict, Some(solution))
     }

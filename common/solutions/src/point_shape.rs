@@ -5,9 +5,11 @@
 
 use cognate_continuation::projection::Projection;
 use cognate_continuation::start_systems::exchange::Exchange;
+use cognate_systems::scaling::Scaling;
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// The groups of a system, as the coordinates of its endpoints are laid out.
@@ -15,6 +17,8 @@ use std::ops::Range;
 pub struct PointShape {
     groups: Vec<VariableGroup>,
     variables: usize,
+    /// The units of the coordinates, which are those of the unknowns that are tracked.
+    scaling: Scaling,
 }
 
 /// The coordinates of one group.
@@ -46,6 +50,7 @@ impl PointShape {
         Self {
             groups: system.groups.clone(),
             variables: system.variables.len(),
+            scaling: system.scaling.clone(),
         }
     }
 
@@ -71,23 +76,37 @@ impl PointShape {
     }
 
     /// The value of each variable: affine groups divided by their homogenising
-    /// coordinate, homogeneous groups scaled so that their largest coordinate is 1.
+    /// coordinate, homogeneous groups scaled so that their largest variable is 1.
     pub fn to_variables(&self, point: &[Complex64]) -> Vec<Complex64> {
         let mut values = vec![Complex64::new(0.0, 0.0); self.variables];
+        let unknowns_are_variables = self.scaling.is_none();
         for span in self.spans() {
             let group = &point[span.range.clone()];
-            let (divisor, rest) = if span.group.homogeneous {
-                (group[largest_index(group)], group)
-            } else {
-                (group[0], &group[1..])
+            let members = &span.group.variables;
+            // Exactly 1, not nearly: z/z rounds.
+            let quotient = |z: Complex64, divisor: Complex64| match z == divisor {
+                true => Complex64::new(1.0, 0.0),
+                false => z / divisor,
             };
-            for (&variable, &z) in span.group.variables.iter().zip(rest) {
-                // Exactly 1, not nearly: z/z rounds.
-                values[variable] = if z == divisor {
-                    Complex64::new(1.0, 0.0)
-                } else {
-                    z / divisor
-                };
+            if !span.group.homogeneous {
+                for (&variable, &z) in members.iter().zip(&group[1..]) {
+                    let unknown = quotient(z, group[0]);
+                    values[variable] = self.scaling.to_variable(variable, unknown);
+                }
+                continue;
+            }
+            let scaled: Cow<'_, [Complex64]> = match unknowns_are_variables {
+                true => Cow::Borrowed(group),
+                false => {
+                    let scaled = members.iter().zip(group);
+                    scaled
+                        .map(|(&v, &z)| self.scaling.to_variable(v, z))
+                        .collect()
+                }
+            };
+            let divisor = scaled[largest_index(&scaled)];
+            for (&variable, &z) in members.iter().zip(&*scaled) {
+                values[variable] = quotient(z, divisor);
             }
         }
         values
@@ -125,7 +144,8 @@ impl PointShape {
             if !span.group.homogeneous {
                 point.push(Complex64::new(1.0, 0.0));
             }
-            point.extend(span.group.variables.iter().map(|&v| values[v]));
+            let members = span.group.variables.iter();
+            point.extend(members.map(|&v| self.scaling.to_unknown(v, values[v])));
             let scale = largest(&point[start..]);
             if scale > 0.0 {
                 for z in &mut point[start..] {
@@ -196,6 +216,7 @@ mod tests {
                 },
             ],
             variables: 4,
+            scaling: Scaling::default(),
         }
     }
 

@@ -90,7 +90,7 @@ mod tests {
     use super::*;
     use crate::classification::Tolerances;
     use crate::solution_set::History;
-    use crate::test_results::{regular, singular};
+    use crate::test_results::{isolated, regular};
     use cognate_numeric::rational::{ComplexRational, Rational};
     use cognate_systems::formats::read;
 
@@ -101,8 +101,8 @@ mod tests {
         let system = read("test", text.as_bytes()).unwrap().system;
         let results = [
             regular(0, &[(1.0, 0.0), (0.25, 0.0)]),
-            singular(1, &[(0.25, 0.0), (0.75, 0.0)], 2, &[0]),
-            singular(2, &[(0.25, 0.0), (0.75, 0.0)], 2, &[0]),
+            isolated(1, &[(0.25, 0.0), (0.75, 0.0)], 2, &[0], 2),
+            isolated(2, &[(0.25, 0.0), (0.75, 0.0)], 2, &[0], 2),
             regular(3, &[(1.0, 0.0), (-0.25, 0.0)]),
             regular(4, &[(0.25, 0.0), (1.0, 0.0)]),
         ];

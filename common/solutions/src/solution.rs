@@ -76,6 +76,9 @@ pub struct Solution {
     /// sharpened.
     #[serde(default)]
     pub deflations: Option<u32>,
+    /// True for a point of which it is not known whether it is isolated: it is in no count of solutions.
+    #[serde(default)]
+    pub undecided: bool,
 }
 
 // As JSON an object, in which a number with more digits than a double is a string.
@@ -191,6 +194,7 @@ mod tests {
             paths: vec![3, 17],
             certificate: None,
             deflations: Some(1),
+            undecided: false,
         };
         let line = serde_json::to_string(&solution).unwrap();
         assert_eq!(
@@ -198,7 +202,7 @@ mod tests {
             "{\"variables\":{\"y\":[1.0,-0.5],\"a\":[\"0.25000000000000000000\",\"1e-30\"]},\"multiplicity\":2,\
              \"cycles\":[2],\"real\":null,\"singular\":true,\"residual\":1e-16,\
              \"condition\":null,\"accuracy\":1e-9,\"precision_bits\":53,\"class\":null,\
-             \"paths\":[3,17],\"certificate\":null,\"deflations\":1}"
+             \"paths\":[3,17],\"certificate\":null,\"deflations\":1,\"undecided\":false}"
         );
         let back: Solution = serde_json::from_str(&line).unwrap();
         assert_eq!(back, solution);

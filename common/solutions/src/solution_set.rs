@@ -7,6 +7,7 @@ use crate::certificates::CertifiedSystem;
 use crate::classification::{
     Decision, Isolation, Tolerances, Verdict, classify, isolation, solves,
 };
+use crate::completeness::Completeness;
 use crate::degenerate::{self, DeclaredSets};
 use crate::involution::Involution;
 use crate::path_crossing::{broken_cycles, coincidences, crossings, radius};
@@ -33,6 +34,9 @@ pub struct History {
     /// True when the start system bounds the solutions, so that every isolated
     /// solution and every positive-dimensional set has a path that ends on it.
     pub complete_start: bool,
+    /// Why solutions may be missing though every path is accounted for: what the start or the method
+    /// does not promise. Without a reason a complete start is one whose answer is complete.
+    pub may_miss: Option<String>,
     /// How many of the results are images of others (see `images`).
     pub images: u64,
 }
@@ -84,6 +88,9 @@ pub struct SolutionSet {
     pub classes: ClassCounts,
     /// The solutions, by their first paths.
     pub solutions: Vec<Solution>,
+    /// Finite singular points of which it is not known whether they are isolated, by their first
+    /// paths: in no count of solutions.
+    pub undecided: Vec<Solution>,
     /// The paths that failed, ascending.
     pub failed: Vec<FailedPath>,
     /// The paths that end on positive-dimensional solution sets, ascending.
@@ -95,9 +102,20 @@ pub struct SolutionSet {
 }
 
 impl SolutionSet {
-    /// True when no path failed and every crossing came apart.
+    /// True when no path failed, every crossing came apart, of every endpoint it is known whether
+    /// it is isolated, none is finite or at infinity only by the limit of the precision, and
+    /// multiplicities are what the numbers of paths say.
     pub fn settled(&self) -> bool {
-        self.paths.failed == 0 && self.paths.crossings_found == self.paths.crossings_resolved
+        self.paths.failed == 0
+            && self.paths.undecided == 0
+            && self.paths.decided_by_precision_limit == 0
+            && self.counts.doubtful_multiplicity == 0
+            && self.paths.crossings_found == self.paths.crossings_resolved
+    }
+
+    /// The solutions, and after them the points of which it is not known whether they are isolated.
+    pub fn points(&self) -> impl Iterator<Item = &Solution> {
+        self.solutions.iter().chain(&self.undecided)
     }
 
     /// From the last result of every path of one target, ascending by path.
@@ -155,12 +173,14 @@ impl<'a> Draft<'a> {
     fn finish(mut self, history: &History) -> SolutionSet {
         self.fail_what_still_crosses();
         self.settle_declared_sets();
+        self.absorb_regular_ends();
         self.list_failures();
         self.count_paths(history);
         let representatives = self.merge(history);
         self.decide_reality(&representatives);
         self.count_solutions(history, &representatives);
-        self.find_classes(&representatives);
+        self.find_classes();
+        self.judge_completeness(history);
         self.warn();
         self.set
     }
@@ -211,6 +231,39 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// One point is not both regular and singular: an endpoint that was taken for regular and coincides
+    /// with singular ones is one of theirs; with one on a set of solutions it is not decided.
+    fn absorb_regular_ends(&mut self) {
+        let finite = |verdict: Verdict| verdict == Verdict::Finite;
+        let singular =
+            |verdict: Verdict| verdict.may_be_multiple() || verdict == Verdict::PositiveDimensional;
+        if !self.decisions.iter().any(|d| singular(d.verdict)) {
+            return;
+        }
+        let points = coincidences(
+            self.results,
+            &self.shape,
+            self.tolerances,
+            self.seed,
+            |place| {
+                finite(self.decisions[place].verdict) || singular(self.decisions[place].verdict)
+            },
+        );
+        for members in points {
+            let others = members.iter().map(|&m| self.decisions[m].verdict);
+            let verdict = match others.filter(|&v| !finite(v)).min() {
+                None => continue,
+                Some(Verdict::Singular) => Verdict::Singular,
+                Some(_) => Verdict::Undecided,
+            };
+            for member in members {
+                if finite(self.decisions[member].verdict) {
+                    self.decisions[member].verdict = verdict;
+                }
+            }
+        }
+    }
+
     fn list_failures(&mut self) {
         for (result, decision) in self.results.iter().zip(&self.decisions) {
             if decision.verdict != Verdict::Failed {
@@ -237,13 +290,13 @@ impl<'a> Draft<'a> {
         };
         let singular = count(Verdict::Singular);
         let on_sets = count(Verdict::PositiveDimensional);
-        let undecided = self.undecided();
         let mut paths = PathCounts {
             total: self.results.len() as u64,
             finite: count(Verdict::Finite),
             singular,
-            // Null only where nothing is known; else the warning says how many are open.
-            positive_dimensional: (undecided == 0 || on_sets > 0).then_some(on_sets),
+            positive_dimensional: Some(on_sets),
+            undecided: count(Verdict::Undecided),
+            within_data_accuracy: count(Verdict::WithinDataAccuracy),
             excess: Some(count(Verdict::Excess)),
             at_infinity: count(Verdict::AtInfinity),
             failed: count(Verdict::Failed),
@@ -272,22 +325,12 @@ impl<'a> Draft<'a> {
             .collect();
     }
 
-    /// Singular endpoints of which it is not decided whether they are isolated.
-    fn undecided(&self) -> u64 {
-        let singular = self.results.iter().zip(&self.decisions);
-        singular
-            .filter(|(result, decision)| {
-                decision.verdict == Verdict::Singular
-                    && isolation(result, self.tolerances) == Isolation::Undecided
-            })
-            .count() as u64
-    }
-
     /// Solutions from finite endpoints; returns the place of the result that stands for each.
     fn merge(&mut self, history: &History) -> Vec<usize> {
         let mut found: Vec<(usize, Solution)> = Vec::new();
+        let mut undecided: Vec<Solution> = Vec::new();
         let mut broken = Vec::new();
-        for verdict in [Verdict::Finite, Verdict::Singular] {
+        for verdict in [Verdict::Finite, Verdict::Singular, Verdict::Undecided] {
             let groups = coincidences(
                 self.results,
                 &self.shape,
@@ -296,11 +339,14 @@ impl<'a> Draft<'a> {
                 |place| self.decisions[place].verdict == verdict,
             );
             for members in groups {
-                let solution = self.solution(&members, verdict == Verdict::Singular);
+                let solution = self.solution(&members, verdict);
                 if !broken_cycles(self.results, &members).is_empty() {
                     broken.push(members[0]);
                 }
-                found.push(solution);
+                match verdict {
+                    Verdict::Undecided => undecided.push(solution.1),
+                    _ => found.push(solution),
+                }
             }
         }
         self.compare_multiplicities(history, &found);
@@ -314,13 +360,16 @@ impl<'a> Draft<'a> {
             ));
         }
         found.sort_by_key(|(_, solution)| solution.paths[0]);
+        undecided.sort_by_key(|point| point.paths[0]);
+        self.set.undecided = undecided;
         let (representatives, solutions) = found.into_iter().unzip();
         self.set.solutions = solutions;
         representatives
     }
 
     /// As many paths end at an isolated point as its dual space has dimensions, where all paths of
-    /// a complete start are known and the equations were tracked as they are.
+    /// a complete start are known and the equations were tracked as they are. Where that is not so, points were
+    /// taken for one, or one for several.
     fn compare_multiplicities(&mut self, history: &History, found: &[(usize, Solution)]) {
         let square = self.system.equation_count() == self.system.dimension();
         if !history.complete_start || !square || !self.set.failed.is_empty() {
@@ -328,20 +377,22 @@ impl<'a> Draft<'a> {
         }
         let differing: Vec<u64> = found
             .iter()
+            .filter(|(_, solution)| solution.singular)
             .filter(
                 |(place, solution)| match isolation(&self.results[*place], self.tolerances) {
                     Isolation::Isolated { multiplicity } => {
                         u64::from(multiplicity) != solution.multiplicity
                     }
-                    _ => false,
+                    Isolation::PositiveDimensional | Isolation::Undecided => true,
                 },
             )
             .map(|(_, solution)| solution.paths[0])
             .collect();
+        self.set.counts.doubtful_multiplicity = differing.len() as u64;
         if !differing.is_empty() {
             self.set.warnings.push(format!(
-                "at {} isolated singular point{} another number of paths ends than the \
-                 multiplicity by the dual space (first paths: {})",
+                "at {} isolated singular point{} the number of paths is not confirmed by the \
+                 multiplicity of the dual space (first paths: {}): solutions may have been taken for one",
                 differing.len(),
                 plural(differing.len()),
                 some_of(&differing),
@@ -350,13 +401,14 @@ impl<'a> Draft<'a> {
     }
 
     /// The solution of some coinciding endpoints, and whose point it is: the most accurate.
-    fn solution(&self, members: &[usize], singular: bool) -> (usize, Solution) {
+    fn solution(&self, members: &[usize], verdict: Verdict) -> (usize, Solution) {
         let best = *members
             .iter()
             .min_by(|&&a, &&b| {
-                self.results[a]
-                    .accuracy
-                    .total_cmp(&self.results[b].accuracy)
+                let unasked = |m: usize| self.results[m].local_dimension.is_none();
+                let accuracy = |m: usize| self.results[m].accuracy;
+                let first = unasked(a).cmp(&unasked(b));
+                first.then(accuracy(a).total_cmp(&accuracy(b)))
             })
             .expect("a cluster has a member");
         let result = &self.results[best];
@@ -370,7 +422,7 @@ impl<'a> Draft<'a> {
                     .map(|&m| self.results[m].winding_number.unwrap_or(1)),
             ),
             real: None,
-            singular,
+            singular: verdict != Verdict::Finite,
             residual: result.residual,
             condition: result.condition,
             accuracy: result.accuracy,
@@ -383,6 +435,7 @@ impl<'a> Draft<'a> {
             paths: members.iter().map(|&m| self.results[m].origin.0).collect(),
             certificate: None,
             deflations: None,
+            undecided: verdict == Verdict::Undecided,
         };
         (best, solution)
     }
@@ -421,15 +474,13 @@ impl<'a> Draft<'a> {
         counts.distinct = set.solutions.len() as u64;
         counts.singular = set.solutions.iter().filter(|s| s.singular).count() as u64;
         counts.nonsingular = counts.distinct - counts.singular;
+        counts.undecided = set.undecided.len() as u64;
         counts.with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
         // Every positive-dimensional set has an end of a complete start system's
         // paths on it, where the Jacobian is singular, if only at infinity.
-        let all_isolated = self.results.iter().all(|result| {
-            result.outcome == PathOutcome::Regular
-                || matches!(
-                    isolation(result, self.tolerances),
-                    Isolation::Isolated { .. }
-                )
+        let ends = self.results.iter().zip(&self.decisions);
+        let all_isolated = ends.into_iter().all(|(result, decision)| {
+            result.outcome == PathOutcome::Regular || decision.verdict == Verdict::Singular
         });
         counts.positive_dimensional = if set.on_positive_dimensional_sets.is_empty() {
             (history.complete_start && all_isolated && set.failed.is_empty()).then_some(false)
@@ -454,18 +505,50 @@ impl<'a> Draft<'a> {
         );
     }
 
-    /// Classes are of solutions: not of singular endpoints that may lie on a set of them.
-    fn find_classes(&mut self, representatives: &[usize]) {
-        let set = &mut self.set;
-        let isolated = |place: &usize| {
-            let found = isolation(&self.results[*place], self.tolerances);
-            matches!(found, Isolation::Isolated { .. })
+    /// All solutions are known where the start bounds them and every path is accounted for.
+    fn judge_completeness(&mut self, history: &History) {
+        let paths = &self.set.paths;
+        let mut open = Vec::new();
+        let mut say = |count: u64, noun: &str, rest: &str| {
+            if count > 0 {
+                let s = plural(count as usize);
+                open.push(format!("{count} {noun}{s} {rest}"));
+            }
         };
-        let both = set.solutions.iter_mut().zip(representatives);
-        let mut known: Vec<&mut Solution> = both
-            .filter(|(solution, place)| !solution.singular || isolated(place))
-            .map(|(solution, _)| solution)
-            .collect();
+        say(paths.failed, "path", "failed");
+        let crossings = paths.crossings_found - paths.crossings_resolved;
+        say(crossings, "path crossing", "not resolved");
+        let limit = paths.decided_by_precision_limit;
+        say(
+            limit,
+            "path",
+            "finite or at infinity only by the limit of the precision",
+        );
+        let points = self.set.counts.undecided;
+        say(
+            points,
+            "singular point",
+            "of which it is not known whether isolated",
+        );
+        let multiplicities = self.set.counts.doubtful_multiplicity;
+        say(multiplicities, "singular point", "of doubtful multiplicity");
+        open.extend(history.may_miss.clone());
+        let counts = &mut self.set.counts;
+        (counts.complete, counts.complete_reason) = if !open.is_empty() {
+            (Completeness::NotKnown, Some(open.join("; ")))
+        } else if history.complete_start {
+            let why = "no more isolated solutions than paths, and every path is accounted for";
+            (Completeness::Yes, Some(why.to_string()))
+        } else {
+            let why = "as many as the start points lead to; others are not looked for";
+            (Completeness::NotKnown, Some(why.to_string()))
+        };
+    }
+
+    /// Classes are of solutions: not of singular endpoints that may lie on a set of them.
+    fn find_classes(&mut self) {
+        let set = &mut self.set;
+        let mut known: Vec<&mut Solution> = set.solutions.iter_mut().collect();
         match classes::assign(&mut known, self.system, self.tolerances, self.seed) {
             Ok(counts) => set.classes = counts,
             Err(reason) => set.warnings.push(reason),
@@ -473,16 +556,18 @@ impl<'a> Draft<'a> {
     }
 
     fn warn(&mut self) {
-        let undecided = self.undecided();
         let set = &mut self.set;
         let paths = &set.paths;
-        if undecided > 0 {
+        if paths.undecided > 0 {
             set.warnings.push(format!(
-                "whether {undecided} of the {} path{} to singular endpoints end{} at an isolated \
-                 point is not decided: if not, no solution but a positive-dimensional set is there",
-                paths.singular,
-                plural(paths.singular as usize),
-                if undecided == 1 { "s" } else { "" },
+                "whether {} singular point{}, at which {} path{} end{}, {} isolated is not decided: \
+                 if not, no solution but a positive-dimensional set is there",
+                set.counts.undecided,
+                plural(set.counts.undecided as usize),
+                paths.undecided,
+                plural(paths.undecided as usize),
+                if paths.undecided == 1 { "s" } else { "" },
+                if set.counts.undecided == 1 { "is" } else { "are" },
             ));
         }
         if paths.crossings_found > paths.crossings_resolved {
@@ -551,7 +636,7 @@ fn some_of(paths: &[u64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_results::{failed, regular, singular};
+    use crate::test_results::{failed, isolated, regular, singular};
     use cognate_systems::system::{DegenerateSet, VariableGroup};
 
     /// x^5 = x, say: a real equation in one variable; x must not vanish.
@@ -600,6 +685,17 @@ mod tests {
         assert_eq!(set.paths.positive_dimensional, Some(0));
         assert_eq!(set.counts.real, Some(3));
         assert_eq!(set.counts.positive_dimensional, Some(false));
+        assert_eq!(set.counts.complete, Completeness::Yes);
+        let may_miss = History {
+            may_miss: Some("a level was left out".into()),
+            ..complete()
+        };
+        let counts = set_of(&results, &may_miss).counts;
+        assert_eq!(counts.complete, Completeness::NotKnown);
+        assert_eq!(
+            counts.complete_reason.as_deref(),
+            Some("a level was left out")
+        );
         assert_eq!(set.counts.degenerate["zero"], 1);
         assert!(
             set.settled() && set.warnings.is_empty(),
@@ -619,27 +715,80 @@ mod tests {
         let double = [(1.0, 0.0), (0.5, 0.0)];
         let near = [(1.0, 0.0), (0.5, 3e-10)];
         let results = [
-            singular(0, &double, 2, &[0]),
-            singular(1, &[(1.0, 0.0), (-0.5, 0.0)], 1, &[0]),
-            singular(2, &near, 2, &[0]),
-            singular(3, &near, 1, &[0]),
+            isolated(0, &double, 2, &[0], 3),
+            isolated(1, &[(1.0, 0.0), (-0.5, 0.0)], 1, &[0], 1),
+            isolated(2, &near, 2, &[0], 3),
+            isolated(3, &near, 1, &[0], 3),
             singular(4, &[(1e-14, 0.0), (1.0, 0.0)], 1, &[1]),
         ];
         let set = set_of(&results, &complete());
         assert_eq!((set.paths.singular, set.paths.at_infinity), (4, 1));
-        assert_eq!(set.paths.positive_dimensional, None);
+        assert_eq!(set.paths.positive_dimensional, Some(0));
         assert_eq!(set.counts.positive_dimensional, None);
         assert_eq!((set.counts.distinct, set.counts.with_multiplicity), (2, 4));
         assert_eq!(set.solutions[0].paths, [0, 2, 3]);
         assert_eq!(set.solutions[0].cycles, [1, 2]);
         assert_eq!(set.solutions[0].real, Some(true));
-        assert_eq!(set.warnings.len(), 1, "{:?}", set.warnings);
-        assert!(set.settled());
+        assert!(set.settled() && set.warnings.is_empty());
         let set = set_of(&results[..2], &complete());
-        assert!(
-            set.warnings[0].contains("winding numbers"),
-            "half a cycle is missing"
+        let half = |warning: &String| warning.contains("winding numbers");
+        assert!(set.warnings.iter().any(half), "half a cycle is missing");
+    }
+
+    /// A singular point that may lie on a curve is in no count of solutions, and keeps the answer open.
+    #[test]
+    fn a_point_that_may_not_be_isolated_is_no_solution() {
+        let mut plane = system();
+        plane.variables.push("y".into());
+        plane.groups[0].variables.push(1);
+        let (zero, tolerances) = ((0.0, 0.0), Tolerances::default());
+        let results = [
+            regular(0, &[(0.5, 0.0), (0.5, 0.0), zero]),
+            singular(1, &[(1.0, 0.0), (0.5, 0.0), zero], 2, &[0]),
+            singular(2, &[(1.0, 0.0), (0.5, 3e-10), zero], 2, &[0]),
+        ];
+        let set = SolutionSet::new(&plane, &[], &results, &complete(), &tolerances, 42);
+        let counts = &set.counts;
+        assert_eq!(
+            (set.paths.finite, set.paths.undecided, set.paths.singular),
+            (1, 2, 0)
         );
+        assert_eq!(
+            (counts.distinct, counts.singular, counts.undecided),
+            (1, 0, 1)
+        );
+        assert_eq!((counts.with_multiplicity, counts.real), (1, Some(1)));
+        assert!(!set.settled());
+        assert!(
+            set.warnings[0].contains("not decided"),
+            "{:?}",
+            set.warnings
+        );
+        assert_eq!(set.undecided[0].paths, [1, 2]);
+        assert!(set.undecided[0].undecided && set.points().count() == 2);
+        assert_eq!(counts.complete, Completeness::NotKnown);
+        let reason = counts.complete_reason.as_deref();
+        assert!(
+            reason.is_some_and(|why| why.contains("isolated")),
+            "{reason:?}"
+        );
+    }
+
+    /// (x - 1)^3 from the roots of unity: one path does not move, and its end looks regular.
+    #[test]
+    fn a_regular_end_at_a_singular_point_is_one_of_its_paths() {
+        let results = [
+            regular(0, &[(0.5, 0.0), (0.5, 0.0)]),
+            isolated(1, &[(0.5, 0.0), (0.5, 1e-12)], 2, &[0], 3),
+            isolated(2, &[(0.5, 0.0), (0.5, 1e-12)], 2, &[0], 3),
+        ];
+        let set = set_of(&results, &complete());
+        assert_eq!((set.paths.finite, set.paths.singular), (0, 3));
+        assert_eq!((set.counts.distinct, set.counts.with_multiplicity), (1, 3));
+        assert_eq!(set.counts.doubtful_multiplicity, 0);
+        let set = set_of(&results[1..], &complete());
+        assert_eq!(set.counts.doubtful_multiplicity, 1);
+        assert!(!set.settled(), "two paths at a triple point");
     }
 
     #[test]
@@ -651,6 +800,7 @@ mod tests {
             crossings_found: 2,
             crossings_resolved: 1,
             complete_start: true,
+            may_miss: None,
             images: 0,
         };
         let set = set_of(&results, &history);

@@ -3,6 +3,7 @@
 //! Field by field as the contract has them; null stands for what this version
 //! does not decide.
 
+use crate::completeness::Completeness;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -13,9 +14,9 @@ pub struct PathCounts {
     pub total: u64,
     /// Nonsingular and isolated.
     pub finite: u64,
-    /// Singular.
+    /// Singular and isolated.
     pub singular: u64,
-    /// On a positive-dimensional set; null until that can be decided.
+    /// On a positive-dimensional set.
     pub positive_dimensional: Option<u64>,
     /// Solutions only of the combinations of equations that were tracked; 0 where nothing is
     /// randomised.
@@ -42,6 +43,12 @@ pub struct PathCounts {
     /// How many of all were not followed: they are images, by a symmetry, of others that were.
     #[serde(default)]
     pub images: u64,
+    /// At a finite singular point of which it is not known whether it is isolated.
+    #[serde(default)]
+    pub undecided: u64,
+    /// Ends whose class would change within the accuracy of the decimals that were given.
+    #[serde(default)]
+    pub within_data_accuracy: u64,
 }
 
 impl PathCounts {
@@ -50,6 +57,8 @@ impl PathCounts {
         self.finite
             + self.singular
             + self.positive_dimensional.unwrap_or(0)
+            + self.undecided
+            + self.within_data_accuracy
             + self.excess.unwrap_or(0)
             + self.at_infinity
             + self.failed
@@ -82,6 +91,18 @@ pub struct SolutionCounts {
     /// Those that were brought to more digits; null where that was not asked for.
     #[serde(default)]
     pub sharpened: Option<SharpenedCounts>,
+    /// Finite singular points of which it is not known whether they are isolated; in no other count.
+    #[serde(default)]
+    pub undecided: u64,
+    /// Singular solutions of which the number of paths is not confirmed by the multiplicity.
+    #[serde(default)]
+    pub doubtful_multiplicity: u64,
+    /// Whether these are all isolated solutions.
+    #[serde(default)]
+    pub complete: Completeness,
+    /// Why that is known, or not.
+    #[serde(default)]
+    pub complete_reason: Option<String>,
 }
 
 /// Solutions with more digits than paths give.
@@ -124,7 +145,7 @@ mod tests {
              \"excess\":0,\"at_infinity\":0,\"failed\":0,\"retracked\":0,\"crossings_found\":0,\
              \"crossings_resolved\":0,\"decided_by_precision_limit\":0,\
              \"by_precision\":{\"53\":126,\"106\":2},\"highest_precision_bits\":0,\
-             \"degenerate\":{},\"images\":0}"
+             \"degenerate\":{},\"images\":0,\"undecided\":0,\"within_data_accuracy\":0}"
         );
         let back: PathCounts =
             serde_json::from_str(&serde_json::to_string(&paths).unwrap()).unwrap();
@@ -133,7 +154,8 @@ mod tests {
             serde_json::to_string(&SolutionCounts::default()).unwrap(),
             "{\"distinct\":0,\"nonsingular\":0,\"singular\":0,\"real\":null,\"real_reason\":null,\
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
-             \"degenerate\":{},\"sharpened\":null}"
+             \"degenerate\":{},\"sharpened\":null,\"undecided\":0,\
+             \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),

@@ -1,7 +1,7 @@
 //! Synthetic results for this crate's tests.
 
 use crate::point_shape::PointShape;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::path_result::{LocalDimension, PathResult};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
@@ -38,6 +38,25 @@ pub fn singular(path: u64, point: &[(f64, f64)], winding: u32, turns: &[i32]) ->
         winding_number: Some(winding),
         infinity_turns: turns.to_vec(),
         ..regular(path, point)
+    }
+}
+
+/// A singular endpoint whose dual space stops growing at this multiplicity.
+pub fn isolated(
+    path: u64,
+    point: &[(f64, f64)],
+    winding: u32,
+    turns: &[i32],
+    multiplicity: u32,
+) -> PathResult {
+    PathResult {
+        local_dimension: Some(LocalDimension {
+            dual_dimensions: vec![1, multiplicity, multiplicity],
+            bound: u64::MAX,
+            margin: 1e5,
+            moved_slices: Vec::new(),
+        }),
+        ..singular(path, point, winding, turns)
     }
 }
 

@@ -6,6 +6,8 @@ pub mod expression;
 pub mod formats;
 pub mod named;
 pub mod polynomial;
+pub mod scaling;
 pub mod straight_line_program;
 pub mod system;
 pub mod transform;
+pub mod units;

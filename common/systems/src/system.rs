@@ -5,6 +5,7 @@
 //! the house works on this.
 
 use crate::expression::{Dependence, Expressions, Node, NodeId};
+use crate::scaling::{MOST_EXPONENT, Scaling};
 use std::collections::{BTreeMap, HashSet};
 
 /// Variables that are homogenised, or are homogeneous, together.
@@ -58,6 +59,8 @@ pub struct System {
     pub degenerate: BTreeMap<String, DegenerateSet>,
     /// Generators of a symmetry group of the solutions.
     pub symmetry: Vec<SymmetryGenerator>,
+    /// The units in which it is tracked; everything else about a system is in its own.
+    pub scaling: Scaling,
 }
 
 /// Why a system is none.
@@ -189,6 +192,11 @@ impl System {
             return Err(missing("the path variable"));
         }
         let count = self.variables.len();
+        let exponents = &self.scaling.exponents;
+        let too_large = |e: &i32| e.unsigned_abs() > MOST_EXPONENT.unsigned_abs();
+        if !(exponents.is_empty() || exponents.len() == count) || exponents.iter().any(too_large) {
+            return Err(SystemError::Misfit("the scaling".into()));
+        }
         let mut paired = vec![false; count];
         for &(a, b) in &self.conjugates {
             for v in [a, b] {

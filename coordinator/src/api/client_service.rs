@@ -262,11 +262,12 @@ impl ClientApi for ClientService {
         let sets = sets.map_err(ApiError::from)?;
         // One at a time: a message takes more memory than what it is made of.
         let solutions = stream::unfold((sets, 0, 0), |(sets, mut target, mut index)| async move {
-            while index >= sets.get(target)?.solutions.len() {
+            while index >= sets.get(target)?.points().count() {
                 (target, index) = (target + 1, 0);
             }
             let number = u32::try_from(target).unwrap_or(u32::MAX);
-            let message = to_proto::solution::solution(&sets[target].solutions[index], number);
+            let point = sets[target].points().nth(index)?;
+            let message = to_proto::solution::solution(point, number);
             Some((Ok(message), (sets, target, index + 1)))
         });
         Ok(Response::new(Box::pin(solutions)))

@@ -20,8 +20,6 @@ pub struct Prepared {
     pub submission: Submission,
     /// What is solved, in a word: the file's name.
     pub name: String,
-    /// What in the files is not followed.
-    pub warnings: Vec<String>,
 }
 
 /// Reads a file, or standard input for `-`; gives a name for messages with it.
@@ -161,6 +159,14 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         PresetName::Fast => Preset::Fast,
         PresetName::Reckless => Preset::Reckless,
     };
+    let mut target_parameters = parameters(a.target_parameters.as_deref(), &system)?;
+    if start_parameters.is_empty()
+        && target_parameters.is_empty()
+        && let Some((values, warning)) = file.random_parameters(&system, a.seed)
+    {
+        target_parameters.push(values);
+        warnings.push(warning);
+    }
     let options = Options {
         start,
         // The groups are in the system already.
@@ -173,7 +179,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         },
         precision: a.precision,
         start_parameters: start_parameters.pop().unwrap_or_default(),
-        target_parameters: parameters(a.target_parameters.as_deref(), &system)?,
+        target_parameters,
         start_solutions,
         name: short_name(&a.file).chars().take(60).collect(),
         idle_loops: a.idle_loops,
@@ -183,6 +189,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         confidence: a.confidence,
         digits: a.digits.or(file.digits),
         deflate: a.deflate,
+        warnings,
         sets,
     };
     Ok(Prepared {
@@ -191,7 +198,6 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             options,
         },
         name: short_name(&a.file),
-        warnings,
     })
 }
 

@@ -336,13 +336,15 @@ impl Coordinator {
         if let Some(summary) = &summary {
             let paths = &summary.paths;
             lines.push(format!(
-                "paths: {} finite, {} singular, {} on positive-dimensional sets, {} excess (no solutions before randomisation), \
-                 {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
+                "paths: {} finite, {} singular, {} on positive-dimensional sets, {} undecided (isolated or not), {} within the \
+                 accuracy of the data, {} excess (no solutions before randomisation), {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
                 paths.finite,
                 paths.singular,
                 paths
                     .positive_dimensional
                     .map_or("an unknown number".to_owned(), |n| n.to_string()),
+                paths.undecided,
+                paths.within_data_accuracy,
                 paths.excess.unwrap_or(0),
                 paths.at_infinity,
                 paths.failed,
@@ -365,7 +367,21 @@ impl Coordinator {
                     loops.crossings_found,
                     loops.crossings_resolved
                 ));
-                if let Some(estimate) = &loops.estimate {
+                let shown = loops.mixing.is_shown(loops.classes);
+                if let Some(estimate) = loops.estimate.as_ref().filter(|_| !shown) {
+                    lines.push(format!(
+                        "estimate: {} classes by capture and recapture; no probability is claimed, \
+                         since loops are not seen to permute the known classes at random ({} of {} \
+                         move some; {:.1} stay on average)",
+                        estimate
+                            .likeliest
+                            .map_or("an unknown number of".to_owned(), |n| n.to_string()),
+                        loops.mixing.moving,
+                        loops.mixing.loops,
+                        loops.mixing.fixed.unwrap_or(0.0)
+                    ));
+                }
+                if let Some(estimate) = loops.estimate.as_ref().filter(|_| shown) {
                     lines.push(format!(
                         "estimate: {} classes, all known with probability {}, by capture and \
                          recapture: N of them are likely as the product of (N)_r over places with r \
@@ -449,7 +465,7 @@ fn classified(
     let (mut failed, mut on_sets) = (HashSet::new(), HashSet::new());
     let mut number = 0;
     for set in sets {
-        for solution in &set.solutions {
+        for solution in set.points() {
             solution_of.extend(solution.paths.iter().map(|&path| (path, number)));
             number += 1;
         }

@@ -164,8 +164,11 @@ impl Coordinator {
             return Ok(None);
         };
         let answers = self.all_answers(job).await?.unwrap_or_default();
+        let points = answers.into_iter().filter_map(|(_, s)| s);
+        let (undecided, solutions) = points.partition(|point| point.undecided);
         Ok(Some(SolutionSet {
-            solutions: answers.into_iter().filter_map(|(_, s)| s).collect(),
+            solutions,
+            undecided,
             ..answer.set
         }))
     }
@@ -174,6 +177,7 @@ impl Coordinator {
 /// What is known of the paths that are held.
 struct Held {
     paths: Vec<u64>,
+    /// The solutions, and the points of which it is not known whether they are isolated.
     solutions: Vec<Solution>,
     /// Of each solution the number among all.
     numbers: Vec<Option<u64>>,
@@ -191,11 +195,11 @@ impl Held {
         };
         Self {
             paths: answer.held,
-            solution_of: set.solutions.iter().enumerate().flat_map(ends).collect(),
-            numbers: vec![None; set.solutions.len()],
+            solution_of: set.points().enumerate().flat_map(ends).collect(),
+            numbers: vec![None; set.points().count()],
             failed: set.failed.iter().map(|f| f.path).collect(),
             on_sets: set.on_positive_dimensional_sets.iter().copied().collect(),
-            solutions: set.solutions,
+            solutions: set.solutions.into_iter().chain(set.undecided).collect(),
         }
     }
 }

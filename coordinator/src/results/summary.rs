@@ -8,6 +8,7 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{Contribution, JobRow, StageRow};
 use cognate_algorithms::monodromy::counts::LoopCounts;
 use cognate_solutions::certificates::CertifiedSystem;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::{ClassCounts, PathCounts, SolutionCounts};
 use num_complex::Complex64;
@@ -15,10 +16,10 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Solution sets as objects.
-pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL03");
+pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL04");
 
 /// Answers of large jobs as objects.
-pub const LARGE: RecordKind = RecordKind(b"CGNLRG01");
+pub const LARGE: RecordKind = RecordKind(b"CGNLRG02");
 
 /// The answer of a job of which not all paths are held (see `solutions::plain`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -230,6 +231,10 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         certified: Some(0),
         certified_real: Some(0),
         positive_dimensional: Some(false),
+        complete: Completeness::Yes,
+        complete_reason: sets
+            .first()
+            .and_then(|set| set.counts.complete_reason.clone()),
         ..SolutionCounts::default()
     };
     for set in sets {
@@ -249,6 +254,8 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             highest_precision_bits,
             degenerate,
             images,
+            undecided,
+            within_data_accuracy,
         } = &set.paths;
         paths.total += total;
         paths.finite += finite;
@@ -269,6 +276,8 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             *paths.degenerate.entry(name.clone()).or_default() += number;
         }
         paths.images += images;
+        paths.undecided += undecided;
+        paths.within_data_accuracy += within_data_accuracy;
         let SolutionCounts {
             distinct,
             nonsingular,
@@ -281,10 +290,20 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             positive_dimensional,
             degenerate,
             sharpened,
+            undecided,
+            doubtful_multiplicity,
+            complete,
+            complete_reason,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;
         counts.singular += singular;
+        counts.undecided += undecided;
+        counts.doubtful_multiplicity += doubtful_multiplicity;
+        if counts.complete == Completeness::Yes && *complete != Completeness::Yes {
+            counts.complete_reason.clone_from(complete_reason);
+        }
+        counts.complete = counts.complete.and(*complete);
         add(&mut counts.real, *real);
         counts.real_reason = counts.real_reason.or_else(|| real_reason.clone());
         counts.with_multiplicity += with_multiplicity;

@@ -1,9 +1,12 @@
 //! How a trace test ends loops: what it needs is tracked beside them, or by a solve of its own.
 
 use super::counts::{Stop, TraceCounts, TraceForm};
+use super::estimate;
 use super::graph::Known;
 use super::trace::{Curve, MOST_DEVIATION, Pencil, Test, deviation};
 use super::{BASE, LoopStart, MonodromySolve, Phase, edge_seed};
+use crate::Completeness;
+use crate::plan::MAX_PATHS;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::symmetry::SymmetryGroup;
 use num_complex::Complex64;
@@ -220,5 +223,122 @@ impl MonodromySolve {
             radius: point.radius,
         });
         without.collect()
+    }
+
+    /// Warns of what the end of the loops leaves open.
+    pub(super) fn warn_of_the_end(&mut self) {
+        let counts = &self.counts;
+        let known = self.graph.vertices[BASE].points.len();
+        let mut warnings = Vec::new();
+        let bent = counts.trace_test.as_ref().filter(|test| {
+            let off = test.deviation;
+            off.is_some_and(|off| off > MOST_DEVIATION)
+        });
+        match counts.stop {
+            Some(Stop::Confidence) => warnings.push(format!(
+                "monodromy found {} solutions at generic parameters; if loops permute all solutions \
+                 at random, as they permute the known ones, that is all with a probability of {}: \
+                 evidence, but no proof",
+                counts.solutions,
+                estimate::percent(counts.estimate.as_ref().map_or(0.0, |e| e.confidence)),
+            )),
+            Some(Stop::IdleLoops) => warnings.push(match (self.limits.count, bent) {
+                (Some(wanted), _) => format!(
+                    "{wanted} solutions were asked for; monodromy found {}, and {} loops more \
+                     brought nothing new",
+                    counts.solutions, counts.idle_loops
+                ),
+                (None, Some(_)) => format!(
+                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
+                     nothing new",
+                    counts.solutions, counts.idle_loops
+                ),
+                (None, None) => format!(
+                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
+                     nothing new{}",
+                    counts.solutions,
+                    counts.idle_loops,
+                    self.evidence()
+                ),
+            }),
+            Some(Stop::PathLimit) => warnings.push(format!(
+                "loops ended at the limit of {MAX_PATHS} paths: solutions may be missing"
+            )),
+            _ => {}
+        }
+        let ended = matches!(
+            counts.stop,
+            Some(Stop::IdleLoops | Stop::Confidence | Stop::PathLimit)
+        );
+        if let Some(test) = bent {
+            warnings.push(format!(
+                "the trace test failed: the sum of {} points is off a line by {:.0e} of their size, \
+                 so that solutions are missing",
+                test.points,
+                test.deviation.unwrap_or_default()
+            ));
+        } else if ended && self.test.is_some() {
+            warnings.push(
+                "the trace test did not come to an end: a path of it was lost, or loops do not \
+                 reach a solution that it found"
+                    .to_string(),
+            );
+        }
+        let more = self.graph.vertices[BASE + 1..].iter();
+        let most = more.map(|vertex| vertex.points.len()).max().unwrap_or(0);
+        if most > known && counts.stop != Some(Stop::Count) {
+            warnings.push(format!(
+                "at other generic parameters {most} classes of solutions were counted, at the base \
+                 {known}: some are missing, or one was counted twice where a map of the symmetry \
+                 is badly conditioned"
+            ));
+        }
+        self.warnings.extend(warnings);
+    }
+
+    /// What idle loops say about completeness, as the end of a sentence.
+    fn evidence(&self) -> String {
+        let counts = &self.counts;
+        let known = self.graph.vertices[BASE].points.len();
+        if known == 1 {
+            return ": loops cannot move a single solution, so that they say nothing about others"
+                .into();
+        }
+        match self.is_mixing() {
+            true => format!(
+                "; {} of them moved known solutions. If loops permute all solutions at random, as \
+                 they permute the known ones, one is missing with a probability of {:.0e} at most: \
+                 evidence, but no proof",
+                counts.idle_moving,
+                probability_of_hiding(known, counts.idle_moving)
+            ),
+            false => format!(
+                "; {} of them moved known solutions, and loops do not permute these as random ones \
+                 do (they leave {:.1} in place on average): that is no evidence that none is missing",
+                counts.idle_moving,
+                counts.mixing.fixed.unwrap_or(0.0)
+            ),
+        }
+    }
+
+    /// Whether all solutions that loops can connect are known: `None` while loops are made.
+    pub fn completeness(&self) -> Option<Completeness> {
+        let found = self.counts.solutions;
+        Some(match self.counts.stop? {
+            Stop::Count => Completeness::yes(format!("{found} solutions were asked for")),
+            Stop::TraceTest => Completeness::yes(format!(
+                "the trace test says that loops connect no others with these {found}"
+            )),
+            Stop::IdleLoops | Stop::Confidence => Completeness::not_known(format!(
+                "loops found {found} solutions at generic parameters, and nothing proves that they \
+                 reach all; --trace-test asks, --expect says how many there are"
+            )),
+            Stop::PathLimit => {
+                Completeness::not_known(format!("loops ended at the limit of {MAX_PATHS} paths"))
+            }
+            Stop::NoStart => {
+                Completeness::not_known("no start solution could be followed".to_string())
+            }
+        })
     }
 }

@@ -45,6 +45,75 @@ pub struct TraceCounts {
     pub complete: bool,
 }
 
+/// What the loops do with the known solutions.
+///
+/// The elements of a transitive group fix one point on average (Burnside's lemma). Loops that fix more
+/// are not spread over the group that they generate, and say little about what they have not reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mixing {
+    /// Loops along which every known solution was followed.
+    pub loops: u64,
+    /// ... of which move one at least.
+    pub moving: u64,
+    /// Known solutions that such a loop leaves where they are, on average; `None` without loops.
+    pub fixed: Option<f64>,
+}
+
+/// Fewest loops that show how loops permute.
+const LEAST_LOOPS: u64 = 4;
+
+/// What part of the points other than one loops may fix on average beyond random ones. Of two general
+/// cubics (9 solutions) 1030 loops fixed 1.94, a part of 0.12; those of a determinant that missed one of 7
+/// fixed 2.1 of 6, a part of 0.22.
+const MORE_FIXED: f64 = 1.0 / 6.0;
+
+impl Mixing {
+    /// From where each loop takes each of the known points.
+    pub(crate) fn of(loops: &[(usize, Vec<Option<u32>>)]) -> Self {
+        let mut mixing = Self::default();
+        let mut sum = 0u64;
+        for (_, images) in loops {
+            if images.iter().any(Option::is_none) {
+                continue;
+            }
+            let fixed = fixed(images);
+            sum += fixed;
+            mixing.loops += 1;
+            mixing.moving += u64::from(fixed < images.len() as u64);
+        }
+        mixing.fixed = (mixing.loops > 0).then(|| sum as f64 / mixing.loops as f64);
+        mixing
+    }
+
+    /// Whether the loops permute the known solutions nearly as random ones do: these fix one on
+    /// average; more pass up to [`MORE_FIXED`], or up to three standard deviations (1 for one loop, whatever doubly
+    /// transitive group it is drawn from). Of one solution nothing can be said.
+    pub fn is_shown(&self, known: u64) -> bool {
+        let few = self.fixed.is_some_and(|fixed| {
+            let more = fixed - 1.0;
+            more <= MORE_FIXED * (known.max(1) - 1) as f64 || more * more * self.loops as f64 <= 9.0
+        });
+        known > 1 && self.loops >= LEAST_LOOPS && 2 * self.moving >= self.loops.min(16) && few
+    }
+}
+
+/// How many points stay where they are.
+fn fixed(images: &[Option<u32>]) -> u64 {
+    let stays = images.iter().enumerate();
+    let stays = stays.filter(|(point, image)| **image == Some(*point as u32));
+    stays.count() as u64
+}
+
+/// How many of these loops move a point that they are known to take somewhere.
+pub(crate) fn moving(loops: &[(usize, Vec<Option<u32>>)], from_edge: usize) -> u64 {
+    let late = loops.iter().filter(|(edge, _)| *edge >= from_edge);
+    let moves = late.filter(|(_, images)| {
+        let mut images = images.iter().enumerate();
+        images.any(|(point, image)| image.is_some_and(|image| image != point as u32))
+    });
+    moves.count() as u64
+}
+
 /// How far loops have come.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoopCounts {
@@ -52,6 +121,13 @@ pub struct LoopCounts {
     pub loops: u64,
     /// Loops since the last that brought something new.
     pub idle_loops: u64,
+    /// ... of which took a known solution to another: only these say that a missing one would have
+    /// been found.
+    #[serde(default)]
+    pub idle_moving: u64,
+    /// What loops do with the known solutions.
+    #[serde(default)]
+    pub mixing: Mixing,
     /// Paths tracked along legs of loops; repetitions counted.
     pub tracked: u64,
     /// Paths that reached no regular solution, however tightly they were tracked.

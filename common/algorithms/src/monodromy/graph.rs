@@ -345,6 +345,45 @@ impl Graph {
         reached.collect()
     }
 
+    /// What the independent loops through these vertices do with the points of the first of them, on
+    /// which they begin: for each edge that closes one, its number and where it takes each point, as far
+    /// as that is known. The first edge to a vertex is part of a tree and closes none.
+    pub fn permutations(&self, places: &[usize]) -> Vec<(usize, Vec<Option<u32>>)> {
+        let count = |vertex: usize| self.vertices[vertex].points.len();
+        let Some(&base) = places.first() else {
+            return Vec::new();
+        };
+        // From the points of the base to those of each vertex, along the tree.
+        let mut along = BTreeMap::<usize, Vec<Option<u32>>>::new();
+        along.insert(base, (0..count(base) as u32).map(Some).collect());
+        let mut loops = Vec::new();
+        for (number, edge) in self.edges.iter().enumerate() {
+            let [from, to] = edge.ends;
+            let inside = edge.bijective && places.contains(&from) && places.contains(&to);
+            let Some(here) = along.get(&from).filter(|_| inside) else {
+                continue;
+            };
+            let step = |point: u32| match edge.fates[0][point as usize] {
+                Fate::To { point, .. } => Some(point),
+                Fate::Open { .. } | Fate::Lost => None,
+            };
+            let there: Vec<Option<u32>> = here.iter().map(|point| point.and_then(step)).collect();
+            let Some(tree) = along.get(&to) else {
+                along.insert(to, there);
+                continue;
+            };
+            let mut back = vec![None; count(to)];
+            for (point, image) in tree.iter().enumerate() {
+                if let Some(image) = image {
+                    back[*image as usize] = Some(point as u32);
+                }
+            }
+            let around = there.iter().map(|point| back[(*point)? as usize]);
+            loops.push((number, around.collect()));
+        }
+        loops
+    }
+
     /// Takes in what a round of tracking showed. The order of arrivals decides the names of new
     /// points, nothing else. A path is tried again up to `most` times.
     pub fn settle(

@@ -13,6 +13,7 @@ mod completeness;
 pub mod counts;
 pub mod estimate;
 pub(crate) mod graph;
+mod places;
 pub mod trace;
 
 use crate::any_algorithm::AnyAlgorithm;
@@ -21,7 +22,7 @@ use crate::plan::MAX_PATHS;
 use crate::plan_error::PlanError;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::{MAX_RETRIES, can_be_helped};
-use crate::{FiniteEndpoints, Next, Opening, PathAlgorithm};
+use crate::{Completeness, FiniteEndpoints, Next, Opening, PathAlgorithm};
 use cognate_continuation::homotopies::{HomotopyKind, way_back};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
@@ -34,15 +35,16 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
-use completeness::{Tested, probability_of_hiding};
-use counts::{LoopCounts, Stop};
+use completeness::Tested;
+use counts::{LoopCounts, Mixing, Stop, moving};
 use estimate::Estimate;
 use graph::{Arrival, Fate, Graph, Known, Wanted, Way};
 use num_complex::Complex64;
+use places::{Sizes, generic_parameters};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use trace::{Curve, MOST_DEVIATION, Test};
+use trace::{Curve, Test};
 
 /// When loops end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,11 +80,17 @@ impl Default for LoopLimits {
 pub const MOST_IDLE: u64 = 32;
 /// Paths that idle loops may always cost.
 const IDLE_PATHS: u64 = 512;
+/// How many times more idle loops are made where too few of them move a solution, or where they do not
+/// permute as random ones do.
+const IDLE_PATIENCE: u64 = 4;
 /// Idle loops after which the search ends whatever confidence was asked for: paths are lost then.
 const HOPELESS: u64 = 256;
 /// Detours between two places, at most, on either side of the line between them: another on one of
 /// these sides is mostly the same loop again.
 const DETOURS: usize = 2;
+
+/// Edges to a fresh place, at most, where solutions are few.
+const EDGES_OF_FEW: usize = 5;
 
 /// Where the start solutions solve the system; nothing leads back there.
 const START: usize = 0;
@@ -149,6 +157,8 @@ pub struct MonodromySolve {
     counted: (u64, usize),
     /// Points of the base when everything was last exhausted.
     exhausted_at: usize,
+    /// Edges that there were when the base last got a new point: later ones close idle loops.
+    idle_from: usize,
     counts: LoopCounts,
     stages: Vec<StageProgress>,
     /// Last results of the start solutions, for when none of them leads anywhere.
@@ -183,7 +193,7 @@ impl MonodromySolve {
         solve.targets = targets;
         if limits.trace_test {
             let base = &solve.graph.vertices[BASE].parameters;
-            let direction = generic_parameters(base, seed, usize::MAX >> 1);
+            let direction = generic_parameters(base, seed, usize::MAX >> 1, Sizes::Own);
             let test = Test::new(system, base, direction, seed);
             solve.test = Some(test.map_err(PlanError::NoTraceTest)?);
         }
@@ -202,7 +212,7 @@ impl MonodromySolve {
     ) -> Self {
         let mut graph = Graph::default();
         graph.add_vertex(start.parameters.clone());
-        let base = generic_parameters(&start.parameters, seed, BASE);
+        let base = generic_parameters(&start.parameters, seed, BASE, Sizes::Own);
         graph.add_vertex(base);
         graph.add_edge(START, BASE, edge_seed(seed, FIRST), false);
         let count = usize::try_from(start.count).expect("a plan has no more paths than its limit");
@@ -222,6 +232,7 @@ impl MonodromySolve {
             phase: Phase::Loops(Vec::new()),
             counted: (0, 0),
             exhausted_at: 0,
+            idle_from: FIRST + 1,
             counts: LoopCounts {
                 group_order: 1,
                 ..LoopCounts::default()
@@ -386,8 +397,8 @@ impl MonodromySolve {
                 .count
                 .is_some_and(|n| self.counts.solutions >= n);
             let too_many = self.counts.tracked > MAX_PATHS;
-            self.counts.estimate = self.estimate();
             let exhausted = open.is_empty() && self.is_exhausted();
+            self.counts.estimate = self.estimate();
             let stop = if enough {
                 Some(Stop::Count)
             } else if self.is_confident() {
@@ -425,17 +436,32 @@ impl MonodromySolve {
         self.phase = Phase::Loops(batches.collect());
     }
 
-    /// All legs are tracked: counts idle loops; true when they are enough.
+    /// All legs are tracked: counts idle loops; true when they are enough. Loops that leave every known
+    /// solution where it is are no evidence, nor are any before they permute as random ones do; where
+    /// that does not come about, loops end without evidence.
     fn is_exhausted(&mut self) -> bool {
         let known = self.graph.vertices[BASE].points.len();
+        let places: Vec<usize> = self.places().collect();
+        let loops = self.graph.permutations(&places);
         if known > self.exhausted_at {
             self.counts.idle_loops = 0;
+            self.idle_from = self.graph.edges.len();
         } else {
             self.counts.idle_loops += self.counts.loops - self.weighed;
         }
         self.weighed = self.counts.loops;
         self.exhausted_at = known;
-        self.counts.idle_loops >= self.idle_wanted()
+        self.counts.idle_moving = moving(&loops, self.idle_from);
+        self.counts.mixing = Mixing::of(&loops);
+        let wanted = self.idle_wanted();
+        let moved = self.counts.idle_moving >= wanted && self.is_mixing();
+        let patience = if self.limits.confidence.is_some() {
+            1
+        } else {
+            IDLE_PATIENCE
+        };
+        let given_up = self.counts.idle_loops >= wanted.saturating_mul(patience);
+        self.counts.idle_loops >= wanted && (moved || known == 1 || given_up)
     }
 
     /// Vertices that loops lead through, the base among them.
@@ -458,7 +484,13 @@ impl MonodromySolve {
         }
         let pairs: Vec<usize> = pairs.into_values().collect();
         let started = self.graph.targets(FIRST);
-        (self.counts.loops > 0).then(|| Estimate::new(&known.collect::<Vec<_>>(), &pairs, started))
+        (self.counts.loops > 0).then(|| {
+            let estimate = Estimate::new(&known.collect::<Vec<_>>(), &pairs, started);
+            match self.is_mixing() {
+                true => estimate,
+                false => estimate.without_confidence(),
+            }
+        })
     }
 
     /// Whether all that is known anywhere is known at the base, and more is unlikely enough.
@@ -470,7 +502,14 @@ impl MonodromySolve {
         let all = self.places().all(|v| points(v) <= points(BASE));
         let tested = self.test.is_none() || self.tested == Some(points(BASE));
         let idle = self.counts.idle_loops >= self.cheap_loops();
-        all && tested && idle && estimate.confidence >= wanted
+        let mixed = self.is_mixing();
+        all && tested && idle && mixed && estimate.confidence >= wanted
+    }
+
+    /// Whether loops are seen to permute the known solutions as random ones do.
+    fn is_mixing(&self) -> bool {
+        let known = self.graph.vertices[BASE].points.len() as u64;
+        self.counts.mixing.is_shown(known)
     }
 
     /// How many loops more would make the estimate as certain as is wanted, if they bring nothing new:
@@ -529,7 +568,11 @@ impl MonodromySolve {
             (None, Some(_)) => (u64::MAX, before),
             (None, None) => (
                 self.idle_wanted().saturating_sub(self.counts.idle_loops),
-                DETOURS * before,
+                // Where paths cost little, places are many rather than loops through the same ones.
+                match self.cheap_loops() > u64::from(limits.idle_loops) {
+                    true => EDGES_OF_FEW.min(DETOURS * before),
+                    false => DETOURS * before,
+                },
             ),
         };
         let edges = usize::try_from(loops.saturating_add(1)).map_or(most, |n| n.clamp(2, most));
@@ -540,7 +583,10 @@ impl MonodromySolve {
     /// others on the other side.
     fn add_place(&mut self, edges: usize) {
         let number = self.graph.vertices.len();
-        let parameters = generic_parameters(&self.start.parameters, self.seed, number);
+        // Where the number is known, sizes need not vary before loops are idle.
+        let same = if self.limits.count.is_some() { 4 } else { 0 };
+        let sizes = Sizes::of_place((number - BASE).saturating_sub(same));
+        let parameters = generic_parameters(&self.start.parameters, self.seed, number, sizes);
         let before: Vec<usize> = match self.places().collect::<Vec<_>>() {
             // The second place is joined to the base on both sides, to the first on one.
             all if edges == DETOURS + 1 && all.len() == 2 => vec![all[0], all[1], all[0]],
@@ -705,76 +751,6 @@ impl MonodromySolve {
         }
     }
 
-    fn warn_of_the_end(&mut self) {
-        let counts = &self.counts;
-        let known = self.graph.vertices[BASE].points.len();
-        let mut warnings = Vec::new();
-        let bent = counts.trace_test.as_ref().filter(|test| {
-            let off = test.deviation;
-            off.is_some_and(|off| off > MOST_DEVIATION)
-        });
-        match counts.stop {
-            Some(Stop::Confidence) => warnings.push(format!(
-                "monodromy found {} solutions at generic parameters; if loops permute at random, \
-                 that is all with a probability of {}: strong evidence, but no proof",
-                counts.solutions,
-                estimate::percent(counts.estimate.as_ref().map_or(0.0, |e| e.confidence)),
-            )),
-            Some(Stop::IdleLoops) => warnings.push(match (self.limits.count, bent) {
-                (Some(wanted), _) => format!(
-                    "{wanted} solutions were asked for; monodromy found {}, and {} loops more \
-                     brought nothing new",
-                    counts.solutions, counts.idle_loops
-                ),
-                (None, Some(_)) => format!(
-                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
-                     nothing new",
-                    counts.solutions, counts.idle_loops
-                ),
-                (None, None) => format!(
-                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
-                     nothing new: strong evidence that none is missing (loops that permute at \
-                     random would hide one with probability {:.0e}), but no proof",
-                    counts.solutions,
-                    counts.idle_loops,
-                    probability_of_hiding(known, counts.idle_loops)
-                ),
-            }),
-            Some(Stop::PathLimit) => warnings.push(format!(
-                "loops ended at the limit of {MAX_PATHS} paths: solutions may be missing"
-            )),
-            _ => {}
-        }
-        let ended = matches!(
-            counts.stop,
-            Some(Stop::IdleLoops | Stop::Confidence | Stop::PathLimit)
-        );
-        if let Some(test) = bent {
-            warnings.push(format!(
-                "the trace test failed: the sum of {} points is off a line by {:.0e} of their size, \
-                 so that solutions are missing",
-                test.points,
-                test.deviation.unwrap_or_default()
-            ));
-        } else if ended && self.test.is_some() {
-            warnings.push(
-                "the trace test did not come to an end: a path of it was lost, or loops do not \
-                 reach a solution that it found"
-                    .to_string(),
-            );
-        }
-        let more = self.graph.vertices[BASE + 1..].iter();
-        let most = more.map(|vertex| vertex.points.len()).max().unwrap_or(0);
-        if most > known && counts.stop != Some(Stop::Count) {
-            warnings.push(format!(
-                "at other generic parameters {most} classes of solutions were counted, at the base \
-                 {known}: some are missing, or one was counted twice where a map of the symmetry \
-                 is badly conditioned"
-            ));
-        }
-        self.warnings.extend(warnings);
-    }
-
     fn description(&self) -> String {
         let counts = &self.counts;
         let known = if counts.group_order > 1 {
@@ -792,21 +768,6 @@ impl MonodromySolve {
             counts.loops, counts.idle_loops
         )
     }
-}
-
-/// Random parameters of the size of the given ones, for one vertex.
-fn generic_parameters(like: &[Complex64], seed: u64, vertex: usize) -> Vec<Complex64> {
-    let mut random = RandomStream::new(seed, Purpose::Loop, (1 << 32) + vertex as u64);
-    let size = |z: &Complex64| z.norm_sqr().sqrt();
-    let largest = like.iter().map(size).fold(0.0, f64::max);
-    like.iter()
-        .map(|z| {
-            // A parameter that is 0 where it begins is as large as the others.
-            let scale = if size(z) > 0.0 { size(z) } else { largest };
-            let scale = if scale > 0.0 { scale } else { 1.0 };
-            random.disc() * (1.5 * scale)
-        })
-        .collect()
 }
 
 fn edge_seed(seed: u64, edge: usize) -> u64 {
@@ -941,6 +902,10 @@ impl PathAlgorithm for MonodromySolve {
         }
         progress.stages.splice(0..0, self.stages.iter().copied());
         progress
+    }
+
+    fn completeness(&self) -> Option<Completeness> {
+        Self::completeness(self)
     }
 
     fn snapshot(&self) -> Vec<u8> {

@@ -3,6 +3,7 @@
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::directed::Directed;
 use cognate_numeric::scalar::{Complex, Interval, Real};
+use cognate_systems::scaling::{Scaling, exact_times, times_power_of_two};
 use serde::{Deserialize, Serialize};
 
 /// What was proved: in the box of all z with |Re (z_i - c_i)| <= `radius[i]` and
@@ -96,6 +97,35 @@ impl Certificate {
                 .all(|(r, e)| bounded(r, e))
             && self.contraction >= 0.0
             && self.contraction < 1.0
+    }
+
+    /// The certificate of unknowns that are tracked, in the variables; `None` where a double does
+    /// not hold a radius. `homogeneous`: the variables of each homogeneous group.
+    pub fn in_variables(&self, scaling: &Scaling, homogeneous: &[Vec<usize>]) -> Option<Self> {
+        // By how much each variable is larger; the one of a group that is 1 stays 1.
+        let mut exponents: Vec<i32> = (0..self.dimension()).map(|v| scaling.exponent(v)).collect();
+        for group in homogeneous {
+            let fixed = group.iter().find(|&&v| self.radius[v] == 0.0);
+            let of_fixed = fixed.map_or(0, |&v| exponents[v]);
+            group.iter().for_each(|&v| exponents[v] -= of_fixed);
+        }
+        let times = |value: &f64, &exponent: &i32| {
+            let scaled = times_power_of_two(*value, exponent);
+            (times_power_of_two(scaled, -exponent) == *value).then_some(scaled)
+        };
+        let all = |values: &[f64]| -> Option<Vec<f64>> {
+            let pairs = values.iter().zip(&exponents);
+            pairs
+                .map(|(value, exponent)| times(value, exponent))
+                .collect()
+        };
+        let centre = self.centre.iter().zip(&exponents);
+        Some(Self {
+            centre: centre.map(|(c, &e)| exact_times(c, i64::from(e))).collect(),
+            radius: all(&self.radius)?,
+            error: all(&self.error)?,
+            ..*self
+        })
     }
 
     /// The box in which the solution is the only one, enclosed.

@@ -1,6 +1,6 @@
 //! CertificationStage: the points of a stage, each with the attempt to certify it.
 
-use super::Krawczyk;
+use super::{Certification, Krawczyk, Uncertified};
 use crate::path_result::PathResult;
 use crate::points_at_targets::{Item, PointsAtTargets};
 use crate::stage::PrepareError;
@@ -25,8 +25,17 @@ pub struct CertificationStage {
 }
 
 /// The square system whose solutions are certified: the system itself, or the same combinations
-/// of its equations that a stage with this seed tracks.
+/// of its equations that a stage with this seed tracks; up to a factor of each equation.
 pub fn certified_system(system: &System, seed: u64) -> Result<System, PrepareError> {
+    if system.equation_count() == system.dimension() {
+        return Ok(system.clone());
+    }
+    let combined = combined(&system.in_unknowns(), seed)?;
+    Ok(combined.in_variables(&system.scaling))
+}
+
+/// The system, or combinations of its equations.
+fn combined(system: &System, seed: u64) -> Result<System, PrepareError> {
     if system.equation_count() == system.dimension() {
         return Ok(system.clone());
     }
@@ -42,7 +51,7 @@ impl CertificationStage {
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
         let points = PointsAtTargets::new(system, stage, objects)?;
-        let square = certified_system(system, stage.seed)?;
+        let square = combined(&system.in_unknowns(), stage.seed)?;
         Ok(Self {
             program: Krawczyk::program(&square),
             homogeneous: Krawczyk::homogeneous(&square),
@@ -55,7 +64,7 @@ impl CertificationStage {
         self.points.items()
     }
 
-    /// Tries to certify these items; results in item order. Pure, as tracking is.
+    /// Tries to certify these items, in the unknowns that are tracked; results in item order. Pure, as tracking is.
     ///
     /// # Panics
     /// When `items` reaches beyond the stage.
@@ -74,7 +83,16 @@ impl CertificationStage {
                     );
                     (target, krawczyk)
                 }));
-                let certification = krawczyk.certify(point);
+                let scaling = self.points.scaling();
+                let certification = match krawczyk.certify(&scaling.to_unknowns(point)) {
+                    Certification::Certified(found) => {
+                        match found.in_variables(scaling, &self.homogeneous) {
+                            Some(found) => Certification::Certified(Box::new(found)),
+                            None => Certification::Uncertified(Uncertified::NoEnclosure),
+                        }
+                    }
+                    refused => refused,
+                };
                 let bits = certification
                     .certificate()
                     .map(|found| found.precision_bits);

@@ -7,7 +7,9 @@
 //! they are the solutions at p, and the points with a.x = 0.
 
 use crate::chart::exact;
+use cognate_numeric::rational::ComplexRational;
 use cognate_systems::expression::{Expressions, Node, NodeId};
+use cognate_systems::scaling::exact_times;
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
 use std::collections::HashMap;
@@ -65,7 +67,19 @@ pub fn sections(
         };
         equations.push(out.import(&system.expressions, equation, &mut memory, leaf));
     }
-    let mut places: Vec<NodeId> = members.iter().map(|&v| out.variable(v as u32)).collect();
+    // The forms are in the unknowns that are tracked.
+    let unknown = |&v: &usize| {
+        let variable = out.variable(v as u32);
+        match system.scaling.exponent(v) {
+            0 => variable,
+            exponent => {
+                let factor = exact_times(&ComplexRational::real(1), -i64::from(exponent));
+                let factor = out.constant(factor);
+                out.multiply(factor, variable)
+            }
+        }
+    };
+    let mut places: Vec<NodeId> = members.iter().map(unknown).collect();
     if constant {
         places.push(out.integer(1));
     }
@@ -105,6 +119,7 @@ pub fn sections(
             .cloned()
             .chain(["section".to_string()])
             .collect(),
+        scaling: system.scaling.with_one_more(n),
         ..System::default()
     })
 }

@@ -61,10 +61,16 @@ impl PreparedLocalDimension {
                 });
             }
         }
+        let in_unknowns = |candidate: Candidate| Candidate {
+            values: system.scaling.to_unknowns(&candidate.values),
+            ..candidate
+        };
         let candidates: Vec<Candidate> = (0..stored.len())
             .map(|index| from_stored(&stored, index).filter(|c| c.target < targets))
+            .map(|candidate| candidate.map(in_unknowns))
             .collect::<Option<_>>()
             .ok_or_else(|| misfit("an endpoint's accuracy, bound or target is none"))?;
+        let system = &*system.in_unknowns();
         let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
         let found = degrees(system).map_err(wrong)?;
         check_homogeneous(system, &found).map_err(wrong)?;

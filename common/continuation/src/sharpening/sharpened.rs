@@ -1,6 +1,8 @@
 //! Sharpened: a point with many digits, or why there is none.
 
 use cognate_numeric::rational::ComplexRational;
+use cognate_systems::scaling::{Scaling, exact_times};
+use cognate_systems::system::VariableGroup;
 use serde::{Deserialize, Serialize};
 
 /// More decimal digits than these are not asked for.
@@ -53,6 +55,24 @@ pub enum Sharpening {
 }
 
 impl Sharpened {
+    /// The point in the variables, from the unknowns that are tracked. In a homogeneous group what
+    /// is 1 stays 1: all values stay dyadic.
+    pub(super) fn in_variables(mut self, scaling: &Scaling, groups: &[VariableGroup]) -> Self {
+        if scaling.is_none() {
+            return self;
+        }
+        for group in groups {
+            let ones = group.variables.iter().filter(|_| group.homogeneous);
+            let fixed = ones.copied().find(|&v| self.values[v].is_one());
+            let of_fixed = fixed.map_or(0, |v| scaling.exponent(v));
+            for &v in &group.variables {
+                let exponent = i64::from(scaling.exponent(v) - of_fixed);
+                self.values[v] = exact_times(&self.values[v], exponent);
+            }
+        }
+        self
+    }
+
     /// True when its parts belong together: read from outside, it may be anything.
     pub fn is_sound(&self) -> bool {
         self.accuracy >= 0.0 && self.accuracy < 1.0

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// A stage of `Work::Sharpen`, ready for any of its items in any order.
 #[derive(Debug)]
 pub struct SharpeningStage {
-    /// All equations, also where combinations of them were tracked.
+    /// All equations, also where combinations of them were tracked, in the unknowns.
     system: System,
     points: PointsAtTargets,
     digits: u32,
@@ -36,7 +36,7 @@ impl SharpeningStage {
         }
         Ok(Self {
             points: PointsAtTargets::new(system, stage, objects)?,
-            system: system.clone(),
+            system: system.in_unknowns().into_owned(),
             digits,
             seed: stage.seed,
         })
@@ -57,9 +57,11 @@ impl SharpeningStage {
             .map(|item| {
                 let Item { target, point, .. } = self.points.item(item);
                 let parameters = self.points.parameters(target);
-                let found = sharpen(&self.system, parameters, point, self.digits, self.seed);
+                let scaling = self.points.scaling();
+                let unknowns = scaling.to_unknowns(point);
+                let found = sharpen(&self.system, parameters, &unknowns, self.digits, self.seed);
                 let before = self.points.result(item);
-                match found {
+                match found.map(|found| found.in_variables(scaling, &self.system.groups)) {
                     Ok(found) => PathResult {
                         precision_bits: found.precision_bits,
                         accuracy: found.accuracy,

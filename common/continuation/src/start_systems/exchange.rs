@@ -96,6 +96,7 @@ fn equations(system: &System, variables: &[usize]) -> Option<Vec<usize>> {
         return None;
     }
     const POINTS: u64 = 2;
+    let system = &*system.in_unknowns();
     let mut there = vec![Vec::new(); system.equation_count()];
     let mut here = there.clone();
     for k in 0..POINTS {

@@ -8,7 +8,8 @@ use crate::v1;
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{
-    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, NUMBERS, PathIndex, PathResult,
+    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, NUMBERS, PathIndex,
+    PathResult,
 };
 use cognate_continuation::sharpening::{MOST_DIGITS, Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
@@ -544,10 +545,27 @@ fn dual_space(m: &v1::LocalDimension) -> Result<LocalDimension, ProtocolError> {
         let field = "local_dimension.margin";
         return Err(ProtocolError::invalid(field, m.margin, "at least 0"));
     }
+    within_limit(
+        "local_dimension.moved_slices",
+        m.moved_slices.len(),
+        limits::MOVED_SLICES,
+    )?;
+    let slice = |m: &v1::MovedSlice| {
+        let slice = MovedSlice {
+            distance: m.distance,
+            residual: m.residual,
+            reached: m.reached,
+        };
+        let field = "local_dimension.moved_slices";
+        let sound = slice.is_sound().then_some(slice);
+        sound
+            .ok_or_else(|| ProtocolError::invalid(field, m.residual, "numbers that are at least 0"))
+    };
     Ok(LocalDimension {
         dual_dimensions: m.dual_dimensions.clone(),
         bound: m.bound,
         margin: m.margin,
+        moved_slices: m.moved_slices.iter().map(slice).collect::<Result<_, _>>()?,
     })
 }
 

@@ -13,6 +13,7 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::formats::limits as sizes;
+use cognate_systems::scaling::Scaling;
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -43,6 +44,10 @@ pub fn submission(message: v1::Problem) -> Result<Submission, ProtocolError> {
 /// How a problem is to be solved.
 pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
     within_limit("name", m.name.len(), limits::NAME_BYTES)?;
+    within_limit("warnings", m.warnings.len(), limits::WARNINGS)?;
+    for (i, warning) in m.warnings.iter().enumerate() {
+        within_limit(at("warnings", i), warning.len(), limits::WARNING_BYTES)?;
+    }
     within_limit("groups", m.groups.len(), sizes::VARIABLES)?;
     within_limit("conjugates", m.conjugates.len(), sizes::VARIABLES)?;
     within_limit(
@@ -149,6 +154,7 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             digits => digits,
         },
         deflate: m.deflate,
+        warnings: m.warnings,
         sets: match m.sets.is_empty() {
             true => None,
             false => Some(equation_sets("sets", &m.sets)?),
@@ -234,6 +240,7 @@ pub fn system(m: &v1::System) -> Result<System, ProtocolError> {
     within_limit("nodes", m.nodes.len(), sizes::NODES)?;
     within_limit("conjugates", m.conjugates.len(), sizes::VARIABLES)?;
     within_limit("degenerate", m.degenerate.len(), limits::DEGENERATE_SETS)?;
+    within_limit("unit_exponents", m.unit_exponents.len(), sizes::VARIABLES)?;
     within_limit("symmetry", m.symmetry.len(), limits::SYMMETRY_GENERATORS)?;
     for (field, names) in [("variables", &m.variables), ("parameters", &m.parameters)] {
         for (i, name) in names.iter().enumerate() {
@@ -355,6 +362,9 @@ pub fn system(m: &v1::System) -> Result<System, ProtocolError> {
         conjugates,
         degenerate,
         symmetry,
+        scaling: Scaling {
+            exponents: m.unit_exponents.clone(),
+        },
     };
     system.check().map_err(|source| ProtocolError::System {
         field: String::new(),

@@ -52,5 +52,6 @@ pub fn solution(m: &v1::Solution) -> Result<Solution, ProtocolError> {
             .transpose()
             .map_err(|e| ProtocolError::invalid("certificate", e, "a certificate as JSON"))?,
         deflations: m.deflations,
+        undecided: m.undecided,
     })
 }

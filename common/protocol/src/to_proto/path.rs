@@ -6,7 +6,7 @@ use crate::submission::SettingsChoice;
 use crate::v1;
 use cognate_continuation::certification::{Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::path_result::{MovedSlice, PathResult};
 use cognate_continuation::sharpening::{Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
@@ -183,6 +183,7 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             dual_dimensions: found.dual_dimensions.clone(),
             bound: found.bound,
             margin: found.margin,
+            moved_slices: found.moved_slices.iter().map(moved_slice).collect(),
         }),
         sharpening: r.sharpening.as_ref().map(sharpening),
         boundary: r.boundary.as_ref().map(|key| v1::BoundaryKey {
@@ -236,6 +237,14 @@ fn sharpening(of: &Sharpening) -> v1::Sharpening {
     };
     v1::Sharpening {
         outcome: Some(outcome),
+    }
+}
+
+fn moved_slice(slice: &MovedSlice) -> v1::MovedSlice {
+    v1::MovedSlice {
+        distance: slice.distance,
+        residual: slice.residual,
+        reached: slice.reached,
     }
 }
 

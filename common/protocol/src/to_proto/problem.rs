@@ -91,6 +91,7 @@ pub fn options(options: &Options) -> v1::Options {
         confidence: options.confidence,
         digits: options.digits,
         deflate: options.deflate,
+        warnings: options.warnings.clone(),
         sets: options
             .sets
             .as_ref()
@@ -201,6 +202,7 @@ pub fn system(system: &System) -> v1::System {
                 }),
             })
             .collect(),
+        unit_exponents: system.scaling.exponents.clone(),
     }
 }
 

@@ -36,6 +36,7 @@ pub fn solution(s: &Solution, target: u32) -> v1::Solution {
         }),
         target,
         deflations: s.deflations,
+        undecided: s.undecided,
     }
 }
 
@@ -48,6 +49,8 @@ pub fn class(verdict: Verdict) -> v1::PathClass {
         Verdict::PositiveDimensional => v1::PathClass::PositiveDimensional,
         Verdict::Singular => v1::PathClass::Singular,
         Verdict::Finite => v1::PathClass::Finite,
+        Verdict::Undecided => v1::PathClass::Undecided,
+        Verdict::WithinDataAccuracy => v1::PathClass::WithinDataAccuracy,
     }
 }
 
@@ -67,5 +70,8 @@ pub fn counts(paths: &PathCounts, solutions: &SolutionCounts) -> v1::SummaryCoun
         solutions_singular: solutions.singular,
         solutions_real: solutions.real,
         solutions_with_multiplicity: solutions.with_multiplicity,
+        paths_undecided: paths.undecided,
+        paths_within_data_accuracy: paths.within_data_accuracy,
+        solutions_undecided: solutions.undecided,
     }
 }

@@ -4,7 +4,7 @@
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{
-    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, PathIndex, PathResult,
+    AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, PathIndex, PathResult,
 };
 use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
@@ -186,6 +186,7 @@ impl Draw {
             degenerate: degenerate.into_iter().collect(),
             symmetry,
             expressions,
+            scaling: Default::default(),
         };
         system.check().expect("the generator makes checked systems");
         system
@@ -247,6 +248,7 @@ impl Draw {
             confidence: (count > 1).then_some(0.999),
             digits: (count > 1).then_some(50),
             deflate: length > 2,
+            warnings: Vec::new(),
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
         }
     }
@@ -451,6 +453,11 @@ impl Draw {
                 dual_dimensions: draw.many(5, |draw| 1 + draw.index(9)),
                 bound: draw.0.bits(),
                 margin: draw.number().abs(),
+                moved_slices: draw.many(3, |draw| MovedSlice {
+                    distance: draw.number().abs(),
+                    residual: draw.number().abs(),
+                    reached: draw.number().abs(),
+                }),
             }),
             sharpening: None,
             boundary: self.some(|draw| {

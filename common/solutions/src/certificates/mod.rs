@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use crate::classification::Tolerances;
     use crate::solution_set::History;
-    use crate::test_results::{regular, singular};
+    use crate::test_results::{isolated, regular};
     use cognate_continuation::certification::{Krawczyk, Uncertified};
     use cognate_systems::formats::read;
     use std::collections::HashMap;
@@ -147,11 +147,12 @@ mod tests {
             points.push([(1.0, 0.0), (root, 0.0), (1e-6, side)]);
         }
         let mut results: Vec<_> = (0..).zip(&points).map(|(k, p)| regular(k, p)).collect();
-        results.push(singular(
+        results.push(isolated(
             points.len() as u64,
             &[(1.0, 0.0), (0.0, 0.0), (0.0, 0.0)],
             1,
             &[0],
+            1,
         ));
         let mut set = SolutionSet::new(
             &system,

@@ -8,7 +8,6 @@ use super::fault::{Fault, Problem, Span};
 use super::parse::{Operation, Parsed};
 use super::{Dependence, Expressions, Function, NodeId};
 use crate::formats::limits;
-use crate::transform::clear_denominators::is_monomial;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use rug::Integer;
 use rug::ops::Pow;
@@ -18,9 +17,7 @@ use rug::ops::Pow;
 pub enum Use {
     /// A polynomial in the variables: no variable in a denominator.
     Polynomial,
-    /// A Laurent polynomial: monomials of variables may stand in denominators.
-    Laurent,
-    /// A rational map: variables may stand in denominators.
+    /// A rational function: variables may stand in denominators.
     Rational,
 }
 
@@ -115,7 +112,6 @@ impl Builder {
     fn divide(&mut self, a: NodeId, b: NodeId, at: Span, usage: Use) -> Result<NodeId, Fault> {
         let serves = match usage {
             Use::Polynomial => self.expressions.dependence(b) != Dependence::Variables,
-            Use::Laurent => is_monomial(&self.expressions, b),
             Use::Rational => true,
         };
         if !serves {

@@ -140,7 +140,7 @@ fn system(source: &Source<'_>) -> Result<System, FieldFault> {
         .enumerate()
     {
         let written = scope.parse(value, format!("equations[{i}]"))?;
-        system.equations.push(scope.build(&written, Use::Laurent)?);
+        system.equations.push(scope.build(&written, Use::Rational)?);
         system.equation_names.push(format!("f{}", i + 1));
         places.push(written.span());
     }

@@ -25,8 +25,11 @@ use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::{Dependence, Expressions, Node};
 use crate::system::{System, SystemError};
 use crate::transform::clear_denominators::{
-    ZERO_DENOMINATOR, clear_denominators, nonzero_variables,
+    ZERO_DENOMINATOR, clear_denominators, denominator_factors,
 };
+use cognate_numeric::random::{Purpose, RandomStream};
+use num_complex::Complex64;
+use std::borrow::Cow;
 use std::fmt;
 
 /// The notation of a problem file.
@@ -85,6 +88,43 @@ pub struct FileSettings {
     pub parameter_homotopy: Option<u8>,
 }
 
+impl FileSettings {
+    /// With `ParameterHomotopy: 1`, which solves a family from nothing at random parameters: these, of
+    /// modulus 1, and what to say about them. `seed`: the one that goes before the file's.
+    pub fn random_parameters(
+        &self,
+        system: &System,
+        seed: Option<u64>,
+    ) -> Option<(Vec<Complex64>, String)> {
+        if self.parameter_homotopy != Some(1)
+            || system.path_variable.is_some()
+            || system.parameters.is_empty()
+        {
+            return None;
+        }
+        let seed = seed.or(self.seed).unwrap_or(0);
+        let mut random = RandomStream::new(seed, Purpose::DeclaredConstant, u64::MAX);
+        let values: Vec<Complex64> = system.parameters.iter().map(|_| random.unit()).collect();
+        let named = system.parameters.iter().zip(&values);
+        let named: Vec<String> = named
+            .take(MOST_NAMED)
+            .map(|(name, z)| format!("{name} = [{:?}, {:?}]", z.re, z.im))
+            .collect();
+        let more = match system.parameters.len() > MOST_NAMED {
+            true => ", ...",
+            false => "",
+        };
+        let warning = format!(
+            "ParameterHomotopy: 1: solved at random parameters, those of seed {seed}: {}{more}",
+            named.join(", ")
+        );
+        Some((values, warning))
+    }
+}
+
+/// So many parameters are named with their values in a warning.
+const MOST_NAMED: usize = 50;
+
 /// Something in a file that was understood but not followed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
@@ -134,20 +174,33 @@ pub struct Problem {
 ///
 /// `name` is only for messages.
 pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
-    let text = decode(name, content, limits::FILE_BYTES)?;
+    let content = without_latin1_comments(content);
+    let text = decode(name, &content, limits::FILE_BYTES)?;
     let source = Source { name, text };
     let mut problem = match text.trim_start().chars().next() {
+        _ if bertini::later_config(text).is_some() => bertini::read(&source),
         Some('{') => json::read(&source),
         Some('0'..='9') => phcpack::read(&source),
         _ => bertini::read(&source),
     }?;
     let system = &problem.system;
-    let nonzero = nonzero_variables(system).into_iter().zip(&system.variables);
-    let names: Vec<&str> = nonzero
-        .filter(|(nonzero, _)| *nonzero)
-        .map(|(_, name)| name.as_str())
-        .collect();
-    if !names.is_empty() {
+    let factors = denominator_factors(system);
+    if !factors.is_empty() {
+        let mut names: Vec<&str> = Vec::new();
+        for factor in &factors {
+            match system.expressions.node(*factor) {
+                Node::Variable(v) => names.push(&system.variables[*v as usize]),
+                _ if names.last() == Some(&"a sum") => {}
+                _ => names.push("a sum"),
+            }
+        }
+        names.sort_by_key(|name| {
+            (
+                *name == "a sum",
+                system.variables.iter().position(|v| v == name),
+            )
+        });
+        names.dedup();
         let message = format!(
             "denominators are multiplied out; where one of {} is 0 there is no solution, and what \
              the multiplied equations have there is counted as `{ZERO_DENOMINATOR}`",
@@ -156,6 +209,26 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
         warn(&mut problem.warnings, &source, 0, message);
     }
     Ok(problem)
+}
+
+/// The content with `?` for every byte of a comment (from `%` to the end of the line) that is not
+/// UTF-8: people's names in Latin-1. Places stay what they are.
+fn without_latin1_comments(content: &[u8]) -> Cow<'_, [u8]> {
+    if content.len() as u64 > limits::FILE_BYTES.value || std::str::from_utf8(content).is_ok() {
+        return Cow::Borrowed(content);
+    }
+    let mut text = content.to_vec();
+    for line in text.split_mut(|&byte| byte == b'\n') {
+        let Some(at) = line.iter().position(|&byte| byte == b'%') else {
+            continue;
+        };
+        let comment = &mut line[at..];
+        if std::str::from_utf8(comment).is_err() {
+            let foreign = comment.iter_mut().filter(|byte| !byte.is_ascii());
+            foreign.for_each(|byte| *byte = b'?');
+        }
+    }
+    Cow::Owned(text)
 }
 
 /// Writes a system, and where the notation has a place for them the settings.

@@ -125,7 +125,7 @@ fn system(source: &Source<'_>, warnings: &mut Vec<Warning>) -> Result<System, Fa
                 format!("another one, `{}`", names.name(extra)),
             ));
         }
-        let equation = builder.build(&parsed, Use::Laurent, &mut |expressions, name, _| {
+        let equation = builder.build(&parsed, Use::Rational, &mut |expressions, name, _| {
             Ok(expressions.variable(name))
         })?;
         system.equations.push(equation);

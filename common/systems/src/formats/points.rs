@@ -84,6 +84,14 @@ fn json_lines(source: &Source<'_>, variables: &[String]) -> Result<Vec<Point>, F
         if !line.trim().is_empty() {
             let value = json_value::parse(source.text, start, end).map_err(at(""))?;
             let fields = value.object("an object with a solution").map_err(at(""))?;
+            // A singular point that may not be isolated is no solution to start from.
+            let undecided = fields.iter().any(|(name, value)| {
+                name.text == "undecided" && matches!(value.kind, Kind::Bool(true))
+            });
+            if undecided {
+                start = end;
+                continue;
+            }
             let point = fields.iter().find(|(name, _)| name.text == "variables");
             let missing = || {
                 let found = "an object without it";

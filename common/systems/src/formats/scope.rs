@@ -195,7 +195,7 @@ impl Scope {
         definitions.build(
             &mut self.builder,
             &mut self.values,
-            Use::Laurent,
+            Use::Rational,
             &mut |i, fault| list[i].1.fault(fault),
         )
     }

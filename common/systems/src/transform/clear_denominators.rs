@@ -1,162 +1,204 @@
-//! Laurent systems: equations with monomials in denominators, multiplied out.
+//! Systems with variables in denominators, multiplied out.
 //!
-//! An equation is multiplied by the least monomial that makes it a polynomial. Where a variable of
-//! that monomial is 0 the given equation has no value, so that a point there is no solution of it:
+//! An equation is multiplied by the least product of denominators that makes it a polynomial. Where
+//! a factor of it is 0 the given equation has no value, so that a point there is no solution of it:
 //! such points are a degenerate set by name.
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::polynomial::Polynomial;
 use crate::system::{DegenerateSet, System};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// The name of the set of points where a denominator of the given equations is 0.
 pub const ZERO_DENOMINATOR: &str = "a denominator is 0";
 
-/// Multiplies every equation by the monomial that it is divided by.
+/// Multiplies every equation by the denominators that it has.
 ///
-/// What cannot be cleared so, because a denominator is no monomial of variables, stays as it is.
+/// An equation stays as it is where an exponent would be past all limits.
 pub fn clear_denominators(system: &mut System) {
     let polynomial = system.polynomial_nodes();
-    let n = system.variables.len();
-    let mut nonzero = vec![false; n];
-    let mut fractions = HashMap::new();
+    let mut fractions = Fractions::default();
+    let mut nonzero = Factors::new();
     for i in 0..system.equations.len() {
         let equation = system.equations[i];
         if polynomial[equation.0 as usize] {
             continue;
         }
         let out = &mut system.expressions;
-        let Some((numerator, divisor)) = fraction(out, equation, n, &mut fractions) else {
+        let Some((numerator, under)) = fractions.of(out, equation) else {
             continue;
         };
-        let parameters = system.parameters.len();
-        let (numerator, divisor) = reduced(out, numerator, divisor, parameters);
+        let (variables, parameters) = (system.variables.len(), system.parameters.len());
+        let (numerator, under) = reduced(out, numerator, under, variables, parameters);
         system.equations[i] = numerator;
-        for (nonzero, exponent) in nonzero.iter_mut().zip(divisor) {
-            *nonzero |= exponent > 0;
-        }
+        nonzero.extend(under.into_keys().map(|factor| (factor, 1)));
     }
-    if nonzero.contains(&true) && !system.degenerate.contains_key(ZERO_DENOMINATOR) {
+    if !nonzero.is_empty() && !system.degenerate.contains_key(ZERO_DENOMINATOR) {
         let out = &mut system.expressions;
-        let divisors: Vec<u32> = nonzero.into_iter().map(u32::from).collect();
         let one = out.integer(1);
-        let product = times(out, one, &divisors);
+        let product = times(out, one, &nonzero);
         let set = DegenerateSet::Nonzero(product);
         system.degenerate.insert(ZERO_DENOMINATOR.into(), set);
     }
 }
 
-/// For each variable, whether it stands in a denominator of the equations that were given.
+/// The factors of the denominators of the equations that were given: variables and sums.
+pub fn denominator_factors(system: &System) -> Vec<NodeId> {
+    let mut found = Vec::new();
+    let Some(DegenerateSet::Nonzero(product)) = system.degenerate.get(ZERO_DENOMINATOR) else {
+        return found;
+    };
+    let mut open = vec![*product];
+    while let Some(id) = open.pop() {
+        match system.expressions.node(id) {
+            Node::Multiply(a, b) => open.extend([*a, *b]),
+            Node::Negate(a) | Node::Power(a, _) => open.push(*a),
+            _ => found.push(id),
+        }
+    }
+    found
+}
+
+/// For each variable, whether it is a denominator of the equations that were given.
 pub fn nonzero_variables(system: &System) -> Vec<bool> {
     let mut nonzero = vec![false; system.variables.len()];
-    if let Some(DegenerateSet::Nonzero(product)) = system.degenerate.get(ZERO_DENOMINATOR) {
-        for id in below(&system.expressions, &[*product]) {
-            if let Node::Variable(v) = system.expressions.node(id) {
-                nonzero[*v as usize] = true;
-            }
+    for factor in denominator_factors(system) {
+        if let Node::Variable(v) = system.expressions.node(factor) {
+            nonzero[*v as usize] = true;
         }
     }
     nonzero
 }
 
-/// Whether a node is a monomial of variables with a coefficient that contains none.
-pub(crate) fn is_monomial(expressions: &Expressions, root: NodeId) -> bool {
-    let mut monomial: HashMap<NodeId, bool> = HashMap::new();
-    for id in below(expressions, &[root]) {
-        let here = match expressions.node(id) {
-            _ if expressions.dependence(id) != Dependence::Variables => true,
-            Node::Variable(_) => true,
-            Node::Multiply(a, b) | Node::Divide(a, b) => monomial[a] && monomial[b],
-            Node::Negate(a) | Node::Power(a, _) => monomial[a],
-            _ => false,
-        };
-        monomial.insert(id, here);
-    }
-    monomial[&root]
-}
+/// A product of variables and sums, with their exponents.
+type Factors = BTreeMap<NodeId, u32>;
 
-/// A polynomial and the exponents of the monomial below it.
-type Fraction = (NodeId, Vec<u32>);
+/// A polynomial and what it is divided by.
+type Fraction = (NodeId, Factors);
 
-fn times(out: &mut Expressions, node: NodeId, exponents: &[u32]) -> NodeId {
+fn times(out: &mut Expressions, node: NodeId, factors: &Factors) -> NodeId {
     let mut product = node;
-    for (v, &exponent) in (0u32..).zip(exponents) {
-        if exponent > 0 {
-            let x = out.variable(v);
-            let power = out.power(x, exponent);
-            product = out.multiply(product, power);
-        }
+    for (&factor, &exponent) in factors {
+        let power = out.power(factor, exponent);
+        product = out.multiply(product, power);
     }
     product
 }
 
-fn plus(a: &[u32], b: &[u32]) -> Option<Vec<u32>> {
-    a.iter().zip(b).map(|(a, b)| a.checked_add(*b)).collect()
-}
-
-/// What a node is as a fraction; `None` where a denominator is no monomial.
-fn fraction(
-    out: &mut Expressions,
-    root: NodeId,
-    n: usize,
-    done: &mut HashMap<NodeId, Fraction>,
-) -> Option<Fraction> {
-    for id in below(out, &[root]) {
-        if done.contains_key(&id) {
-            continue;
-        }
-        let found = match out.node(id).clone() {
-            Node::Add(a, b) => joined(out, &done[&a], &done[&b], Expressions::add),
-            Node::Subtract(a, b) => joined(out, &done[&a], &done[&b], Expressions::subtract),
-            Node::Multiply(a, b) => {
-                let ((a, under_a), (b, under_b)) = (&done[&a], &done[&b]);
-                (out.multiply(*a, *b), plus(under_a, under_b)?)
-            }
-            Node::Divide(a, b) => {
-                let ((a, under_a), (b, under_b)) = (&done[&a], &done[&b]);
-                let (coefficient, exponents) = monomial(out, *b, n)?;
-                let numerator = times(out, *a, under_b);
-                let numerator = out.divide(numerator, coefficient);
-                (numerator, plus(under_a, &exponents)?)
-            }
-            Node::Negate(a) => {
-                let (a, under) = &done[&a];
-                (out.negate(*a), under.clone())
-            }
-            Node::Power(a, k) => {
-                let (a, under) = &done[&a];
-                let under = under.iter().map(|e| e.checked_mul(k));
-                (out.power(*a, k), under.collect::<Option<_>>()?)
-            }
-            Node::Constant(_)
-            | Node::Variable(_)
-            | Node::Parameter(_)
-            | Node::Root(..)
-            | Node::Function(..) => (id, vec![0; n]),
-        };
-        done.insert(id, found);
+fn plus(a: &Factors, b: &Factors) -> Option<Factors> {
+    let mut sum = a.clone();
+    for (&factor, &exponent) in b {
+        let known = sum.entry(factor).or_default();
+        *known = known.checked_add(exponent)?;
     }
-    done.get(&root).cloned()
+    Some(sum)
 }
 
-/// Two fractions over their common monomial.
+fn multiple(a: &Factors, k: u32) -> Option<Factors> {
+    let each = a.iter();
+    each.map(|(&factor, exponent)| Some((factor, exponent.checked_mul(k)?)))
+        .collect()
+}
+
+/// What nodes are as fractions and as products, each found once.
+#[derive(Default)]
+struct Fractions {
+    fractions: HashMap<NodeId, Fraction>,
+    /// Coefficient and factors.
+    products: HashMap<NodeId, Fraction>,
+}
+
+impl Fractions {
+    /// What a node is as a fraction; `None` where an exponent is past 32 bits.
+    fn of(&mut self, out: &mut Expressions, root: NodeId) -> Option<Fraction> {
+        for id in below(out, &[root]) {
+            if self.fractions.contains_key(&id) {
+                continue;
+            }
+            let done = &self.fractions;
+            let found = match out.node(id).clone() {
+                Node::Add(a, b) => joined(out, &done[&a], &done[&b], Expressions::add),
+                Node::Subtract(a, b) => joined(out, &done[&a], &done[&b], Expressions::subtract),
+                Node::Multiply(a, b) => {
+                    let ((a, under_a), (b, under_b)) = (&done[&a], &done[&b]);
+                    (out.multiply(*a, *b), plus(under_a, under_b)?)
+                }
+                Node::Divide(a, b) => {
+                    let ((a, under_a), (b, under_b)) = (done[&a].clone(), done[&b].clone());
+                    let (coefficient, factors) = self.product(out, b)?;
+                    let numerator = times(out, a, &under_b);
+                    let numerator = out.divide(numerator, coefficient);
+                    (numerator, plus(&under_a, &factors)?)
+                }
+                Node::Negate(a) => {
+                    let (a, under) = &done[&a];
+                    (out.negate(*a), under.clone())
+                }
+                Node::Power(a, k) => {
+                    let (a, under) = &done[&a];
+                    (out.power(*a, k), multiple(under, k)?)
+                }
+                Node::Constant(_)
+                | Node::Variable(_)
+                | Node::Parameter(_)
+                | Node::Root(..)
+                | Node::Function(..) => (id, Factors::new()),
+            };
+            self.fractions.insert(id, found);
+        }
+        self.fractions.get(&root).cloned()
+    }
+
+    /// A polynomial as a coefficient without variables, and factors.
+    fn product(&mut self, out: &mut Expressions, root: NodeId) -> Option<Fraction> {
+        for id in below(out, &[root]) {
+            if self.products.contains_key(&id) {
+                continue;
+            }
+            let done = &self.products;
+            let found = match out.node(id).clone() {
+                _ if out.dependence(id) != Dependence::Variables => (id, Factors::new()),
+                Node::Multiply(a, b) => {
+                    let ((a, of_a), (b, of_b)) = (&done[&a], &done[&b]);
+                    (out.multiply(*a, *b), plus(of_a, of_b)?)
+                }
+                Node::Divide(a, b) if out.dependence(b) != Dependence::Variables => {
+                    let (a, of_a) = &done[&a];
+                    (out.divide(*a, b), of_a.clone())
+                }
+                Node::Negate(a) => {
+                    let (a, of_a) = &done[&a];
+                    (out.negate(*a), of_a.clone())
+                }
+                Node::Power(a, k) => {
+                    let (a, of_a) = &done[&a];
+                    (out.power(*a, k), multiple(of_a, k)?)
+                }
+                _ => (out.integer(1), Factors::from([(id, 1)])),
+            };
+            self.products.insert(id, found);
+        }
+        self.products.get(&root).cloned()
+    }
+}
+
+/// Two fractions over their common denominator.
 fn joined(
     out: &mut Expressions,
     (a, under_a): &Fraction,
     (b, under_b): &Fraction,
     join: impl Fn(&mut Expressions, NodeId, NodeId) -> NodeId,
 ) -> Fraction {
-    let common: Vec<u32> = under_a
-        .iter()
-        .zip(under_b)
-        .map(|(a, b)| *a.max(b))
-        .collect();
-    let lacks = |under: &[u32]| -> Vec<u32> {
-        common
-            .iter()
-            .zip(under)
-            .map(|(all, own)| all - own)
+    let mut common = under_a.clone();
+    for (&factor, &exponent) in under_b {
+        let known = common.entry(factor).or_default();
+        *known = exponent.max(*known);
+    }
+    let lacks = |under: &Factors| -> Factors {
+        let own = |factor: &NodeId| under.get(factor).copied().unwrap_or(0);
+        let all = common.iter();
+        all.map(|(factor, all)| (*factor, all - own(factor)))
             .collect()
     };
     let a = times(out, *a, &lacks(under_a));
@@ -164,71 +206,56 @@ fn joined(
     (join(out, a, b), common)
 }
 
-/// The coefficient and the exponents of a monomial.
-fn monomial(out: &mut Expressions, root: NodeId, n: usize) -> Option<(NodeId, Vec<u32>)> {
-    let mut done: HashMap<NodeId, (NodeId, Vec<u32>)> = HashMap::new();
-    for id in below(out, &[root]) {
-        let found = match out.node(id).clone() {
-            _ if out.dependence(id) != Dependence::Variables => (id, vec![0; n]),
-            Node::Variable(v) => {
-                let mut exponents = vec![0; n];
-                exponents[v as usize] = 1;
-                (out.integer(1), exponents)
-            }
-            Node::Multiply(a, b) => {
-                let ((a, of_a), (b, of_b)) = (&done[&a], &done[&b]);
-                (out.multiply(*a, *b), plus(of_a, of_b)?)
-            }
-            Node::Divide(a, b) if out.dependence(b) != Dependence::Variables => {
-                let (a, of_a) = &done[&a];
-                (out.divide(*a, b), of_a.clone())
-            }
-            Node::Negate(a) => {
-                let (a, of_a) = &done[&a];
-                (out.negate(*a), of_a.clone())
-            }
-            Node::Power(a, k) => {
-                let (a, of_a) = &done[&a];
-                let exponents = of_a.iter().map(|e| e.checked_mul(k));
-                (out.power(*a, k), exponents.collect::<Option<_>>()?)
-            }
-            _ => return None,
-        };
-        done.insert(id, found);
-    }
-    done.remove(&root)
-}
-
-/// The fraction without what all terms of the numerator have in common with its monomial.
+/// The fraction without what all terms of the numerator have in common with variables below it.
 fn reduced(
     out: &mut Expressions,
     numerator: NodeId,
-    divisor: Vec<u32>,
+    under: Factors,
+    variables: usize,
     parameters: usize,
 ) -> Fraction {
-    let n = divisor.len();
-    let Some(f) = Polynomial::expand(out, numerator, n, parameters) else {
-        return (numerator, divisor);
-    };
-    let least = |v: usize| f.terms.keys().map(|e| e[v]).min().unwrap_or(0);
-    let common: Vec<u32> = (0..n).map(|v| divisor[v].min(least(v))).collect();
-    if f.terms.is_empty() || common.iter().all(|&e| e == 0) {
-        return (numerator, divisor);
+    let all = under.keys();
+    if !all
+        .clone()
+        .any(|&id| matches!(out.node(id), Node::Variable(_)))
+    {
+        return (numerator, under);
     }
+    let Some(f) = Polynomial::expand(out, numerator, variables, parameters) else {
+        return (numerator, under);
+    };
+    let mut common = vec![0; variables];
+    for (&id, &exponent) in &under {
+        if let Node::Variable(v) = out.node(id) {
+            let v = *v as usize;
+            let least = f.terms.keys().map(|e| e[v]).min().unwrap_or(0);
+            common[v] = exponent.min(least);
+        }
+    }
+    if f.terms.is_empty() || common.iter().all(|&e| e == 0) {
+        return (numerator, under);
+    }
+    let x: Vec<NodeId> = (0..variables as u32).map(|v| out.variable(v)).collect();
     let mut sum = out.integer(0);
     for (exponents, coefficient) in &f.terms {
         let mut term = out.constant(coefficient.clone());
-        for (p, &exponent) in (0u32..).zip(&exponents[n..]) {
+        for (p, &exponent) in (0u32..).zip(&exponents[variables..]) {
             let parameter = out.parameter(p);
             let power = out.power(parameter, exponent);
             term = out.multiply(term, power);
         }
-        let left = exponents.iter().zip(&common).map(|(e, c)| e - c);
-        let term = times(out, term, &left.collect::<Vec<u32>>());
+        for ((&x, exponent), common) in x.iter().zip(exponents).zip(&common) {
+            let power = out.power(x, exponent - common);
+            term = out.multiply(term, power);
+        }
         sum = out.add(sum, term);
     }
-    let divisor = divisor.iter().zip(&common).map(|(d, c)| d - c);
-    (sum, divisor.collect())
+    let left = under.into_iter().map(|(id, exponent)| match out.node(id) {
+        Node::Variable(v) => (id, exponent - common[*v as usize]),
+        _ => (id, exponent),
+    });
+    let left = left.filter(|(_, exponent)| *exponent > 0).collect();
+    (sum, left)
 }
 
 #[cfg(test)]
@@ -281,12 +308,16 @@ mod tests {
     }
 
     #[test]
-    fn other_denominators_are_refused() {
-        let text = "variable_group x, y; function f; f = 1/(x + y) - 1;";
-        let error = read(text).unwrap_err();
-        assert!(
-            error.contains("division by an expression with variables"),
-            "{error}"
-        );
+    fn sums_below_the_line_are_multiplied_out() {
+        let (system, nonzero) = cleared("1/(x + y) + p*x/(y*(x + y)^2) - 1/(2*y - 2)");
+        assert_eq!(nonzero, [false, true]);
+        assert_eq!(denominator_factors(&system).len(), 3);
+        let number = |re: f64, im: f64| Complex64::new(re, im);
+        let (x, y, p) = (number(0.5, 1.0), number(-1.5, 0.25), number(2.0, -1.0));
+        let found = values(&system.expressions, &system.equations, &[x, y], &[p])[0];
+        let (s, t) = (x + y, y * 2.0 - 2.0);
+        let expected = (s.inv() + p * x / (y * s * s) - t.inv()) * y * s * s * t;
+        assert!((found - expected).norm_sqr() < 1e-24, "{found} {expected}");
+        assert_eq!(crate::polynomial::degrees(&system).unwrap().total, [3]);
     }
 }

@@ -6,6 +6,7 @@ mod fix_parameters;
 mod homogenize;
 mod independent;
 mod randomize;
+mod rescale;
 
 pub use deflate::deflate;
 pub use fix_parameters::{FixError, fix_parameters};

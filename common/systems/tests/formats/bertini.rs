@@ -192,3 +192,77 @@ fn the_examples_are_read() {
     assert_eq!(shape("noon_5"), (5, 5, 1, 5));
     assert_eq!(shape("six_revolute_loop"), (12, 18, 1, 12));
 }
+
+#[test]
+fn random_constants_are_those_of_the_seed() {
+    let text = |seed: u64| {
+        format!(
+            "CONFIG RandomSeed: {seed}; END; INPUT variable_group x; random a, b; random_real c;
+             function f; f = a*x^2 + b*x + c; END;"
+        )
+    };
+    let of = |seed| values(&read(&text(seed)), &[(3, 1)], &[]);
+    assert_eq!(of(5), of(5));
+    assert_ne!(of(5), of(6));
+    let problem = read(&text(5));
+    let warning = "test:1: random constants are those of RandomSeed 5, whatever seed the solve has";
+    assert_eq!(problem.warnings[0].to_string(), warning);
+    let only = |name: &str| {
+        let text =
+            format!("variable_group x; random a; random_real c; function f; f = x + {name}; END;");
+        values(&read(&text), &[(0, 1)], &[]).remove(0)
+    };
+    let (a, c) = (only("a"), only("c"));
+    let square = Rational::from(&a.re * &a.re) + Rational::from(&a.im * &a.im);
+    assert!((square.to_f64() - 1.0).abs() < 1e-11 && !a.is_real());
+    assert!(c.is_real() && c.re.to_f64().abs() <= 1.0 && !c.is_zero());
+}
+
+#[test]
+fn files_are_read_as_people_write_them() {
+    let body = "variable_group x; function f; f = x^2 - 2;";
+    for end in ["END", "END\n", "END;", "END\n\n% the end"] {
+        let problem = read(&format!("CONFIG\nMPType: 0;\nEND\nINPUT\n{body}\n{end}"));
+        assert_eq!(
+            problem.settings.precision,
+            Some(PrecisionHint::Double),
+            "{end}"
+        );
+    }
+    let before = "7 bars, by A. Uthor\n{a draft}\n";
+    let problem = read(&format!(
+        "{before}CONFIG\nMPType: 1;\nEND;\nINPUT\n{body}\nEND;"
+    ));
+    assert_eq!(problem.settings.precision, Some(PrecisionHint::Bits(96)));
+    let warnings: Vec<String> = problem.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings, ["test:1: what stands before `CONFIG` is ignored"]);
+}
+
+#[test]
+fn comments_may_be_in_latin_1() {
+    let text = b"% M\xfcller, 2013\nvariable_group x; function f; % caf\xe9\nf = x^2 - y; END;";
+    let error = formats::read("test", text)
+        .expect_err("y is unknown")
+        .to_string();
+    assert!(error.starts_with("test:3:11: "), "{error}");
+    let outside = b"variable_group x; function f; f = x^2 - \xe9; END;";
+    let error = formats::read("test", outside)
+        .expect_err("no UTF-8")
+        .to_string();
+    assert!(
+        error.starts_with("test:1:41: expected text in UTF-8, found the byte 0xe9"),
+        "{error}"
+    );
+}
+
+#[test]
+fn quotients_are_multiplied_out() {
+    let problem = read("variable_group x, y; function f; f = y + x/(1 + y) - (x + 1)^-1; END;");
+    assert_eq!(
+        values(&problem, &[(3, 1), (1, 1)], &[]),
+        [rational(8 + 12 - 2, 1)]
+    );
+    let warning = problem.warnings[0].to_string();
+    assert!(warning.contains("where one of a sum is 0"), "{warning}");
+    assert!(problem.system.degenerate.contains_key("a denominator is 0"));
+}

@@ -151,3 +151,17 @@ fn what_is_wrong_with_points_is_said_with_its_place() {
         assert_eq!(first_line(result), message);
     }
 }
+
+/// A line of `solutions.jsonl` that says of its point that it may not be isolated is no start solution.
+#[test]
+fn undecided_points_are_no_start_solutions() {
+    let line = |x: u32, undecided: &str| {
+        format!(
+            "{{\"variables\": {{\"x\": [{x}, 0], \"e1\": [0, 0]}}, \"undecided\": {undecided}}}\n"
+        )
+    };
+    let text = [line(1, "false"), line(2, "true"), line(3, "false")].concat();
+    let points = solutions(&text).expect("three lines");
+    let x: Vec<f64> = points.iter().map(|point| point[0].re).collect();
+    assert_eq!(x, [1.0, 3.0]);
+}

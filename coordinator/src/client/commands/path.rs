@@ -42,7 +42,7 @@ struct Traced {
 /// Tracks the path and shows it.
 pub fn run(a: &TracePath) -> Result<Exit, ClientError> {
     let prepared = problem::prepare(&a.problem)?;
-    for warning in &prepared.warnings {
+    for warning in &prepared.submission.options.warnings {
         eprintln!("warning: {warning}");
     }
     let name = prepared.name.clone();
@@ -142,7 +142,7 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
     let (result, steps) = stage.trace(index);
     let shape = PointShape::of(&plan.system);
     let verdict = classify(&result, &shape, &Tolerances::default()).verdict;
-    let finite = matches!(verdict, Verdict::Finite | Verdict::Singular);
+    let finite = verdict == Verdict::Finite || verdict.may_be_multiple();
     let values = finite.then(|| shape.to_variables(result.endpoint.to_double()));
     Ok(Traced {
         start: plan.start.to_string(),
@@ -162,6 +162,8 @@ fn verdict_name(verdict: Verdict) -> &'static str {
         Verdict::AtInfinity => "at infinity",
         Verdict::Excess => "excess: no solution before randomisation",
         Verdict::PositiveDimensional => "on a positive-dimensional set",
+        Verdict::Undecided => "singular; whether it is isolated is asked of all paths together",
+        Verdict::WithinDataAccuracy => "of another class within the accuracy of the data",
         Verdict::Singular => "singular",
         Verdict::Finite => "finite",
     }

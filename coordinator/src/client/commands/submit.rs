@@ -44,11 +44,7 @@ pub async fn send(
     request_id: &str,
     prepared: Prepared,
 ) -> Result<(String, Vec<String>), ClientError> {
-    let Prepared {
-        submission,
-        mut warnings,
-        ..
-    } = prepared;
+    let Prepared { submission, .. } = prepared;
     let message = to_proto::problem::submission(&uploaded(connection, submission).await?);
     let mut attempt = 1;
     let answer = loop {
@@ -60,8 +56,7 @@ pub async fn send(
             other => break other?,
         }
     };
-    warnings.extend(answer.warnings);
-    Ok((answer.job, warnings))
+    Ok((answer.job, answer.warnings))
 }
 
 /// Large start solutions go ahead as an object.

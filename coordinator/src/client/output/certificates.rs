@@ -140,6 +140,7 @@ mod tests {
                 ..SolutionCertificate::default()
             }),
             deflations: None,
+            undecided: false,
         }
     }
 

@@ -142,6 +142,10 @@ impl Folder {
     pub fn solution(&mut self, solution: &Solution) -> Result<(), ClientError> {
         self.lines
             .write(&format!("{}\n", json::solution_line(solution)))?;
+        // Bertini's files have no mark for a point that may be no solution.
+        if solution.undecided {
+            return Ok(());
+        }
         self.finite.point(solution)?;
         if solution.real == Some(true) {
             self.real_finite.point(solution)?;
@@ -213,6 +217,7 @@ mod tests {
             paths: vec![0],
             certificate: None,
             deflations: None,
+            undecided: false,
         }
     }
 
@@ -248,6 +253,10 @@ mod tests {
             solution(1.0, true, false),
             solution(2.0, false, false),
             solution(3.0, true, true),
+            Solution {
+                undecided: true,
+                ..solution(4.0, true, true)
+            },
         ] {
             files.solution(&s).expect("written");
         }
@@ -271,7 +280,9 @@ mod tests {
                 ""
             ]
         );
-        assert_eq!(read("solutions.jsonl").lines().count(), 3);
+        let lines = read("solutions.jsonl");
+        assert_eq!(lines.lines().count(), 4);
+        assert_eq!(lines.matches("\"undecided\":true").count(), 1);
         assert!(read("summary.json").contains("\"total\": 3"));
     }
 }

@@ -11,9 +11,6 @@ pub fn read(json: &str) -> Result<Summary, ClientError> {
 }
 
 /// What keeps the answer from being settled, in words; nothing where all is.
-///
-/// A class that this version does not decide is said in the table, and its
-/// paths are accounted for in the next class.
 pub fn open_questions(summary: &Summary) -> Vec<String> {
     let paths = &summary.paths;
     let mut open = vec![];
@@ -26,6 +23,25 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
     if unresolved > 0 {
         let crossings = counted(unresolved, "path crossing");
         open.push(format!("{crossings} not resolved"));
+    }
+    if paths.decided_by_precision_limit > 0 {
+        let by_limit = counted(paths.decided_by_precision_limit, "path");
+        open.push(format!(
+            "{by_limit} finite or at infinity only by the limit of the precision"
+        ));
+    }
+    if paths.undecided > 0 {
+        open.push(format!(
+            "{} to a singular point of which it is not known whether it is isolated",
+            counted(paths.undecided, "path")
+        ));
+    }
+    let doubtful = summary.solutions.doubtful_multiplicity;
+    if doubtful > 0 {
+        let points = counted(doubtful, "singular point");
+        open.push(format!(
+            "{points} at which another number of paths ends than its multiplicity"
+        ));
     }
     if open.is_empty() && !summary.settled {
         open.push("a count of one of the targets".into());

@@ -5,6 +5,7 @@ use super::text::{Look, complex, count, counted, cut, magnitude, rate, seconds, 
 use crate::results::summary::Summary;
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution::{NamedValue, Solution};
 use num_complex::Complex64;
 use std::fmt::Write as _;
@@ -112,7 +113,7 @@ pub fn summary(
     lines.text.push_str(&warnings(summary, look));
     if !solutions.is_empty() {
         lines.blank();
-        let total = summary.solutions.distinct;
+        let total = summary.solutions.distinct + summary.solutions.undecided;
         lines
             .text
             .push_str(&solution_list(solutions, total, files, look));
@@ -169,19 +170,12 @@ fn headline(summary: &Summary, look: Look) -> String {
 /// The answer in one phrase.
 pub fn answer(summary: &Summary) -> String {
     let s = &summary.solutions;
-    // While it is not known whether singular endpoints are isolated, they are no solutions in this phrase.
-    let undecided = s.singular > 0 && summary.paths.positive_dimensional.is_none();
-    let mut answer = match (undecided, s.singular) {
-        (_, 0) => counted(s.nonsingular, "solution"),
-        (true, n) => format!(
-            "{}, {} that may not be isolated",
-            counted(s.nonsingular, "nonsingular solution"),
-            counted(n, "singular point"),
-        ),
-        (false, n) => format!("{}, {} singular", counted(s.distinct, "solution"), count(n)),
+    let mut answer = match s.singular {
+        0 => counted(s.nonsingular, "solution"),
+        n => format!("{}, {} singular", counted(s.distinct, "solution"), count(n)),
     };
     let also = s.positive_dimensional == Some(true);
-    if also && s.distinct == 0 {
+    if also && s.distinct == 0 && s.undecided == 0 {
         return "no isolated solution, but a positive-dimensional solution set".to_owned();
     }
     match s.real {
@@ -190,6 +184,10 @@ pub fn answer(summary: &Summary) -> String {
             let _ = write!(answer, ", {} real", count(n));
         }
         _ => {}
+    }
+    if s.undecided > 0 {
+        let points = counted(s.undecided, "singular point");
+        let _ = write!(answer, ", and {points} that may not be isolated");
     }
     if also {
         answer.push_str(", and a positive-dimensional set");
@@ -214,9 +212,19 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
             "on a curve, surface, ... of solutions",
         ),
         (
+            "undecided",
+            Some(p.undecided),
+            "at a singular point; isolated or not is not known",
+        ),
+        (
+            "within data accuracy",
+            Some(p.within_data_accuracy),
+            "other digits of the data would give another class",
+        ),
+        (
             "singular",
             Some(p.singular),
-            "at a multiple or otherwise singular point",
+            "at an isolated multiple or otherwise singular point",
         ),
         (
             "finite",
@@ -224,9 +232,11 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
             "at a nonsingular isolated solution",
         ),
     ];
+    let shown_where_there_are_some = ["undecided", "within data accuracy"];
     lines.heading("Paths", "", "each in the first class that holds");
     for (name, number, meaning) in classes {
         match number {
+            Some(0) if shown_where_there_are_some.contains(&name) => {}
             Some(0) => lines.line(name, "0", ""),
             Some(n) => lines.line(name, &count(n), meaning),
             None => lines.line(name, "-", undecided),
@@ -290,6 +300,16 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
         format!("{} with multiplicity", count(s.with_multiplicity))
     };
     lines.line("distinct", &count(s.distinct), &note);
+    if s.undecided > 0 {
+        let note = "singular points, isolated or not: in no other count";
+        lines.line("undecided", &count(s.undecided), note);
+    }
+    if s.complete != Completeness::Yes
+        && let Some(reason) = &s.complete_reason
+    {
+        let note = format!("{}: {reason}", s.complete.name());
+        lines.line("complete", "", &note);
+    }
     match (s.real, &s.real_reason) {
         (Some(n), _) => lines.line("real", &count(n), ""),
         (None, reason) => lines.line("real", "-", reason.as_deref().unwrap_or("not asked")),
@@ -451,7 +471,9 @@ pub fn solution_list(
             Some(false) => "complex".to_string(),
             None => String::new(),
         };
-        if s.singular {
+        if s.undecided {
+            kind = format!("{kind} undecided").trim().to_string();
+        } else if s.singular {
             kind = format!("{kind} singular").trim().to_string();
         }
         if s.multiplicity > 1 {

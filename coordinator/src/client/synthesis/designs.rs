@@ -222,7 +222,6 @@ impl Search<'_> {
                 options,
             },
             name: how.name.clone(),
-            warnings: vec![],
         };
         let (mut connection, job, summary) = finished(self.target, prepared, self.progress).await?;
         self.rounds.push(Round { purpose, summary });

@@ -163,7 +163,6 @@ fn submission(
             options,
         },
         name: how.name.clone(),
-        warnings: vec![],
     }
 }
 
@@ -200,6 +199,9 @@ async fn run(
     Ok((summary, ends))
 }
 
+/// Why a path to a singular point that may lie on a set of solutions counts as lost.
+const UNDECIDED: &str = "whether the singular point where it ends is isolated is not known";
+
 /// How each path of a finished job ended.
 async fn ends(
     connection: &mut Connection,
@@ -211,9 +213,10 @@ async fn ends(
         .solutions(job, |solution| {
             let arrived = arrived(&solution)?;
             for &path in &solution.paths {
-                let arrival = match solution.singular {
-                    true => Arrival::Singular(arrived.clone()),
-                    false => Arrival::Regular(arrived.clone()),
+                let arrival = match (solution.undecided, solution.singular) {
+                    (true, _) => Arrival::Failed(UNDECIDED.into()),
+                    (false, true) => Arrival::Singular(arrived.clone()),
+                    (false, false) => Arrival::Regular(arrived.clone()),
                 };
                 ends.insert(usize::try_from(path).unwrap_or(usize::MAX), arrival);
             }

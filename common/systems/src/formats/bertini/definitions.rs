@@ -8,19 +8,38 @@ use crate::expression::build::{Builder, Use};
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::formats::definitions::Definitions;
 use crate::system::{System, VariableGroup};
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::rational::{ComplexRational, Rational};
+
+/// The declared random constant with this number: complex of modulus 1, or real between -1 and 1;
+/// a multiple of 2^-40, so that it is cheap in exact arithmetic.
+fn random_constant(seed: u64, number: u64, real: bool) -> ComplexRational {
+    const GRID: i64 = 1 << 40;
+    let mut random = RandomStream::new(seed, Purpose::DeclaredConstant, number);
+    let part = |value: f64| Rational::from(((value * GRID as f64) as i64, GRID));
+    match real {
+        true => ComplexRational::real(part(2.0 * random.uniform() - 1.0)),
+        false => {
+            let z = random.unit();
+            ComplexRational::new(part(z.re), part(z.im))
+        }
+    }
+}
 
 impl Statements {
     /// The system, the places of its equations, and the end of the input.
-    pub(super) fn into_system(self) -> Result<(System, Vec<Span>, Span), Fault> {
+    /// `seed`: that of constants which are declared to be random.
+    pub(super) fn into_system(self, seed: u64) -> Result<(System, Vec<Span>, Span), Fault> {
         let mut builder = Builder::default();
         let mut system = System::default();
         let mut values: Vec<Option<NodeId>> = vec![None; self.names.count()];
         let mut position = vec![0usize; self.names.count()];
+        let mut randoms = 0;
         for &(name, kind, span) in &self.declared {
             let text = self.names.name(name).to_string();
             let defined = self.defined.get(&name).map(|&d| self.definitions[d].1);
             match (kind, defined) {
-                (Kind::Variable | Kind::PathVariable, Some(at)) => {
+                (Kind::Variable | Kind::PathVariable | Kind::Random { .. }, Some(at)) => {
                     let first = format!("is declared as a {}", kind.describe());
                     return Err(Fault::new(at, What::DuplicateName { name: text, first }));
                 }
@@ -42,6 +61,11 @@ impl Statements {
                         system.path_variable = Some(index);
                     }
                 }
+                (Kind::Random { real }, None) => {
+                    let value = random_constant(seed, randoms, real);
+                    values[name as usize] = Some(builder.expressions.constant(value));
+                    randoms += 1;
+                }
                 (Kind::Function | Kind::Constant | Kind::Parameter, Some(_)) => {}
             }
         }
@@ -53,7 +77,7 @@ impl Statements {
                 .map(|(name, _, parsed)| (*name, parsed))
                 .collect(),
         };
-        definitions.build(&mut builder, &mut values, Use::Laurent, &mut |_, fault| {
+        definitions.build(&mut builder, &mut values, Use::Rational, &mut |_, fault| {
             fault
         })?;
         for (name, span, _) in &self.definitions {

@@ -20,6 +20,10 @@ enum Kind {
     Constant,
     Parameter,
     PathVariable,
+    /// A constant that the seed decides: complex of modulus 1, or real between -1 and 1.
+    Random {
+        real: bool,
+    },
 }
 
 impl Kind {
@@ -30,6 +34,7 @@ impl Kind {
             Kind::Constant => "constant",
             Kind::Parameter => "parameter",
             Kind::PathVariable => "path variable",
+            Kind::Random { .. } => "random constant",
         }
     }
 }
@@ -50,6 +55,8 @@ fn declaration(word: &str) -> Option<Declaration> {
         "constant" => Declaration::Plain(Kind::Constant),
         "parameter" => Declaration::Plain(Kind::Parameter),
         "pathvariable" => Declaration::Plain(Kind::PathVariable),
+        "random" => Declaration::Plain(Kind::Random { real: false }),
+        "random_real" => Declaration::Plain(Kind::Random { real: true }),
         _ => return None,
     })
 }
@@ -80,7 +87,7 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     let mut settings = FileSettings::default();
     let mut warnings = Vec::new();
     let system = statements(source, &mut settings, &mut warnings)
-        .and_then(|s| s.into_system())
+        .and_then(|s| s.into_system(settings.seed.unwrap_or(0)))
         .and_then(|(system, places, end)| finish(system, &places, end))
         .map_err(|fault| source.error(fault))?;
     if settings.user_homotopy && system.path_variable.is_none() {
@@ -101,12 +108,40 @@ const FIRST: &str = "a Bertini-classic input (`CONFIG`, `INPUT` or a declaration
      `variable_group`), a PHCpack system (the number of equations) or a JSON problem (`{`)";
 const STATEMENT: &str = "a declaration, a definition `name = expression;` or `END;`";
 
+/// Where `CONFIG` stands at the beginning of a line, where something comes before it and `INPUT`
+/// begins a line after it; comments aside.
+pub(super) fn later_config(text: &str) -> Option<usize> {
+    let (mut at, mut before, mut config) = (0, false, None);
+    for line in text.split_inclusive('\n') {
+        let content = line.split('%').next().unwrap_or_default();
+        let word = content.trim_start();
+        let begins = |with: &str| {
+            let rest = word.strip_prefix(with);
+            rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+        };
+        if config.is_none() && begins("CONFIG") {
+            config = Some(at + content.len() - word.len()).filter(|_| before);
+            config?;
+        } else if config.is_some() && begins("INPUT") {
+            return config;
+        }
+        before |= !word.is_empty();
+        at += line.len();
+    }
+    None
+}
+
 fn statements(
     source: &Source<'_>,
     settings: &mut FileSettings,
     warnings: &mut Vec<Warning>,
 ) -> Result<Statements, Fault> {
     let mut tokens = Tokens::new(source.text, Some('%'));
+    if let Some(at) = later_config(source.text) {
+        let message = "what stands before `CONFIG` is ignored".into();
+        warn(warnings, source, 0, message);
+        tokens = Tokens::starting_at(source.text, at, Some('%'));
+    }
     let first = tokens.peek();
     if first.kind == TokenKind::End {
         return Err(Fault::expected(first.span, FIRST, "an empty file"));
@@ -138,10 +173,24 @@ fn statements(
                 return Err(Fault::expected(token.span, expected, token.describe()));
             }
         };
-        if let Some(declaration) = declaration(word) {
+        let declared = declaration(word).filter(|declared| match declared {
+            // As other names these two may be defined.
+            Declaration::Plain(Kind::Random { .. }) => {
+                matches!(tokens.peek().kind, TokenKind::Name(_))
+            }
+            _ => true,
+        });
+        if let Some(declaration) = declared {
             statements.declare(&mut tokens, declaration, source)?;
+            if let Declaration::Plain(Kind::Random { .. }) = declaration {
+                let seed = settings.seed.unwrap_or(0);
+                let message = format!(
+                    "random constants are those of RandomSeed {seed}, whatever seed the solve has"
+                );
+                warn(warnings, source, token.span.start, message);
+            }
         } else if word == "END" {
-            tokens.expect_symbol(';', "`;`")?;
+            tokens.take_symbol(';');
             statements.end = token.span;
             let rest = tokens.peek();
             if rest.kind != TokenKind::End {
@@ -149,11 +198,6 @@ fn statements(
                 warn(warnings, source, rest.span.start, message);
             }
             break;
-        } else if matches!(word, "random" | "random_real")
-            && matches!(tokens.peek().kind, TokenKind::Name(_))
-        {
-            let what = format!("`{word}` declarations; write the number as a `constant`");
-            return Err(Fault::new(token.span, What::NotInThisVersion(what)));
         } else {
             if tokens.peek().kind != TokenKind::Symbol('=') {
                 if token == first {

@@ -4,7 +4,118 @@ use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::token::{Token, TokenKind, Tokens};
 use crate::formats::{FileSettings, PrecisionHint, Source, Warning, warn};
 
-/// Reads settings up to and with `END;`.
+/// Settings that are followed, in small letters.
+const FOLLOWED: &[&str] = &[
+    "finaltol",
+    "maxnumbersteps",
+    "mptype",
+    "parameterhomotopy",
+    "precision",
+    "randomseed",
+    "sharpendigits",
+    "tracktolbeforeeg",
+    "tracktolduringeg",
+    "tracktype",
+    "userhomotopy",
+];
+
+/// The other settings of Bertini 1.6 (Bates, Hauenstein, Sommese, Wampler: Numerically Solving
+/// Polynomial Systems with Bertini, 2013, appendix E), in small letters and sorted.
+const WITHOUT_MEANING: &[&str] = &[
+    "ampmaxprec",
+    "ampsafetydigits1",
+    "ampsafetydigits2",
+    "coeffbound",
+    "condnumthreshold",
+    "constructwitnessset",
+    "degreebound",
+    "deletetempfiles",
+    "endgamebdry",
+    "endgamenum",
+    "endpointfinitethreshold",
+    "endpointsamethreshold",
+    "functiontolerance",
+    "imagthreshold",
+    "intrinsicmultiplier",
+    "junkremovaltest",
+    "maxcodimension",
+    "maxcyclenum",
+    "maxldtdepth",
+    "maxnewtonits",
+    "maxnorm",
+    "maxnumbadloopsinmon",
+    "maxnummonlinears",
+    "maxnumpts",
+    "maxstepsbeforenewton",
+    "maxstepsize",
+    "minstepsizebeforeeg",
+    "minstepsizeduringeg",
+    "multonedimension",
+    "nbhdradius",
+    "numsamplepoints",
+    "odepredictor",
+    "outputlevel",
+    "pathtruncationthreshold",
+    "printpathmodulus",
+    "ratiotolerance",
+    "reducedonly",
+    "regenhigherdimtest",
+    "regenremoveinf",
+    "regenstartlevel",
+    "samplefactor",
+    "screenout",
+    "securitylevel",
+    "securitymaxnorm",
+    "sharpenonly",
+    "singvalzerotol",
+    "slicefinaltol",
+    "slicetolbeforeeg",
+    "slicetolduringeg",
+    "specificcodimension",
+    "stepfailfactor",
+    "stepsforincrease",
+    "stepsuccessfactor",
+    "targettolmultiplier",
+    "useregeneration",
+    "witnessgentype",
+    "witnesssupersetonly",
+];
+
+/// What other kinds of runs are called here.
+fn other_track_type(number: i64) -> &'static str {
+    match number {
+        1 => "a decomposition into irreducible components is the command `cognate decompose`",
+        2 => "points on a component are the command `cognate sample`",
+        3 => "whether points lie on components is the command `cognate member`",
+        4 => "witness sets are written by the command `cognate decompose`",
+        5 => "a projection of a component is the command `cognate project`",
+        6 => "isosingular sets are the command `cognate singular-locus`",
+        7 => "a component cut by more equations is the command `cognate intersect`",
+        -4..=-1 => {
+            "points are not evaluated alone; `cognate solve` refines the solutions that it finds \
+             (`--precision BITS`, `--certify`) and gives their residuals and conditions"
+        }
+        _ => "isolated solutions (0) are the command `cognate solve`",
+    }
+}
+
+/// Insertions, deletions and replacements that make one word of another (Levenshtein).
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut corner = row[0];
+        row[0] = i + 1;
+        for (j, &y) in b.iter().enumerate() {
+            let replaced = corner + usize::from(x != y);
+            corner = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(corner + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// Reads settings up to and with `END;`, whose `;` may be missing.
 pub(super) fn read(
     source: &Source<'_>,
     tokens: &mut Tokens<'_>,
@@ -23,7 +134,7 @@ pub(super) fn read(
             ));
         };
         if name == "END" {
-            tokens.expect_symbol(';', "`;`")?;
+            tokens.take_symbol(';');
             break;
         }
         if tokens.take_symbol(':').is_none() {
@@ -51,14 +162,22 @@ pub(super) fn read(
                     Some(value.one_of(&[0, 1, 2])? as u8).filter(|&n| n != 0);
             }
             "tracktype" => {
-                if value.whole()? != 0 {
-                    let what = "a TrackType other than 0 (isolated solutions)".into();
+                let number = value.integer()?;
+                if number != 0 {
+                    let what = format!("TrackType: {number}; {}", other_track_type(number));
                     return Err(Fault::new(value.token.span, What::NotInThisVersion(what)));
                 }
             }
-            _ => {
+            other if WITHOUT_MEANING.binary_search(&other).is_ok() => {
                 let message = format!("the setting {name} has no meaning here and is ignored");
                 warn(warnings, source, token.span.start, message);
+            }
+            other => {
+                let known = FOLLOWED.iter().chain(WITHOUT_MEANING);
+                let nearest = known.min_by_key(|known| edits(other, known));
+                let nearest = nearest.copied().unwrap_or_default();
+                let expected = format!("a setting of Bertini's, perhaps `{nearest}`");
+                return Err(Fault::expected(token.span, &expected, token.describe()));
             }
         }
         tokens.expect_symbol(';', "`;`")?;
@@ -118,6 +237,15 @@ impl<'a> Value<'a> {
         self.number()
             .and_then(|text| text.parse().ok())
             .ok_or_else(wrong)
+    }
+
+    fn integer(&self) -> Result<i64, Fault> {
+        let text = match self.token.kind {
+            TokenKind::Number(text) => text.parse::<i64>().ok(),
+            _ => None,
+        };
+        let signed = text.map(|n| if self.negative { -n } else { n });
+        signed.ok_or_else(|| self.wrong("a whole number"))
     }
 
     fn one_of(&self, allowed: &[u64]) -> Result<u64, Fault> {

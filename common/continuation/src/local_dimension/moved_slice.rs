@@ -1,0 +1,279 @@
+//! Moved slices: whether solutions are met near a point when a hyperplane through it is moved away.
+//!
+//! Every set of positive dimension through a point p meets the hyperplane l(x - p) = δ near p for every
+//! small δ and generic l, where l is a linear form on the null space of the Jacobian at p, which
+//! contains all tangents (Kuo, Li: Determining dimension of the solution component that
+//! contains a computed zero of a polynomial system, J. Math. Anal. Appl. 338, 2008). Near an isolated point
+//! of multiplicity m the equations are at least about δ^m there. So the least residual on slices
+//! at several distances is evidence for a set that does not depend on dual spaces, or on how many paths
+//! end at p. Residuals are evaluated in double-doubles.
+
+use super::precise_point::PrecisePoint;
+use super::split::{Split, square};
+use crate::asked_system::AskedSystem;
+use crate::chart::norm;
+use crate::path_result::MovedSlice;
+use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
+use num_complex::Complex64;
+
+/// Distances of the slices, relative to the point's size, farthest first. The near ones tell a set
+/// through the point from one that passes it.
+const DISTANCES: [f64; 6] = [0.1, 0.0125, 0.0016, 0.0002, 1e-5, 2e-7];
+/// A slice has at least this many times the point's error as its distance.
+const ABOVE_ERROR: f64 = 40.0;
+/// Directions, within the null space, in which the first point on a slice is sought: at first,
+const FEW_DIRECTIONS: u64 = 2;
+/// ... and where dual spaces of a low order did not stop.
+const MANY_DIRECTIONS: u64 = 12;
+/// Most hyperplanes through the point that cut a set besides the one that is moved, except as many as
+/// the null space has dimensions.
+const MOST_CUTS: usize = 2;
+/// Gauss-Newton steps on one slice: towards a set of multiplicity 3 each makes the error smaller by a
+/// third only.
+const MOST_STEPS: usize = 60;
+/// Points farther away than this many distances of the slice are not near.
+const REACH: f64 = 30.0;
+/// Singular values below this part of the largest are rounding errors of the Jacobian in doubles.
+const LEAST_VALUE: f64 = 1e-14;
+/// Residuals below this are as good as 0: towards a set of multiplicity 3 Newton's method comes to about
+/// 1e-21, where the Jacobian in doubles has no more digits.
+const MET: f64 = 1e-20;
+/// A slice at least this far away that is met decides that the endpoint is no isolated point of
+/// multiplicity below 10.
+const TELLING: f64 = 0.01;
+/// A slice farther away than this need not meet a set through the point.
+const FAR: f64 = 0.05;
+/// Residuals of a double-double evaluation, equations and coordinates scaled to 1, that are rounding.
+const ROUNDING: f64 = 1e-28;
+
+/// Where points on slices are sought.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Search<'a> {
+    /// In many directions instead of a few.
+    pub(super) many: bool,
+    /// A direction that is likely to be a tangent, by its components in the null space.
+    pub(super) tangent: Option<&'a [Complex64]>,
+}
+
+/// A singular point and the system of which slices are taken there.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    pub(super) system: &'a AskedSystem,
+    pub(super) target: u64,
+    pub(super) split: &'a Split,
+    /// How far the point may be off.
+    pub(super) error: f64,
+}
+
+impl Around<'_> {
+    /// What the slices at each distance meet, up to one that meets nothing; none at distances that the
+    /// point's error does not allow.
+    pub(super) fn moved_slices(&self, search: Search<'_>) -> Vec<MovedSlice> {
+        let kernel = self.split.kernel.len();
+        let mut cuts: Vec<usize> = (0..kernel.min(MOST_CUTS + 1)).collect();
+        // A set that fills the null space is cut to a regular point by as many hyperplanes.
+        if kernel > MOST_CUTS + 1 {
+            cuts.push(kernel - 1);
+        }
+        cuts.reverse();
+        let mut best = Vec::new();
+        for cut in cuts {
+            let found = Slices::new(*self, cut).meet(search);
+            if meets(&found) {
+                return found;
+            }
+            if nearer(&found, &best) {
+                best = found;
+            }
+        }
+        best
+    }
+}
+
+/// Whether a slice was met that is not too near to mean something, and all that are nearer.
+pub(super) fn meets(slices: &[MovedSlice]) -> bool {
+    let met = |slice: &MovedSlice| slice.residual <= MET;
+    let mut near = slices.iter().filter(|slice| slice.distance < FAR);
+    near.clone().any(|slice| slice.distance >= TELLING) && near.all(met)
+}
+
+/// Whether the first slices came nearer to a solution than the others did.
+fn nearer(slices: &[MovedSlice], others: &[MovedSlice]) -> bool {
+    let last = |slices: &[MovedSlice]| slices.last().map_or(f64::INFINITY, |s| s.residual);
+    others.is_empty() || last(slices) < last(others)
+}
+
+/// Hyperplanes l_0(x - p) = δ and l_k(x - p) = 0 in the neighbourhood of p.
+struct Slices<'a> {
+    around: Around<'a>,
+    /// l_0, l_1, ..., of length 1 and 0 outside the null space.
+    forms: Vec<Vec<Complex64>>,
+}
+
+impl<'a> Slices<'a> {
+    /// With so many hyperplanes besides the one that is moved.
+    fn new(around: Around<'a>, cuts: usize) -> Self {
+        let split = around.split;
+        // The same forms at all distances: the points that are met are those of one curve.
+        let mut random = RandomStream::new(cuts as u64, Purpose::Probe, 3);
+        let forms = (0..=cuts).map(|_| {
+            let mut form = vec![Complex64::default(); split.point.len()];
+            for direction in &split.kernel {
+                let weight = random.disc();
+                for (l, v) in form.iter_mut().zip(direction) {
+                    *l += weight * v.conj();
+                }
+            }
+            let length = square(&form).sqrt();
+            form.iter_mut().for_each(|l| *l /= length);
+            form
+        });
+        Self {
+            forms: forms.collect(),
+            around,
+        }
+    }
+
+    fn meet(&self, search: Search<'_>) -> Vec<MovedSlice> {
+        let size = norm(&self.around.split.point);
+        let slices = DISTANCES.iter().map(|distance| distance * size);
+        let mut found: Vec<MovedSlice> = Vec::new();
+        // Where a slice was met, the next one is met in the same direction.
+        let mut direction: Option<Vec<Complex64>> = search.tangent.map(|t| self.along(t));
+        for distance in slices.filter(|&distance| distance > ABOVE_ERROR * self.around.error) {
+            let mut best = (f64::INFINITY, Vec::new());
+            let attempts = match search.many {
+                true => MANY_DIRECTIONS,
+                false => FEW_DIRECTIONS,
+            };
+            let known = direction.iter().cloned();
+            let others = (0..attempts).map(|attempt| self.direction(attempt));
+            for begin in known.chain(others) {
+                let tried = self.nearest(&begin, distance);
+                if tried.0 < best.0 {
+                    best = tried;
+                }
+                if best.0 <= MET {
+                    break;
+                }
+            }
+            let (residual, offset) = best;
+            let met = residual <= MET;
+            found.push(MovedSlice {
+                distance: distance / size,
+                residual,
+                reached: square(&offset).sqrt() / size,
+            });
+            if met {
+                direction = Some(offset);
+            }
+            // Only the farthest slice may miss a set.
+            if found.len() > 1 && !met {
+                break;
+            }
+        }
+        found
+    }
+
+    /// A direction within the null space: that of l_0 at first, then others at random.
+    fn direction(&self, attempt: u64) -> Vec<Complex64> {
+        if attempt == 0 {
+            return self.forms[0].iter().map(Complex64::conj).collect();
+        }
+        let mut random = RandomStream::new(attempt, Purpose::Probe, 4);
+        let weights: Vec<Complex64> = self
+            .around
+            .split
+            .kernel
+            .iter()
+            .map(|_| random.disc())
+            .collect();
+        self.along(&weights)
+    }
+
+    /// The direction with these components in the null space.
+    fn along(&self, components: &[Complex64]) -> Vec<Complex64> {
+        let mut direction = vec![Complex64::default(); self.around.split.point.len()];
+        for (basis, component) in self.around.split.kernel.iter().zip(components) {
+            for (d, v) in direction.iter_mut().zip(basis) {
+                *d += component * v;
+            }
+        }
+        direction
+    }
+
+    /// The least residual that Gauss-Newton steps find near p on the slice at this distance, beginning in
+    /// this direction, and where that is, from p.
+    fn nearest(&self, direction: &[Complex64], distance: f64) -> (f64, Vec<Complex64>) {
+        let value = apply(&self.forms[0], direction);
+        let mut best = (f64::INFINITY, Vec::new());
+        // Nearly parallel to the slice.
+        if value.norm_sqr() < 1e-4 * square(direction) {
+            return best;
+        }
+        let scale = self.around.split.scale;
+        let mut offset: Vec<Complex64> = direction.iter().map(|d| d * (distance / value)).collect();
+        let mut x = PrecisePoint::new(&self.around.split.point);
+        x.add(&offset);
+        let mut without_gain = 0;
+        for _ in 0..MOST_STEPS {
+            let Around { system, target, .. } = self.around;
+            let found = system.linearize_precisely(x.coordinates(), target);
+            let residual = square(&found.values).sqrt() / scale;
+            if !residual.is_finite() || square(&offset).sqrt() > REACH * distance {
+                break;
+            }
+            let gained = residual < 0.8 * best.0;
+            without_gain = if gained { 0 } else { without_gain + 1 };
+            if residual < best.0 {
+                best = (residual, offset.clone());
+            }
+            if residual <= ROUNDING || without_gain > 6 {
+                break;
+            }
+            // The slices as equations as large as the others.
+            let (mut values, mut columns) = (found.values, found.columns);
+            for (k, form) in self.forms.iter().enumerate() {
+                let wanted = if k == 0 { distance } else { 0.0 };
+                values.push((apply(form, &offset) - wanted) * scale);
+                for (column, l) in columns.iter_mut().zip(form) {
+                    column.push(l * scale);
+                }
+            }
+            let step = limited_step(&Svd::of(columns), &values, distance);
+            x.add(&step);
+            offset.iter_mut().zip(&step).for_each(|(o, s)| *o += s);
+        }
+        best
+    }
+}
+
+/// The least-squares Newton step, in no singular direction longer than the limit: where the equations are
+/// nearly singular it is long without reason.
+fn limited_step(svd: &Svd, values: &[Complex64], limit: f64) -> Vec<Complex64> {
+    let largest = svd.values.first().copied().unwrap_or(0.0);
+    let mut step = vec![Complex64::default(); svd.domain.len()];
+    let regular = svd
+        .values
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| **s > LEAST_VALUE * largest);
+    for (k, value) in regular {
+        let pairs = svd.images[k].iter().zip(values);
+        let product: Complex64 = pairs.map(|(u, b)| u.conj() * b).sum();
+        let mut factor = -product / (value * value);
+        let length = factor.norm_sqr().sqrt();
+        if length > limit {
+            factor *= limit / length;
+        }
+        for (s, v) in step.iter_mut().zip(&svd.domain[k]) {
+            *s += factor * v;
+        }
+    }
+    step
+}
+
+fn apply(form: &[Complex64], x: &[Complex64]) -> Complex64 {
+    form.iter().zip(x).map(|(l, x)| l * x).sum()
+}

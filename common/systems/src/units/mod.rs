@@ -1,0 +1,6 @@
+//! Units: which powers of two give a system's coefficients ordinary sizes.
+
+mod fit;
+mod magnitudes;
+
+pub use fit::scaling_of;

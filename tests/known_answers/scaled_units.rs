@@ -1,0 +1,253 @@
+//! A change of units changes nothing: systems with exact answers in units far from 1, and known
+//! systems in random units.
+
+use crate::check::solve;
+use cognate_algorithms::PlanOptions;
+use cognate_algorithms::plan::StartChoice;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::expression::Node;
+use cognate_systems::named;
+use cognate_systems::scaling::{Scaling, exact_times, times_power_of_two};
+use cognate_systems::system::System;
+use cognate_tests::systems::written;
+use num_complex::Complex64;
+use std::collections::HashMap;
+
+fn options(seed: u64, start: StartChoice) -> PlanOptions {
+    PlanOptions {
+        seed,
+        start,
+        ..PlanOptions::default()
+    }
+}
+
+fn values(set: &SolutionSet) -> Vec<Vec<Complex64>> {
+    let each = set.solutions.iter();
+    each.map(|solution| solution.variables.values().collect())
+        .collect()
+}
+
+/// Solves with several seeds; every solution is simple and real, and the values of the first
+/// variable are these, to twelve digits.
+fn first_values(text: &str, expected: &[f64]) {
+    let system = written(text);
+    for seed in 1..=5 {
+        let (_, sets) = solve(&system, &options(seed, StartChoice::Auto), &|_| None);
+        let set = &sets[0];
+        let mut found: Vec<f64> = values(set).iter().map(|point| point[0].re).collect();
+        found.sort_by(f64::total_cmp);
+        let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-12 * b.abs();
+        assert!(
+            found.len() == expected.len() && found.iter().zip(expected).all(close),
+            "{text}, seed {seed}: {found:?}, {:?}",
+            set.paths
+        );
+        let counts = (set.counts.nonsingular, set.counts.singular, set.counts.real);
+        let number = expected.len() as u64;
+        assert_eq!(counts, (number, 0, Some(number)), "{text}, seed {seed}");
+    }
+}
+
+#[test]
+fn numbers_far_from_1_are_no_infinity_and_no_zero() {
+    let x = "variable_group x; function f;";
+    first_values(
+        &format!("{x} f = x + 2^100;"),
+        &[-times_power_of_two(1.0, 100)],
+    );
+    first_values(&format!("{x} f = x^2 - 1e-20;"), &[-1e-10, 1e-10]);
+    first_values(&format!("{x} f = x^2 - 1e300;"), &[-1e150, 1e150]);
+    let xy = "variable_group x, y; function f, g;";
+    let [a, b] = [1e8; 2];
+    first_values(
+        &format!("{xy} f = x^2 - 1e16; g = y^2 - 3;"),
+        &[-a, -b, a, b],
+    );
+}
+
+/// x^2 + y^2 = 5 and x y = 2 have (1, 2), (2, 1) and their negatives.
+#[test]
+fn a_circle_and_a_hyperbola_meet_in_any_units() {
+    for exponent in [-150, -40, -8, -7, 7, 8, 40, 150] {
+        let text = format!(
+            "variable_group x, y; function f, g; f = x^2 + y^2 - 5e{}; g = x*y - 2e{};",
+            2 * exponent,
+            2 * exponent
+        );
+        let unit: f64 = format!("1e{exponent}").parse().unwrap();
+        first_values(&text, &[-2.0, -1.0, 1.0, 2.0].map(|x| x * unit));
+    }
+}
+
+/// Coefficients of 401 digits, in ordinary units.
+#[test]
+fn coefficients_of_hundreds_of_digits_are_numbers() {
+    let text = "variable_group x, y; function f, g; f = 1e400*x^2 - 4e400; g = 3e-390*(x - y);";
+    first_values(text, &[-2.0, 2.0]);
+}
+
+/// The system in other units: variable i of the old one is 2^(units[i]) times variable i of the new
+/// one, and equation i is multiplied by 2^(factors[i]); as a file would have it.
+fn in_other_units(system: &System, units: &[i32], factors: &[i32]) -> System {
+    let mut out = cognate_systems::expression::Expressions::new();
+    let mut memory = HashMap::new();
+    let one = cognate_numeric::rational::ComplexRational::real(1);
+    let mut equations = Vec::new();
+    for (&equation, &factor) in system.equations.iter().zip(factors) {
+        let leaf = &mut |to: &mut cognate_systems::expression::Expressions, leaf: &Node| match leaf
+        {
+            Node::Variable(v) => {
+                let unit = to.constant(exact_times(&one, i64::from(units[*v as usize])));
+                let variable = to.variable(*v);
+                to.multiply(unit, variable)
+            }
+            other => to.insert(other.clone()),
+        };
+        let node = out.import(&system.expressions, equation, &mut memory, leaf);
+        let factor = out.constant(exact_times(&one, i64::from(factor)));
+        equations.push(out.multiply(factor, node));
+    }
+    System {
+        expressions: out,
+        equations,
+        degenerate: Default::default(),
+        symmetry: Vec::new(),
+        ..system.clone()
+    }
+}
+
+/// The system has the same counts in random units, and its solutions are the same points.
+#[track_caller]
+fn same_in_other_units(name: &str, system: &System, start: StartChoice, rounds: u64) {
+    let (_, plain) = solve(system, &options(1, start), &|_| None);
+    let plain = &plain[0];
+    for round in 0..rounds {
+        let mut random = RandomStream::new(round, Purpose::Test, 0);
+        let mut exponent = |most: u64| random.below(2 * most + 1) as i32 - most as i32;
+        let mut units: Vec<i32> = system.variables.iter().map(|_| exponent(40)).collect();
+        // Conjugates are in one unit.
+        for &(a, b) in &system.conjugates {
+            units[b] = units[a];
+        }
+        let factors: Vec<i32> = system.equations.iter().map(|_| exponent(200)).collect();
+        let other = in_other_units(system, &units, &factors);
+        let (_, sets) = solve(&other, &options(round + 1, start), &|_| None);
+        let set = &sets[0];
+        let context = format!("{name}, round {round}, units {units:?}: {:?}", set.paths);
+        let counts = |set: &SolutionSet| {
+            let (paths, counts) = (&set.paths, &set.counts);
+            (
+                (counts.nonsingular, counts.singular, counts.real),
+                (
+                    paths.finite,
+                    paths.singular,
+                    paths.at_infinity,
+                    paths.positive_dimensional,
+                ),
+                paths.failed,
+            )
+        };
+        assert_eq!(counts(plain), counts(set), "{context}");
+        let scaling = Scaling { exponents: units };
+        let back: Vec<Vec<Complex64>> = values(set)
+            .iter()
+            .map(|point| scaling.to_variables(point))
+            .collect();
+        for point in values(plain) {
+            let size = point.iter().fold(1.0f64, |m, z| m.max(z.norm_sqr().sqrt()));
+            let near = |other: &&Vec<Complex64>| {
+                let pairs = point.iter().zip(other.iter());
+                pairs.fold(0.0f64, |m, (a, b)| m.max((a - b).norm_sqr().sqrt())) < 1e-5 * size
+            };
+            assert!(
+                back.iter().any(|other| near(&other)),
+                "{context}: no {point:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn known_systems_are_the_same_in_random_units() {
+    for (name, system) in [
+        ("katsura-5", named::katsura(5).system),
+        ("cyclic-5", named::cyclic(5).system),
+        ("noon-3", named::noon(3).system),
+        ("eco-6", named::eco(6).system),
+        ("caprasse", named::caprasse().system),
+        ("reimer-3", named::reimer(3).system),
+    ] {
+        same_in_other_units(name, &system, StartChoice::Auto, 4);
+    }
+}
+
+#[test]
+fn every_start_is_the_same_in_random_units() {
+    let system = named::katsura(4).system;
+    for start in [
+        StartChoice::TotalDegree,
+        StartChoice::Multihomogeneous,
+        StartChoice::LinearProduct,
+        StartChoice::Polyhedral,
+        StartChoice::Regeneration,
+    ] {
+        same_in_other_units(&format!("katsura-4 by {start:?}"), &system, start, 2);
+    }
+}
+
+#[test]
+fn more_equations_than_unknowns_are_the_same_in_random_units() {
+    let text = "variable_group x, y; function f1, f2, f3; f1 = x^2 + y^2 - 5; f2 = x*y - 2; \
+                f3 = x^3 - 3*x*y^2 + 5*y + x - 0 - (x^3 - 3*x*y^2 + 5*y + x)*(x*y - 1);";
+    same_in_other_units("three conics", &written(text), StartChoice::Auto, 3);
+}
+
+#[test]
+fn homogeneous_groups_are_the_same_in_random_units() {
+    // A conic and a cubic of the projective plane: points are compared by their counts.
+    let text = "hom_variable_group x, y, z; function f, g; f = x^2 + y^2 - 3*z^2; \
+                g = x^3 + 2*y^3 - z^3 + x*y*z;";
+    let system = written(text);
+    for round in 0..3 {
+        let mut random = RandomStream::new(round, Purpose::Test, 1);
+        let units: Vec<i32> = (0..3).map(|_| random.below(81) as i32 - 40).collect();
+        let other = in_other_units(&system, &units, &[150, -150]);
+        let (_, sets) = solve(&other, &options(round, StartChoice::Auto), &|_| None);
+        let counts = (sets[0].counts.nonsingular, sets[0].paths.failed);
+        assert_eq!(counts, (6, 0), "round {round}: {:?}", sets[0].paths);
+    }
+}
+
+/// Certificates are boxes around the points in their own units, and digits are those of the points.
+#[test]
+fn proofs_and_digits_are_in_the_units_of_the_variables() {
+    let system = written("variable_group x, y; function f, g; f = x^2 - 2e-20; g = x*y - 1e30;");
+    let with = PlanOptions {
+        certify: true,
+        digits: 40,
+        ..options(1, StartChoice::Auto)
+    };
+    let (_, sets) = solve(&system, &with, &|_| None);
+    let set = &sets[0];
+    assert_eq!(
+        (set.counts.certified, set.counts.certified_real),
+        (Some(2), Some(2))
+    );
+    for solution in &set.solutions {
+        let digits: Vec<String> = solution
+            .variables
+            .0
+            .iter()
+            .map(|v| format!("{:?}", v.digits))
+            .collect();
+        assert!(
+            digits[0].contains("1.41421356237309504880168872420969807856"),
+            "{digits:?}"
+        );
+        assert!(
+            digits[1].contains("7071067811865475244008443621048490392848"),
+            "{digits:?}"
+        );
+    }
+}

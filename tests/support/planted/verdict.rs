@@ -1,0 +1,179 @@
+//! A planted system, solved in this process and compared with its exact answer.
+
+use super::Planted;
+use crate::dice::Dice;
+use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::run_locally::drive;
+use cognate_algorithms::{PathAlgorithm, PlanOptions, plan};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::prepared_work::PreparedWork;
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::formats;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Lanes side by side; other widths give the same bits.
+const WIDTH: usize = 8;
+/// Largest distance of a simple solution from the exact one, relative to the largest coordinate.
+const NEAR: f64 = 1e-5;
+/// ... of a multiple one: a point of multiplicity m is known to the m-th root of the rounding.
+const NEAR_MULTIPLE: f64 = 1e-3;
+
+/// What a solve of a planted system showed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Everything as it was planted, and settled.
+    Right,
+    /// Everything as it was planted, but the answer says that it is not settled.
+    RightInDoubt,
+    /// Something is wrong, and the answer says that it is not settled.
+    Doubt(String),
+    /// Something is wrong, and the answer says that it is settled.
+    Silent(String),
+    /// No answer within the time.
+    NoEnd,
+    /// The system was not accepted; the message.
+    Refused(String),
+}
+
+/// What is wrong with a solution set; empty where it is as planted.
+pub fn complaints(planted: &Planted, set: &SolutionSet) -> String {
+    let mut text = String::new();
+    let mut expect = |what: &str, found: u64, expected: u64| {
+        if found != expected {
+            write!(text, " {what} {found} instead of {expected};").expect("text takes all");
+        }
+    };
+    let counts = &set.counts;
+    expect("sum of the classes", set.paths.sum(), set.paths.total);
+    expect("distinct", counts.distinct, planted.roots.len() as u64);
+    if planted.square {
+        expect("nonsingular", counts.nonsingular, planted.nonsingular());
+        expect(
+            "with multiplicity",
+            counts.with_multiplicity,
+            planted.with_multiplicity(),
+        );
+    }
+    if let Some(real) = counts.real {
+        expect("real", real, planted.real());
+    }
+    if let Some(on_a_set) = counts.positive_dimensional {
+        expect(
+            "positive-dimensional",
+            u64::from(on_a_set),
+            u64::from(planted.on_a_set),
+        );
+    }
+    let found: Vec<Vec<Complex64>> = set
+        .solutions
+        .iter()
+        .map(|solution| solution.variables.values().collect())
+        .collect();
+    let mut missing = 0;
+    for root in &planted.roots {
+        let exact = root.rounded();
+        let size = exact
+            .iter()
+            .map(|z| z.norm_sqr())
+            .fold(0.0, f64::max)
+            .sqrt();
+        let near = if root.multiplicity > 1 {
+            NEAR_MULTIPLE
+        } else {
+            NEAR
+        };
+        let within = near * if size > 0.0 { size } else { 1.0 };
+        let distance = |point: &Vec<Complex64>| {
+            let pairs = point.iter().zip(&exact);
+            pairs
+                .map(|(a, b)| (a - b).norm_sqr())
+                .fold(0.0, f64::max)
+                .sqrt()
+        };
+        missing += u64::from(!found.iter().any(|point| distance(point) <= within));
+    }
+    expect("missing points", missing, 0);
+    text
+}
+
+/// A start for this throw: mostly the one that is chosen by itself.
+pub fn start(dice: &mut Dice) -> StartChoice {
+    match dice.below(10) {
+        0..=4 => StartChoice::Auto,
+        5 | 6 => StartChoice::TotalDegree,
+        7 => StartChoice::Polyhedral,
+        8 => StartChoice::LinearProduct,
+        _ => StartChoice::Multihomogeneous,
+    }
+}
+
+/// Solves in this process, within this time; the set of the first target.
+///
+/// # Errors
+/// The verdict where there is none: [`Verdict::NoEnd`] or [`Verdict::Refused`].
+pub fn solve_within(
+    system: &System,
+    options: &PlanOptions,
+    limit: Duration,
+) -> Result<SolutionSet, Verdict> {
+    let refused = |error: String| Verdict::Refused(error);
+    let mut plan = plan(system, options).map_err(|error| refused(error.to_string()))?;
+    let until = Instant::now() + limit;
+    let mut made = HashMap::<Digest, Arc<StoredPoints>>::new();
+    let tracked = plan.system.clone();
+    drive::<Verdict>(&mut plan.algorithm, &mut |opening| {
+        let objects = opening.objects.iter();
+        made.extend(objects.map(|points| (points.digest(), Arc::clone(points))));
+        let find = |wanted: Digest| made.get(&wanted).cloned();
+        let work = PreparedWork::new(&tracked, &opening.stage, &find);
+        let work = work.map_err(|error| refused(error.to_string()))?;
+        let mut results = Vec::<PathResult>::new();
+        let mut next = 0;
+        while next < work.items() {
+            let end = (next + WIDTH as u64).min(work.items());
+            results.extend(work.run(next..end, WIDTH));
+            next = end;
+            if Instant::now() > until {
+                return Err(Verdict::NoEnd);
+            }
+        }
+        Ok(results)
+    })?;
+    if let Some(message) = plan.algorithm.failure() {
+        return Err(refused(message));
+    }
+    let sets = plan.algorithm.solution_sets(&tracked);
+    let first = sets.into_iter().next();
+    first.ok_or_else(|| refused("there is no solution set".into()))
+}
+
+/// Solves with one start and seed, within this time.
+pub fn solve(planted: &Planted, start: StartChoice, seed: u64, limit: Duration) -> Verdict {
+    let text = planted.file("");
+    let system = match formats::read("planted", text.as_bytes()) {
+        Ok(problem) => problem.system,
+        Err(error) => return Verdict::Refused(error.to_string()),
+    };
+    let options = PlanOptions {
+        start,
+        seed,
+        ..PlanOptions::default()
+    };
+    let set = match solve_within(&system, &options, limit) {
+        Ok(set) => set,
+        Err(verdict) => return verdict,
+    };
+    let wrong = complaints(planted, &set);
+    match (wrong.is_empty(), set.settled()) {
+        (true, true) => Verdict::Right,
+        (true, false) => Verdict::RightInDoubt,
+        (false, true) => Verdict::Silent(wrong),
+        (false, false) => Verdict::Doubt(wrong),
+    }
+}
