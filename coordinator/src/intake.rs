@@ -129,6 +129,7 @@ pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
             file.final_tolerance.or(file.endgame_tolerance),
             base.endgame_tolerance,
         ),
+        data_accuracy: Some(file.data_accuracy),
         max_steps: file
             .maximum_steps
             .filter(|&steps| steps > 0)

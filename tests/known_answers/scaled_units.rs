@@ -242,7 +242,7 @@ fn proofs_and_digits_are_in_the_units_of_the_variables() {
             .map(|v| format!("{:?}", v.digits))
             .collect();
         assert!(
-            digits[0].contains("1.41421356237309504880168872420969807856"),
+            digits[0].contains("1.41421356237309504880168872420969807857"),
             "{digits:?}"
         );
         assert!(

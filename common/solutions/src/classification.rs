@@ -128,13 +128,11 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     let point = result.endpoint.to_double();
     let singular = match result.outcome {
         PathOutcome::Failed(_) => return Decision::clear(Verdict::Failed),
-        // With a power sum that is not 0 it ends at a point that is infinity as far as doubles tell.
-        PathOutcome::Diverging => {
-            return Decision {
-                verdict: Verdict::AtInfinity,
-                by_precision_limit: result.accuracy.is_finite(),
-            };
+        // A power sum that is not 0 is one within the accuracy of the data: other data have infinity.
+        PathOutcome::Diverging if result.accuracy.is_finite() => {
+            return Decision::clear(Verdict::WithinDataAccuracy);
         }
+        PathOutcome::Diverging => return Decision::clear(Verdict::AtInfinity),
         // A result that holds no point is as good as none.
         _ if !shape.holds(point) => return Decision::clear(Verdict::Failed),
         _ if !solves(result, tolerances) => return Decision::clear(Verdict::Failed),
@@ -341,6 +339,8 @@ mod tests {
         result.outcome = PathOutcome::Diverging;
         (result.residual, result.accuracy) = (f64::INFINITY, f64::INFINITY);
         assert_eq!(verdict(&result), (Verdict::AtInfinity, false));
+        result.accuracy = 1e-13;
+        assert_eq!(verdict(&result), (Verdict::WithinDataAccuracy, false));
     }
 
     #[test]

@@ -217,6 +217,10 @@ pub struct ProblemArguments {
     /// Also isolated singular solutions get their digits, by deflation
     #[arg(long)]
     pub deflate: bool,
+    /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit:
+    /// also solutions that rounding makes, near infinity, are followed to their ends
+    #[arg(long)]
+    pub exact: bool,
     /// Let a trace test decide when --start monodromy has all solutions: it is a proof but for
     /// rounding, where loops without anything new are only evidence
     #[arg(long)]

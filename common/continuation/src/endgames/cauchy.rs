@@ -22,9 +22,9 @@ const SHRINKAGE: f64 = 0.125;
 /// Sheets that branch points inside the radius join are followed further in, to this part of how far
 /// out the branch points are.
 const WITHIN: f64 = 0.1;
-/// Radius below which sheets are not followed until they part: equations with coefficients of sixteen digits
-/// have such ends where exact ones have infinity.
-const NEAREST: f64 = 1e-20;
+/// A power sum of a homogenising coordinate so many times the accuracy of the coefficients is one that other
+/// coefficients within their accuracy do not have.
+const WITHIN_DATA: f64 = 10.0;
 /// Turns after which a path that has not closed is taken further in, twice as many every second time,
 /// unless it looks as if it diverged: more often branch points lie inside the radius than the
 /// winding number is so large.
@@ -71,8 +71,8 @@ pub enum Next {
         winding_number: Option<u32>,
         /// Turns of each homogenising coordinate, where the path closed.
         infinity_turns: Vec<i32>,
-        /// A power sum of a homogenising coordinate that is not 0, but so small that where its sheets
-        /// part lies beyond reach.
+        /// A power sum of a homogenising coordinate that is not 0, but within the accuracy of the
+        /// coefficients.
         power_sum: Option<f64>,
     },
     /// The turns are made again at this radius with more digits: whether a homogenising
@@ -303,17 +303,21 @@ impl Cauchy {
                 vertex: 1,
             };
         }
-        match self.at_infinity(size) {
+        let infinity = self.at_infinity(size);
+        match infinity {
             Infinity::Shown => return self.diverging(None),
             Infinity::BelowNoise if self.may_be_finer => return Next::Finer,
             Infinity::Apart { part, power_sum } if WITHIN * part < SHRINKAGE => {
-                if self.radius * WITHIN * part < NEAREST {
+                if power_sum <= WITHIN_DATA * settings.data_accuracy {
                     return self.diverging(Some(power_sum));
                 }
                 self.previous = None;
                 return self.inward(WITHIN * part, settings);
             }
-            Infinity::BelowNoise | Infinity::Apart { .. } | Infinity::No => {}
+            Infinity::BelowNoise
+            | Infinity::Unresolved
+            | Infinity::Apart { .. }
+            | Infinity::No => {}
         }
         let samples = f64::from(self.turns * VERTICES);
         let mean: Vec<Complex64> = self.sum.iter().map(|s| s / samples).collect();
@@ -337,7 +341,8 @@ impl Cauchy {
         }
         if let Some((turns, previous)) = &self.previous {
             let change = distance(&mean, previous) / size;
-            if *turns == self.turns && change <= settings.endgame_tolerance {
+            let agree = *turns == self.turns && change <= settings.endgame_tolerance;
+            if agree && infinity != Infinity::Unresolved {
                 // The aliasing error falls with the 16th power of the radius, so the newer mean
                 // is better than the change by far; what remains is the noise of the samples.
                 let accuracy = (0.01 * change)
@@ -472,9 +477,10 @@ impl Cauchy {
             let here = vanishes(&samples, self.turns, winding.turns() > 0, self.noise, size);
             match here {
                 Infinity::Shown => return Infinity::Shown,
-                Infinity::BelowNoise => found = Infinity::BelowNoise,
-                Infinity::Apart { .. } if found == Infinity::No => found = here,
-                Infinity::Apart { .. } | Infinity::No => {}
+                Infinity::BelowNoise => found = here,
+                Infinity::Apart { .. } if found != Infinity::BelowNoise => found = here,
+                Infinity::Unresolved if found == Infinity::No => found = here,
+                Infinity::Apart { .. } | Infinity::Unresolved | Infinity::No => {}
             }
         }
         found

@@ -34,6 +34,8 @@ pub(super) enum Infinity {
     Shown,
     /// It does as far as these digits tell, which is not far enough.
     BelowNoise,
+    /// Whether one does does not show: the samples are too few for it.
+    Unresolved,
     /// None does.
     No,
     /// None does on all sheets: branch points that lie inside join them.
@@ -83,16 +85,17 @@ pub(super) fn vanishes(
             let ratio = mean / scale.max(f64::MIN_POSITIVE);
             let part = (0..sheets / k).fold(1.0, |part, _| part * ratio);
             let power_sum = mean;
-            return match mean > CLEARLY * bound && part.is_finite() {
-                true => Infinity::Apart { part, power_sum },
-                false => Infinity::No,
+            return match mean > CLEARLY * bound {
+                true if part.is_finite() => Infinity::Apart { part, power_sum },
+                false if mean.is_finite() => Infinity::Unresolved,
+                _ => Infinity::No,
             };
         }
         let limit = limit.max(LEAST_POWER_SUM);
         if noise > limit {
             found = Infinity::BelowNoise;
         } else if bound > limit {
-            return Infinity::No;
+            return Infinity::Unresolved;
         }
     }
     found

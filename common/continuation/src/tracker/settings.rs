@@ -37,6 +37,8 @@ pub struct Settings {
     pub singular_condition: f64,
     /// Relative accuracy at which a singular endpoint counts as settled.
     pub endgame_tolerance: f64,
+    /// Relative accuracy of the system's coefficients: what depends on less is not followed. 0: exact.
+    pub data_accuracy: f64,
     /// Bits of the arithmetic that a path begins in: 53 (double), 106 (double-double), or more.
     pub precision_bits: u32,
     /// A path that lacks digits goes up to at most this many bits.
@@ -58,6 +60,7 @@ impl Default for Settings {
             max_winding_number: 32,
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
+            data_accuracy: 0.0,
             precision_bits: 53,
             max_precision_bits: 1024,
         }

@@ -268,6 +268,7 @@ impl Draw {
             max_winding_number: 32,
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
+            data_accuracy: 0.0,
             precision_bits: [53, 106, 212][self.below(3)],
             max_precision_bits: [53, 1024][self.below(2)],
         }

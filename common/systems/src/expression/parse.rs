@@ -172,22 +172,47 @@ fn binary(symbol: char) -> Option<Operation> {
     })
 }
 
+/// What the expressions of one file come to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Their steps, for the limit on them.
+    pub steps: u64,
+    /// Largest relative accuracy of a rounded decimal; 0 where all numbers are exact.
+    pub data_accuracy: f64,
+}
+
+/// A decimal with fewer significant digits is what somebody chose; with as many it was computed or
+/// measured, and is known to half a unit of its last digit.
+const ROUNDED_DIGITS: usize = 8;
+
+/// Relative accuracy of a decimal number: half a unit of its last digit where it is rounded, else 0.
+fn relative_accuracy(text: &str) -> f64 {
+    let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
+    let digits: String = mantissa.chars().filter(|&c| c != '.').collect();
+    let significant = digits.trim_start_matches('0');
+    if significant.len() < ROUNDED_DIGITS || !text.contains(['.', 'e', 'E']) {
+        return 0.0;
+    }
+    // Past 300 digits a double holds neither the number nor its accuracy.
+    let value = significant.parse().unwrap_or(f64::INFINITY);
+    0.5 / value
+}
+
 /// Reads the longest expression at the tokens' place; the token after it stays.
 ///
-/// `end` says in words what may follow the expression. `written` counts the
-/// steps of a whole file, for the limit on them.
+/// `end` says in words what may follow the expression. `totals` are those of the whole file so far.
 pub fn expression(
     tokens: &mut Tokens<'_>,
     names: &mut Names,
     dialect: Dialect,
     end: &str,
-    written: &mut u64,
+    totals: &mut Totals,
 ) -> Result<Parsed, Fault> {
     let mut parsed = Parsed::default();
     let mut open: Vec<(Open, Span)> = Vec::new();
     let mut operand_next = true;
     let start = tokens.peek().span;
-    let mut steps = *written;
+    let mut steps = totals.steps;
     loop {
         let token = tokens.peek();
         let mut put = |parsed: &mut Parsed, operation, span| {
@@ -198,6 +223,7 @@ pub fn expression(
             match token.kind {
                 TokenKind::Number(text) => {
                     let value = number(text, token.span)?;
+                    totals.data_accuracy = totals.data_accuracy.max(relative_accuracy(text));
                     let number = Operation::Number(parsed.numbers.len() as u32);
                     put(&mut parsed, number, token.span);
                     parsed.numbers.push(value);
@@ -290,7 +316,7 @@ pub fn expression(
             return Err(Fault::limit(token.span, limits::OPERATIONS, "more"));
         }
     }
-    *written = steps;
+    totals.steps = steps;
     parsed.span = Span {
         start: start.start,
         end: tokens.position(),

@@ -33,9 +33,10 @@ const FIELDS: [&str; 10] = [
 
 /// Reads a problem in our JSON.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    let system = system(source).map_err(|fault| fault.into_error(source))?;
+    let (system, data_accuracy) = system(source).map_err(|fault| fault.into_error(source))?;
     let settings = FileSettings {
         user_homotopy: system.path_variable.is_some(),
+        data_accuracy,
         ..FileSettings::default()
     };
     Ok(Problem {
@@ -46,7 +47,8 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     })
 }
 
-fn system(source: &Source<'_>) -> Result<System, FieldFault> {
+/// The system, and the relative accuracy of its decimals.
+fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
     let text = source.text;
     let root = json_value::parse(text, 0, text.len()).map_err(at(""))?;
     let mut fields: HashMap<&str, &Value<'_>> = HashMap::new();
@@ -161,7 +163,8 @@ fn system(source: &Source<'_>) -> Result<System, FieldFault> {
     system.expressions = std::mem::take(&mut scope.builder.expressions);
     let variables = required("variables")?.span;
     let equations = required("equations")?.span;
-    finish(system, &places, end).map_err(|mut fault| match &fault.problem {
+    let finished = finish(system, &places, end).map(|system| (system, scope.data_accuracy()));
+    finished.map_err(|mut fault| match &fault.problem {
         What::ConstantEquation(_) | What::Limit { .. } => {
             let i = places.iter().position(|p| *p == fault.span);
             FieldFault::new(

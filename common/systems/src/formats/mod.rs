@@ -69,6 +69,9 @@ pub enum PrecisionHint {
 pub struct FileSettings {
     /// Seed of all random numbers (`RandomSeed`; 0 there means none is given).
     pub seed: Option<u64>,
+    /// Largest relative accuracy of a rounded decimal: one of 8 significant digits or more is known to
+    /// half a unit of its last digit; 0 where all numbers are exact.
+    pub data_accuracy: f64,
     /// Digits to compute with (`MPType`, `Precision`).
     pub precision: Option<PrecisionHint>,
     /// Decimal digits of the solutions (`SharpenDigits`; 0 there means those of the paths).

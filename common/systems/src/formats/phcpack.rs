@@ -17,10 +17,12 @@ use crate::system::{System, VariableGroup};
 /// Reads a system in PHCpack's format; what follows the polynomials (solutions) is not read.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     let mut warnings = Vec::new();
-    let system = system(source, &mut warnings).map_err(|fault| source.error(fault))?;
+    let mut settings = FileSettings::default();
+    let system =
+        system(source, &mut settings, &mut warnings).map_err(|fault| source.error(fault))?;
     Ok(Problem {
         system,
-        settings: FileSettings::default(),
+        settings,
         format: Format::Phcpack,
         warnings,
     })
@@ -92,12 +94,16 @@ fn header(text: &str) -> Result<Header, Fault> {
     })
 }
 
-fn system(source: &Source<'_>, warnings: &mut Vec<Warning>) -> Result<System, Fault> {
+fn system(
+    source: &Source<'_>,
+    settings: &mut FileSettings,
+    warnings: &mut Vec<Warning>,
+) -> Result<System, Fault> {
     let header = header(source.text)?;
     let mut tokens = Tokens::starting_at(source.text, header.end, None);
     let mut names = Names::default();
     let mut builder = Builder::default();
-    let mut written = 0;
+    let mut totals = parse::Totals::default();
     let mut places = Vec::new();
     let mut system = System::default();
     for number in 1..=header.equations {
@@ -107,7 +113,7 @@ fn system(source: &Source<'_>, warnings: &mut Vec<Warning>) -> Result<System, Fa
             return Err(Fault::expected(token.span, expected, token.describe()));
         }
         let dialect = Dialect::PHCPACK;
-        let parsed = parse::expression(&mut tokens, &mut names, dialect, "`;`", &mut written)?;
+        let parsed = parse::expression(&mut tokens, &mut names, dialect, "`;`", &mut totals)?;
         tokens.expect_symbol(';', "an operator or `;`")?;
         if names.count() > header.unknowns {
             let extra = header.unknowns as u32;
@@ -132,6 +138,7 @@ fn system(source: &Source<'_>, warnings: &mut Vec<Warning>) -> Result<System, Fa
         system.equation_names.push(format!("f{number}"));
         places.push(parsed.span);
     }
+    settings.data_accuracy = totals.data_accuracy;
     if names.count() < header.unknowns {
         return Err(Fault::expected(
             header.span,

@@ -79,10 +79,15 @@ pub(crate) struct Scope {
     names: Names,
     values: Vec<Option<NodeId>>,
     declared: HashMap<u32, &'static str>,
-    written: u64,
+    totals: parse::Totals,
 }
 
 impl Scope {
+    /// Largest relative accuracy of a rounded decimal so far.
+    pub fn data_accuracy(&self) -> f64 {
+        self.totals.data_accuracy
+    }
+
     /// The variables and parameters of a system, and its graph.
     pub fn of(system: &System) -> Self {
         let mut scope = Self {
@@ -157,7 +162,7 @@ impl Scope {
             &mut self.names,
             dialect,
             end,
-            &mut self.written,
+            &mut self.totals,
         );
         let result = result.and_then(|parsed| match tokens.peek() {
             token if token.kind == TokenKind::End => Ok(parsed),

@@ -159,7 +159,7 @@ fn statements(
         tokens.take();
     }
     let mut statements = Statements::default();
-    let mut written = 0;
+    let mut totals = parse::Totals::default();
     loop {
         let token = tokens.take();
         let word = match token.kind {
@@ -215,7 +215,7 @@ fn statements(
                 &mut statements.names,
                 Dialect::BERTINI,
                 "`;`",
-                &mut written,
+                &mut totals,
             )?;
             tokens.expect_symbol(';', "an operator or `;`")?;
             if let Some(&earlier) = statements.defined.get(&name) {
@@ -237,6 +237,7 @@ fn statements(
             statements.definitions.push((name, token.span, parsed));
         }
     }
+    settings.data_accuracy = totals.data_accuracy;
     Ok(statements)
 }
 
