@@ -184,6 +184,7 @@ settings_choice! {
     singular_condition: f64, 1.0..=1e300;
     endgame_tolerance: f64, 1e-300..=1.0;
     data_accuracy: f64, 0.0..=1.0;
+    exact_data: bool, false..=true;
     precision_bits: u32, 53..=65_536;
     max_precision_bits: u32, 53..=65_536;
 }

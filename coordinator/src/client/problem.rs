@@ -167,7 +167,6 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         target_parameters.push(values);
         warnings.push(warning);
     }
-    let settings = intake::of_file(&file, &preset.settings());
     let options = Options {
         start,
         // The groups are in the system already.
@@ -176,8 +175,8 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         seed: a.seed.or(file.seed),
         settings: SettingsChoice {
             preset: Some(preset),
-            data_accuracy: settings.data_accuracy.map(|given| if a.exact { 0.0 } else { given }),
-            ..settings
+            exact_data: Some(a.exact),
+            ..intake::of_file(&file, &preset.settings())
         },
         precision: a.precision,
         start_parameters: start_parameters.pop().unwrap_or_default(),

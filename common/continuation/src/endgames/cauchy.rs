@@ -9,7 +9,7 @@
 //! endpoint counts when they do, and when two radii agree on it and on c.
 
 use super::circle::VERTICES;
-use super::infinity::{Homogenizing, Infinity, at_exact_vertex, vanishes};
+use super::infinity::{Homogenizing, Infinity, Zero, at_exact_vertex, vanishes};
 use super::winding::Winding;
 use crate::chart::norm;
 use crate::tracker::settings::Settings;
@@ -303,12 +303,13 @@ impl Cauchy {
                 vertex: 1,
             };
         }
-        let infinity = self.at_infinity(size);
+        let infinity = self.at_infinity(size, settings);
         match infinity {
             Infinity::Shown => return self.diverging(None),
             Infinity::BelowNoise if self.may_be_finer => return Next::Finer,
             Infinity::Apart { part, power_sum } if WITHIN * part < SHRINKAGE => {
-                if power_sum <= WITHIN_DATA * settings.data_accuracy {
+                let within_data = power_sum <= WITHIN_DATA * settings.data_accuracy;
+                if within_data && !settings.exact_data {
                     return self.diverging(Some(power_sum));
                 }
                 self.previous = None;
@@ -468,13 +469,15 @@ impl Cauchy {
     /// The power sums of its values on the sheets are analytic in t, so that their values at 0 are
     /// means over the samples, and they are all 0 only if every sheet's value is (Newton's identities).
     /// `size`: largest coordinate.
-    fn at_infinity(&self, size: f64) -> Infinity {
+    fn at_infinity(&self, size: f64, settings: &Settings) -> Infinity {
         let groups = self.infinity.len();
         let mut found = Infinity::No;
         for (k, winding) in self.infinity.iter().enumerate() {
             let samples: Vec<&Homogenizing> =
                 self.homogenizing.iter().skip(k).step_by(groups).collect();
-            let here = vanishes(&samples, self.turns, winding.turns() > 0, self.noise, size);
+            let turns = winding.turns() > 0;
+            let zero = Zero::of(settings);
+            let here = vanishes(&samples, self.turns, turns, self.noise, size, zero);
             match here {
                 Infinity::Shown => return Infinity::Shown,
                 Infinity::BelowNoise => found = here,

@@ -7,6 +7,7 @@
 //! sheets with different ends, whose power sums are not 0.
 
 use super::circle::exact_vertex;
+use crate::tracker::settings::Settings;
 use cognate_numeric::scalar::{Complex, DoubleDouble};
 use num_complex::Complex64;
 
@@ -47,16 +48,51 @@ pub(super) enum Infinity {
     },
 }
 
+/// Below what values and power sums at t = 0 count as 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Zero {
+    /// Values.
+    pub value: f64,
+    /// Power sums.
+    pub power_sum: f64,
+}
+
+impl Zero {
+    /// Coefficients that are exact to many digits have smaller values and power sums that are not 0:
+    /// products of what rounding of several coefficients makes.
+    pub(super) fn of(settings: &Settings) -> Self {
+        let accuracy = match settings.exact_data {
+            true => settings.data_accuracy,
+            false => 0.0,
+        };
+        match accuracy > 0.0 {
+            true => Self {
+                value: FARTHEST.min(accuracy * accuracy).max(1e-40),
+                power_sum: LEAST_POWER_SUM.min(accuracy * accuracy * accuracy).max(1e-60),
+            },
+            false => Self::EXACT,
+        }
+    }
+
+    /// With integers, fractions and short decimals.
+    const EXACT: Self = Self {
+        value: FARTHEST,
+        power_sum: LEAST_POWER_SUM,
+    };
+}
+
 /// Whether a homogenising coordinate vanishes at t = 0 on all the sheets that a closed path has joined.
 ///
 /// `samples`: its values at all vertices of all turns, in their order; `sheets`: the number of turns;
-/// `turns`: whether it turned around 0; `noise`: relative error of the samples; `size`: the largest coordinate.
+/// `turns`: whether it turned around 0; `noise`: relative error of the samples; `size`: the largest
+/// coordinate; `zero`: below what values count as 0.
 pub(super) fn vanishes(
     samples: &[&Homogenizing],
     sheets: u32,
     turns: bool,
     noise: f64,
     size: f64,
+    zero: Zero,
 ) -> Infinity {
     let inverse = Complex::from_f64((), 1.0 / size, 0.0);
     let values: Vec<Homogenizing> = samples.iter().map(|z| product(z, &inverse)).collect();
@@ -68,6 +104,7 @@ pub(super) fn vanishes(
     let mut powers = values.clone();
     let (mut scale, mut limit) = (1.0, 1.0f64);
     let mut found = Infinity::Shown;
+    let (mut farthest, mut power_sum) = (None, 0.0f64);
     for k in 1..=sheets {
         if k > 1 {
             for (power, value) in powers.iter_mut().zip(&values) {
@@ -77,28 +114,31 @@ pub(super) fn vanishes(
         let PowerMean { mean, aliasing } = PowerMean::of(&powers);
         let noise = f64::from(k) * noise * scale;
         scale *= largest;
-        limit *= FARTHEST;
+        limit = (limit * zero.value).max(zero.power_sum);
         let bound = noise + aliasing;
-        if mean > bound || mean.is_nan() {
+        if !mean.is_finite() {
+            return Infinity::No;
+        }
+        if mean > CLEARLY * bound {
             // Where y_0^c = b + a t, the mean of power c is b and y_0^c at the radius is a t; a mean of
             // power k speaks of values at t = 0 whose power c is that to c/k.
             let ratio = mean / scale.max(f64::MIN_POSITIVE);
             let part = (0..sheets / k).fold(1.0, |part, _| part * ratio);
-            let power_sum = mean;
-            return match mean > CLEARLY * bound {
-                true if part.is_finite() => Infinity::Apart { part, power_sum },
-                false if mean.is_finite() => Infinity::Unresolved,
-                _ => Infinity::No,
+            farthest = Some(farthest.map_or(part, |most: f64| most.max(part)));
+            power_sum = power_sum.max(mean);
+        } else if mean > bound || bound > limit {
+            found = match found {
+                Infinity::Shown if mean <= bound && noise > limit => Infinity::BelowNoise,
+                Infinity::Shown => Infinity::Unresolved,
+                worse => worse,
             };
         }
-        let limit = limit.max(LEAST_POWER_SUM);
-        if noise > limit {
-            found = Infinity::BelowNoise;
-        } else if bound > limit {
-            return Infinity::Unresolved;
-        }
     }
-    found
+    match farthest {
+        Some(part) if part.is_finite() => Infinity::Apart { part, power_sum },
+        Some(_) => Infinity::No,
+        None => found,
+    }
 }
 
 /// The mean of a power over the samples of a closed path: its power sum at t = 0.
@@ -200,7 +240,8 @@ mod tests {
 
     fn found(c: u32, b: f64, radius: f64, noise: f64) -> Infinity {
         let samples = samples(c, b, radius);
-        vanishes(&samples.iter().collect::<Vec<_>>(), c, true, noise, 1.0)
+        let samples: Vec<_> = samples.iter().collect();
+        vanishes(&samples, c, true, noise, 1.0, Zero::EXACT)
     }
 
     #[test]
@@ -235,6 +276,6 @@ mod tests {
             |z: &num_complex::Complex64| Homogenizing::from_f64((), 0.1 + 1e-3 * z.re, 1e-3 * z.im);
         let samples: Vec<Homogenizing> = circle.iter().map(at).collect();
         let samples: Vec<&Homogenizing> = samples.iter().collect();
-        assert_eq!(vanishes(&samples, 1, false, 1e-15, 1.0), Infinity::No);
+        assert_eq!(vanishes(&samples, 1, false, 1e-15, 1.0, Zero::EXACT), Infinity::No);
     }
 }

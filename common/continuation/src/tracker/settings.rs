@@ -37,8 +37,10 @@ pub struct Settings {
     pub singular_condition: f64,
     /// Relative accuracy at which a singular endpoint counts as settled.
     pub endgame_tolerance: f64,
-    /// Relative accuracy of the system's coefficients: what depends on less is not followed. 0: exact.
+    /// Relative accuracy of the system's decimal coefficients; 0 where there are none.
     pub data_accuracy: f64,
+    /// Whether what depends on digits of the coefficients beyond that accuracy is followed nevertheless.
+    pub exact_data: bool,
     /// Bits of the arithmetic that a path begins in: 53 (double), 106 (double-double), or more.
     pub precision_bits: u32,
     /// A path that lacks digits goes up to at most this many bits.
@@ -61,6 +63,7 @@ impl Default for Settings {
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
             data_accuracy: 0.0,
+            exact_data: false,
             precision_bits: 53,
             max_precision_bits: 1024,
         }

@@ -269,6 +269,7 @@ impl Draw {
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
             data_accuracy: 0.0,
+            exact_data: false,
             precision_bits: [53, 106, 212][self.below(3)],
             max_precision_bits: [53, 1024][self.below(2)],
         }
