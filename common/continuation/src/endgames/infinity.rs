@@ -127,10 +127,12 @@ pub(super) fn vanishes(
             farthest = Some(farthest.map_or(part, |most: f64| most.max(part)));
             power_sum = power_sum.max(mean);
         } else if mean > bound || bound > limit {
+            // Where more samples are wanted as well, a smaller radius gives both.
             found = match found {
-                Infinity::Shown if mean <= bound && noise > limit => Infinity::BelowNoise,
-                Infinity::Shown => Infinity::Unresolved,
-                worse => worse,
+                Infinity::Shown | Infinity::BelowNoise if mean <= bound && noise > limit => {
+                    Infinity::BelowNoise
+                }
+                _ => Infinity::Unresolved,
             };
         }
     }
