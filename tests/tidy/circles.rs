@@ -14,6 +14,7 @@ const CIRCLES: [(&str, &[&str], &str); 5] = [
         &[
             "any_algorithm",
             "certified_solve",
+            "given_start",
             "monodromy",
             "monodromy/completeness",
             "parameter_solve",

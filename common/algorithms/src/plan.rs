@@ -19,7 +19,7 @@ use crate::start_costs::{
 use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::branches::CellBranches;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};

@@ -213,7 +213,7 @@ impl Writer {
             dual_dimensions,
             bound,
             margin,
-            moved_slices,
+            moved_slices: _,
         }) = local_dimension
         {
             self.0.push(tag::LOCAL_DIMENSION);
@@ -221,15 +221,6 @@ impl Writer {
             dual_dimensions.iter().for_each(|&d| self.u32(d));
             self.u64(*bound);
             self.f64(*margin);
-            if !moved_slices.is_empty() {
-                self.0.push(tag::MOVED_SLICES);
-                self.length(moved_slices.len());
-                for slice in moved_slices {
-                    self.f64(slice.distance);
-                    self.f64(slice.residual);
-                    self.f64(slice.reached);
-                }
-            }
         }
         match sharpening {
             None => {}
@@ -275,6 +266,16 @@ impl Writer {
             }
             Some(BranchCount::Tie) => self.0.extend_from_slice(&[tag::UNCOUNTED, 1]),
             Some(BranchCount::TooLarge) => self.0.extend_from_slice(&[tag::UNCOUNTED, 2]),
+        }
+        let slices = local_dimension.as_ref().map(|found| &found.moved_slices);
+        if let Some(slices) = slices.filter(|slices| !slices.is_empty()) {
+            self.0.push(tag::MOVED_SLICES);
+            self.length(slices.len());
+            for slice in slices {
+                self.f64(slice.distance);
+                self.f64(slice.residual);
+                self.f64(slice.reached);
+            }
         }
     }
 }

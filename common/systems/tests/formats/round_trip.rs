@@ -258,6 +258,7 @@ fn settings_come_back_and_what_a_notation_lacks_is_said() {
     let settings = FileSettings {
         digits: Some(30),
         seed: Some(7),
+        data_accuracy: 0.0,
         precision: Some(PrecisionHint::Bits(192)),
         final_tolerance: Some(1.5e-12),
         tracking_tolerance: Some(1e-6),
