@@ -673,7 +673,7 @@ mod tests {
     fn given(dimension: usize) -> PlanOptions {
         PlanOptions {
             start_points: Some(GivenStart {
-                object: Digest([1; 32]),
+                object: cognate_continuation::start_points::Digest([1; 32]),
                 count: 3,
                 dimension,
             }),
