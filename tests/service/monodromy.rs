@@ -60,9 +60,10 @@ fn a_family_is_solved_once_and_kept() {
         explained.contains("monodromy: 8 solutions in 2 classes"),
         "{explained}"
     );
-    let estimated = explained.contains("estimate: 2 classes, all known with probability 9");
+    // Two classes leave few permutations: loops that stay need not be random ones.
+    let estimated = explained.contains("estimate: 2 classes");
     assert!(
-        estimated && explained.contains("Hauenstein and Sherman"),
+        estimated && explained.contains("capture and recapture"),
         "{explained}"
     );
 
@@ -112,15 +113,9 @@ fn a_family_is_solved_once_and_kept() {
 fn what_does_not_fit_is_refused_with_its_reason() {
     let cluster = Cluster::with_workers(0);
     std::fs::write(cluster.folder().join("family.json"), FAMILY).unwrap();
-    let plain = r#"{"variables": ["x"], "equations": ["x^2 - 2"]}"#;
-    std::fs::write(cluster.folder().join("plain.json"), plain).unwrap();
     for (arguments, reason) in [
         (
-            &["solve", "plain.json", "--start", "monodromy"][..],
-            "no parameters",
-        ),
-        (
-            &["solve", "family.json", "--idle-loops", "7"],
+            &["solve", "family.json", "--idle-loops", "7"][..],
             "only goes with --start monodromy",
         ),
         (

@@ -6,13 +6,9 @@ use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
 use cognate_numeric::linear_algebra::condition::condition_number;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
-use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
-
-/// Singular values of the Jacobian below this part of the largest.
-const HARDLY: f64 = 1e-5;
 
 /// What is known of an endpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,29 +109,6 @@ impl<'a, S: Real> Refiner<'a, S> {
     pub(crate) fn condition_at(&mut self, point: &[Complex64], t: Complex64, target: u64) -> f64 {
         let mut copy = point.to_vec();
         self.newton(&mut copy, t, target, 0).condition
-    }
-
-    /// How far the equations are from 0, at a point and t = 0, in the directions that the Jacobian
-    /// hardly reaches: half-way between two solutions of a simple kind about an eighth of the square
-    /// of their distance, at a double point the square of its error. For that more digits than
-    /// doubles are needed.
-    pub(crate) fn out_of_reach(&mut self, point: &[Complex64], target: u64) -> f64 {
-        self.look(point, target);
-        let n = point.len();
-        let value = |i: usize, j: usize| {
-            let entry = self.matrix.at(i, j);
-            Complex64::new(entry.re.lane(0), entry.im.lane(0))
-        };
-        let rows = (0..n).map(|i| (0..n).map(|j| value(i, j).conj()).collect());
-        let svd = Svd::of(rows.collect());
-        let least = svd.values.first().map_or(0.0, |largest| HARDLY * largest);
-        let reached = svd.values.iter().take_while(|&&v| v > least).count();
-        let mut part = 0.0f64;
-        for left in &svd.domain[reached..] {
-            let along: Complex64 = (0..n).map(|i| left[i].conj() * value(i, n)).sum();
-            Real::max(&mut part, &along.norm_sqr().sqrt());
-        }
-        part
     }
 
     fn newton(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {

@@ -102,12 +102,12 @@ pub struct SolutionSet {
 }
 
 impl SolutionSet {
-    /// True when no path failed, every crossing came apart, of every endpoint it is known whether
-    /// it is isolated, none is finite or at infinity only by the limit of the precision, and
+    /// True when no path failed, every crossing came apart, of every endpoint that is on no declared set it
+    /// is known whether it is isolated, none is finite or at infinity only by the limit of the precision, and
     /// multiplicities are what the numbers of paths say.
     pub fn settled(&self) -> bool {
         self.paths.failed == 0
-            && self.paths.undecided == 0
+            && self.counts.undecided == 0
             && self.paths.decided_by_precision_limit == 0
             && self.counts.doubtful_multiplicity == 0
             && self.paths.crossings_found == self.paths.crossings_resolved
@@ -142,6 +142,8 @@ struct Draft<'a> {
     seed: u64,
     shape: PointShape,
     decisions: Vec<Decision>,
+    /// Which lie on a declared set of which no point was seen to be isolated.
+    on_declared_sets: Vec<bool>,
     set: SolutionSet,
 }
 
@@ -166,6 +168,7 @@ impl<'a> Draft<'a> {
             seed,
             shape,
             decisions,
+            on_declared_sets: vec![false; results.len()],
             set: SolutionSet::default(),
         }
     }
@@ -221,6 +224,11 @@ impl<'a> Draft<'a> {
             };
             let on_set = answers(|found| *found == Isolation::PositiveDimensional);
             let alone = answers(|found| matches!(found, Isolation::Isolated { .. }));
+            if !alone {
+                members
+                    .iter()
+                    .for_each(|&place| self.on_declared_sets[place] = true);
+            }
             if on_set && !alone {
                 for place in asked.into_iter().chain(others) {
                     self.decisions[place].verdict = Verdict::PositiveDimensional;
@@ -336,7 +344,10 @@ impl<'a> Draft<'a> {
                 &self.shape,
                 self.tolerances,
                 self.seed,
-                |place| self.decisions[place].verdict == verdict,
+                |place| {
+                    let declared = self.on_declared_sets[place] && verdict == Verdict::Undecided;
+                    self.decisions[place].verdict == verdict && !declared
+                },
             );
             for members in groups {
                 let solution = self.solution(&members, verdict);
@@ -558,7 +569,7 @@ impl<'a> Draft<'a> {
     fn warn(&mut self) {
         let set = &mut self.set;
         let paths = &set.paths;
-        if paths.undecided > 0 {
+        if set.counts.undecided > 0 {
             set.warnings.push(format!(
                 "whether {} singular point{}, at which {} path{} end{}, {} isolated is not decided: \
                  if not, no solution but a positive-dimensional set is there",

@@ -37,6 +37,9 @@ const UNHURRIED: u32 = 2;
 const COALESCED: f64 = 1e-12;
 /// With more digits, below this part of how far apart the sheets are.
 const COALESCED_FINELY: f64 = 1e-15;
+/// With more digits than doubles, several sheets are believed to end together when turns at this radius agree
+/// too: two ends d apart join their sheets outside about d^2 (power sums show it from 1e-15 of that on).
+const DEEP: f64 = 1e-10;
 /// Smallest exponent with which a coordinate is believed to vanish.
 const LEAST_POWER: f64 = 0.01;
 /// A coordinate is a power of t where its valuations differ by less than this part.
@@ -341,6 +344,9 @@ impl Cauchy {
         if let Some((turns, previous)) = &self.previous {
             let change = distance(&mean, previous) / size;
             let agree = *turns == self.turns && change <= settings.endgame_tolerance;
+            if agree && self.fine && self.turns > 1 && self.radius > DEEP {
+                return Next::Inward(DEEP.max(settings.endgame_min_radius));
+            }
             if agree && infinity != Infinity::Unresolved {
                 // The aliasing error falls with the 16th power of the radius, so the newer mean
                 // is better than the change by far; what remains is the noise of the samples.

@@ -5,7 +5,8 @@ use super::local_dimension;
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
 use crate::homotopies::HomotopyKind;
-use crate::path_result::PathResult;
+use crate::path_result::{LocalDimension, PathResult};
+use crate::sharpening::search::sharpen;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::tracker::outcome::PathOutcome;
@@ -16,10 +17,21 @@ use num_complex::Complex64;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Digits to which a multiple point must be a solution of deflated equations: two points that are
+/// 1e-23 of their size apart are told from one.
+const CONFIRMING_DIGITS: u32 = 50;
+/// The margin of a multiplicity that deflated equations do not confirm.
+const UNCONFIRMED: f64 = 1.0;
+
 /// The equations that are asked, and the endpoints.
 #[derive(Debug)]
 pub struct PreparedLocalDimension {
     asked: AskedSystem,
+    /// The same equations, exactly.
+    system: System,
+    /// Values of its parameters at each target.
+    parameters: Vec<Vec<Complex64>>,
+    seed: u64,
     candidates: Vec<Candidate>,
 }
 
@@ -77,6 +89,9 @@ impl PreparedLocalDimension {
         let chart = Chart::new(system, stage.seed, stage.attempt);
         Ok(Self {
             asked: AskedSystem::new(system, &found, &stage.homotopy, chart, stage.seed),
+            system: system.clone(),
+            parameters: given.to_vec(),
+            seed: stage.seed,
             candidates,
         })
     }
@@ -99,13 +114,39 @@ impl PreparedLocalDimension {
         items.map(|item| self.look(item)).collect()
     }
 
+    /// Dual spaces know a multiple point to the accuracy of the endpoint; several points nearer
+    /// together than that look like one. A multiple point is one of which deflated equations have as many digits
+    /// as are asked for; where they have not, the margin says that the multiplicity is not clear.
+    fn confirmed(&self, candidate: &Candidate, found: LocalDimension) -> LocalDimension {
+        let [.., before, last] = *found.dual_dimensions else {
+            return found;
+        };
+        if last != before || last == 1 || found.margin <= UNCONFIRMED {
+            return found;
+        }
+        // Where parameters do not matter one empty list of them stands for all targets.
+        let target = usize::try_from(candidate.target).ok();
+        let parameters = target.and_then(|target| self.parameters.get(target));
+        let parameters = parameters.map_or(&[][..], Vec::as_slice);
+        let (values, seed) = (&candidate.values, self.seed);
+        let sharpened = sharpen(&self.system, parameters, values, CONFIRMING_DIGITS, seed);
+        match sharpened {
+            Ok(sharpened) if sharpened.deflations > 0 => found,
+            Ok(_) | Err(_) => LocalDimension {
+                margin: UNCONFIRMED,
+                ..found
+            },
+        }
+    }
+
     fn look(&self, item: u64) -> PathResult {
         let candidate = &self.candidates[item as usize];
         let chart = self.asked.chart();
         let point = chart.from_variables(&candidate.values);
-        let found = point
-            .as_ref()
-            .map(|point| local_dimension(&self.asked, candidate.target, point, candidate.question));
+        let found = point.as_ref().map(|point| {
+            let found = local_dimension(&self.asked, candidate.target, point, candidate.question);
+            self.confirmed(candidate, found)
+        });
         // A patch that misses the point, with probability 0, leaves it undecided.
         let mut endpoint = point.map_or_else(Vec::new, |point| chart.homogeneous(&point));
         if endpoint.is_empty() {

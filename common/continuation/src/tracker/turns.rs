@@ -12,17 +12,13 @@ use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
 use crate::endgames::circle::VERTICES;
 use crate::endgames::infinity::Homogenizing;
-use crate::refine::Refiner;
 use cognate_numeric::precision::DOUBLE;
-use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
+use cognate_numeric::scalar::{Complex, Real};
 use num_complex::Complex64;
 
 /// The first point of turns is where they may begin again on another rung if its last Newton
 /// correction is below this.
 const FIRM: f64 = 1e-10;
-/// Square of the distance below which two ends of paths are one point, as far as the equations
-/// (of size 1) show: the solution of norm 10^8 is 10^-8 away from infinity.
-const ONE_POINT: f64 = 1e-20;
 /// Valuations are compared when t has become this part of what it was.
 const ZONE: f64 = 0.5;
 
@@ -134,10 +130,7 @@ impl<R: Real> Lockstep<'_, R> {
             // perturbation by the unit roundoff takes a double point apart by its square root):
             // the next rung tells.
             cauchy::Next::Settled(settled)
-                if settled.winding_number > 1
-                    && self.room.bits == DOUBLE
-                    && self.room.up
-                    && !self.is_double_point(&settled, target) =>
+                if settled.winding_number > 1 && self.room.bits == DOUBLE && self.room.up =>
             {
                 let path = &mut self.lanes[lane];
                 let begin = path.last_turn.take().or(path.first_turn.take());
@@ -203,13 +196,6 @@ impl<R: Real> Lockstep<'_, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
-    }
-
-    /// Whether two sheets end so close together that the equations are as small between their ends
-    /// as at a double point.
-    fn is_double_point(&self, settled: &cauchy::Settled, target: u64) -> bool {
-        let mut refiner = Refiner::<DoubleDouble<f64>>::new(self.room.homotopy, ());
-        settled.winding_number == 2 && refiner.out_of_reach(&settled.endpoint, target) <= ONE_POINT
     }
 
     /// The endgame's generic form of how far a path is from where its turns began: on the higher

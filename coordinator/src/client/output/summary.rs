@@ -30,7 +30,7 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
             "{by_limit} finite or at infinity only by the limit of the precision"
         ));
     }
-    if paths.undecided > 0 {
+    if summary.solutions.undecided > 0 {
         open.push(format!(
             "{} to a singular point of which it is not known whether it is isolated",
             counted(paths.undecided, "path")
