@@ -8,8 +8,8 @@ use cognate_algorithms::plan::{GivenStart, StartChoice};
 use cognate_algorithms::run_locally::run_locally;
 use cognate_algorithms::{Complete, PathAlgorithm, PlanOptions, plan};
 use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_systems::formats;
 use cognate_systems::formats::points::{read_parameters, read_solutions};
-use cognate_tests::systems::from_file;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,14 +18,10 @@ use std::sync::Arc;
 /// the sizes of the start stopped at 4, 4 and 10 of them with seeds 1, 4 and 7.
 #[test]
 fn all_six_revolute_arms_from_one_far_posture() {
-    let name = "mechanism_six_revolute_family";
-    let system = from_file(name, "family.json");
-    let read = |file: &str| {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("systems")
-            .join(name);
-        std::fs::read(folder.join(file)).expect("it stands beside the system")
-    };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("families/six_revolute");
+    let read = |file: &str| std::fs::read(folder.join(file)).expect("it stands beside the system");
+    let problem = formats::read("family.json", &read("family.json"));
+    let system = problem.expect("it can be read").system;
     let points = read_solutions("start", &read("start.jsonl"), &system.variables);
     let points = points.expect("it can be read");
     let parameters = read_parameters("start", &read("start_parameters.json"), &system.parameters);
