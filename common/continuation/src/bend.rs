@@ -156,23 +156,28 @@ impl SlicedEquations {
         Linearized { matrix, svd }
     }
 
-    /// The equations alone at a point, in size.
-    pub fn residual(&self, x: &[Number]) -> f64 {
+    /// Values of the equations alone at a point.
+    pub fn values(&self, x: &[Number]) -> Vec<Complex64> {
         let mut values = zeros(self.rows());
         let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.equations, ());
         self.equations.value(x, &[], &mut values, &mut scratch);
-        length(&doubles(&values))
+        doubles(&values)
+    }
+
+    /// The values and the derivatives by the variables from `first` on, in columns.
+    pub fn linear_part(&self, x: &[Number], first: usize) -> (Vec<Complex64>, Vec<Vec<Complex64>>) {
+        let matrix = self.linearize(x);
+        let column = |j: usize| -> Vec<Complex64> {
+            let rows = 0..self.rows();
+            rows.map(|i| rounded(matrix.at(i, j))).collect()
+        };
+        let columns = (first..self.variables).map(column).collect();
+        (column(self.variables), columns)
     }
 
     /// Singular values of the Jacobian of the equations alone at a point, descending.
     pub fn singular_values(&self, x: &[Number]) -> Vec<f64> {
-        let matrix = self.linearize(x);
-        let column = |j: usize| -> Vec<Complex64> {
-            (0..self.rows())
-                .map(|i| rounded(matrix.at(i, j)))
-                .collect()
-        };
-        Svd::of((0..self.variables).map(column).collect()).values
+        Svd::of(self.linear_part(x, 0).1).values
     }
 
     /// Newton's method (of Gauss, where there are more equations than variables) from near a witness point;
@@ -208,7 +213,7 @@ impl SlicedEquations {
         let values = &at.svd.values;
         let condition = values.first()? / values.last()?;
         Some(RefinedPoint {
-            residual: self.residual(&x),
+            residual: length(&self.values(&x)),
             point: x,
             correction: last,
             moved,

@@ -54,6 +54,14 @@ pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> S
     result
 }
 
+/// The system with each equation times a power of two, so that its values at points with coordinates of
+/// modulus 1 are about 1.
+pub fn equilibrate(system: &System, seed: u64) -> System {
+    let mut result = system.clone();
+    result.equations = scaled(system, &mut result.expressions, seed);
+    result
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,7 +75,7 @@ mod tests {
         let system = problem.expect("a problem of this test").system;
         let of = degrees(&system).unwrap();
         let rows = combine(&system, &of, 3, 1);
-        assert_eq!(degrees(&rows).unwrap().total, [1, 3, 2]);
+        assert_eq!(degrees(&rows).unwrap().total, [1, 2, 3]);
         assert_eq!(rows.equations[0], system.equations[2]);
         assert_eq!(rows, combine(&system, &of, 3, 1));
         assert_eq!(combine(&system, &of, 2, 1).equations, rows.equations[..2]);

@@ -12,7 +12,7 @@ mod rescale;
 mod slice;
 
 pub use affine_chart::affine_chart;
-pub use combine::combine;
+pub use combine::{combine, equilibrate};
 pub use deflate::deflate;
 pub use fix_parameters::{FixError, fix_parameters};
 pub use homogenize::homogenize;

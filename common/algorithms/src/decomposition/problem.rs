@@ -1,0 +1,148 @@
+//! Problem: what does not change during a decomposition: equations, combinations of them, slices.
+
+use super::job::Tracking;
+use cognate_continuation::bend::{Number, SlicedEquations, exactly};
+use cognate_continuation::start_systems::slices::form;
+use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
+use cognate_systems::system::System;
+use cognate_systems::transform::{affine_chart, combine, equilibrate, slice};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Singular values below this part of the largest are 0 at a random point.
+const RANK_AT_RANDOM: f64 = 1e-9;
+
+/// Why a system cannot be decomposed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ProblemError {
+    /// Its parameters have no values.
+    #[error("the system has parameters; a decomposition needs their values")]
+    Parameters,
+    /// It has no degrees.
+    #[error("{0}")]
+    Degrees(String),
+}
+
+impl From<PolynomialError> for ProblemError {
+    fn from(error: PolynomialError) -> Self {
+        Self::Degrees(error.to_string())
+    }
+}
+
+/// The equations in one affine group, and all that is made of them once.
+#[derive(Debug)]
+pub(super) struct Problem {
+    /// The equations that are given, and patches; each scaled to about 1.
+    pub given: Arc<System>,
+    degrees: Degrees,
+    /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
+    /// others that are never reached.
+    pub staircase: Arc<System>,
+    /// Their degrees.
+    pub row_degrees: Vec<u32>,
+    /// Rank of the Jacobian at a random point: no component has a smaller dimension than the variables
+    /// that it leaves.
+    pub levels: usize,
+    pub tracking: Tracking,
+    pub idle_loops: u32,
+    /// The equations with nothing else, to evaluate.
+    plain: SlicedEquations,
+}
+
+impl Problem {
+    pub fn new(
+        system: &System,
+        tracking: Tracking,
+        idle_loops: u32,
+    ) -> Result<Self, ProblemError> {
+        if !system.parameters.is_empty() {
+            return Err(ProblemError::Parameters);
+        }
+        let seed = tracking.seed;
+        let given = equilibrate(&affine_chart(system, seed), seed);
+        let of_given = degrees(&given)?;
+        let variables = given.variable_count();
+        let plain = SlicedEquations::new(&given, Vec::new());
+        let levels = rank_at_random(&plain, variables, seed).min(given.equation_count());
+        let mut staircase = combine(&given, &of_given, levels, seed);
+        for v in levels..variables {
+            let row = staircase.expressions.variable(v as u32);
+            staircase.equations.push(row);
+            staircase.equation_names.push(format!("place {}", v + 1));
+        }
+        staircase.symmetry.clear();
+        staircase.conjugates.clear();
+        staircase.degenerate.clear();
+        let row_degrees = degrees(&staircase)?.total;
+        Ok(Self {
+            given: Arc::new(given),
+            degrees: of_given,
+            staircase: Arc::new(staircase),
+            row_degrees,
+            levels,
+            tracking,
+            idle_loops,
+            plain,
+        })
+    }
+
+    pub fn variables(&self) -> usize {
+        self.given.variable_count()
+    }
+
+    pub fn seed(&self) -> u64 {
+        self.tracking.seed
+    }
+
+    /// The slices of a set of this dimension, a row each: those of smaller dimensions are among them.
+    pub fn slices(&self, dimension: usize) -> Vec<Vec<Complex64>> {
+        let n = self.variables();
+        let levels = n - dimension..n;
+        levels
+            .map(|level| form(self.seed(), level as u32, 0, n))
+            .collect()
+    }
+
+    /// As many combinations of the equations of a system as cut out a set of this dimension, and its slices.
+    pub fn tracked(&self, equations: &System, dimension: usize) -> Result<System, ProblemError> {
+        let of = degrees(equations)?;
+        let rows = equations.variable_count() - dimension;
+        let rows = combine(equations, &of, rows, self.seed());
+        Ok(slice(&rows, dimension, self.variables()))
+    }
+
+    /// The first rows of the staircase with the slices of that dimension.
+    pub fn level_equations(&self, dimension: usize) -> SlicedEquations {
+        let mut rows = (*self.staircase).clone();
+        rows.equations.truncate(self.variables() - dimension);
+        SlicedEquations::new(&rows, self.slices(dimension))
+    }
+
+    /// The largest equation at a point, each as its degree lets it grow.
+    pub fn residual(&self, point: &[Number]) -> f64 {
+        let largest = point
+            .iter()
+            .map(|z| cognate_continuation::bend::rounded(z).norm_sqr())
+            .fold(1.0f64, f64::max)
+            .sqrt();
+        let values = self.plain.values(point);
+        let each = values.iter().zip(&self.degrees.total);
+        each.map(|(value, &degree)| {
+            let growth = (0..degree).fold(1.0, |power, _| power * largest);
+            value.norm_sqr().sqrt() / growth
+        })
+        .fold(0.0, |m: f64, r| if r.is_nan() { f64::INFINITY } else { m.max(r) })
+    }
+}
+
+fn rank_at_random(equations: &SlicedEquations, variables: usize, seed: u64) -> usize {
+    let mut random = RandomStream::new(seed, Purpose::Probe, u64::MAX);
+    let point: Vec<Number> = (0..variables).map(|_| exactly(random.unit())).collect();
+    let (_, columns) = equations.linear_part(&point, 0);
+    let values = Svd::of(columns).values;
+    let largest = values.first().copied().unwrap_or(0.0);
+    let clear = values.iter().filter(|&&s| s > RANK_AT_RANDOM * largest);
+    clear.count()
+}
