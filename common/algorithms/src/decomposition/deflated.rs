@@ -14,7 +14,7 @@ use cognate_solutions::witness::Multiplicity;
 use cognate_systems::system::{System, VariableGroup};
 use cognate_systems::transform::deflate;
 use num_complex::Complex64;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 /// Most deflations one after the other.
@@ -25,8 +25,12 @@ const MOST_UNKNOWNS: usize = 200;
 const SMALL: f64 = 1e-3;
 /// ... where the one before it is larger by this factor.
 const GAP: f64 = 30.0;
-/// How many ranks are tried.
+/// How many ranks are tried at one point,
 const CANDIDATES: usize = 2;
+/// ... and how many sequences of ranks, shortest first.
+const MOST_TRIED: usize = 16;
+/// Singular values below this many times a point's error may be 0 and tell nothing.
+const NOISE: f64 = 30.0;
 /// Condition number above which equations are not regular at a point.
 const SINGULAR: f64 = 1e10;
 /// What Newton's method must reach: its last step relative to the point, and the equations.
@@ -121,7 +125,7 @@ impl Deflations {
         equations.refine(&start).filter(|refined| settled(refined, MOVED))
     }
 
-    /// A point of a multiple set with the deflations that make the equations regular there.
+    /// A point of a multiple set with the fewest deflations that make the equations regular there.
     pub fn regular_point(
         &mut self,
         problem: &Problem,
@@ -130,48 +134,48 @@ impl Deflations {
     ) -> Option<DeflatedPoint> {
         let start: Vec<Number> = end.values.iter().map(|&z| exactly(z)).collect();
         let moved = (MOVED_FACTOR * end.accuracy).max(MOVED);
-        self.search(problem, dimension, &start, moved, &mut Vec::new())
+        let mut untried = VecDeque::from([(Vec::new(), start)]);
+        for _ in 0..MOST_TRIED {
+            let (ranks, start): (Vec<u32>, Vec<Number>) = untried.pop_front()?;
+            let equations = self.sliced(problem, &ranks, dimension);
+            let refined = equations.refine(&start);
+            if let Some(refined) = refined.filter(|refined| settled(refined, moved)) {
+                return Some(DeflatedPoint { ranks, refined });
+            }
+            if ranks.len() == MOST_DEFLATIONS {
+                continue;
+            }
+            let unknowns = start.len();
+            for rank in candidates(&equations.singular_values(&start), end.accuracy) {
+                if unknowns + rank < MOST_UNKNOWNS {
+                    let mut ranks = ranks.clone();
+                    ranks.push(rank as u32);
+                    let start = self.with_multipliers(problem, dimension, &ranks, &start);
+                    untried.push_back((ranks, start));
+                }
+            }
+        }
+        None
     }
 
-    fn search(
+    /// The point with the multipliers of the last deflation: the solution of linear equations.
+    fn with_multipliers(
         &mut self,
         problem: &Problem,
         dimension: usize,
+        ranks: &[u32],
         start: &[Number],
-        moved: f64,
-        ranks: &mut Vec<u32>,
-    ) -> Option<DeflatedPoint> {
+    ) -> Vec<Number> {
+        let count = ranks.last().map_or(0, |&rank| rank as usize + 1);
         let equations = self.sliced(problem, ranks, dimension);
-        let refined = equations.refine(start);
-        if let Some(refined) = refined.filter(|refined| settled(refined, moved)) {
-            let ranks = ranks.clone();
-            return Some(DeflatedPoint { ranks, refined });
+        let mut longer = start.to_vec();
+        longer.resize(start.len() + count, Number::zero(()));
+        let (values, columns) = equations.linear_part(&longer, start.len());
+        let multipliers = Svd::of(columns).least_squares(&values, count);
+        for (place, multiplier) in longer[start.len()..].iter_mut().zip(multipliers) {
+            *place = exactly(-multiplier);
         }
-        if ranks.len() == MOST_DEFLATIONS {
-            return None;
-        }
-        let unknowns = start.len();
-        for rank in candidates(&equations.singular_values(start)) {
-            if unknowns + rank + 1 > MOST_UNKNOWNS {
-                continue;
-            }
-            ranks.push(rank as u32);
-            let with = self.sliced(problem, ranks, dimension);
-            let mut longer = start.to_vec();
-            longer.resize(unknowns + rank + 1, Number::zero(()));
-            // The multipliers are the solution of linear equations.
-            let (values, columns) = with.linear_part(&longer, unknowns);
-            let multipliers = Svd::of(columns).least_squares(&values, rank + 1);
-            for (place, multiplier) in longer[unknowns..].iter_mut().zip(multipliers) {
-                *place = exactly(-multiplier);
-            }
-            let found = self.search(problem, dimension, &longer, moved, ranks);
-            if found.is_some() {
-                return found;
-            }
-            ranks.pop();
-        }
-        None
+        longer
     }
 
     /// The set of these points at which the given equations are regular.
@@ -269,19 +273,20 @@ fn distance(a: &[Number], b: &[Number]) -> f64 {
     (apart / size).sqrt()
 }
 
-/// Ranks of a matrix with these singular values, descending, by the size of the gap after them.
-fn candidates(values: &[f64]) -> Vec<usize> {
-    let largest = values.first().copied().unwrap_or(0.0);
-    let least = 1e-15 * largest;
+/// Ranks that a matrix with these singular values, descending, can have where its entries have errors of this
+/// size, by the gap after them.
+fn candidates(values: &[f64], accuracy: f64) -> Vec<usize> {
+    let scale = values.first().copied().unwrap_or(0.0).max(1.0);
+    let noise = NOISE * accuracy.max(1e-14) * scale;
     let mut gaps: Vec<(f64, usize)> = Vec::new();
-    for rank in 0..values.len() {
+    for (rank, &after) in values.iter().enumerate() {
         let before = match rank {
-            0 => 1.0f64.max(largest),
+            0 => scale,
             _ => values[rank - 1],
         };
-        let after = values[rank].max(least).max(f64::MIN_POSITIVE);
-        if values[rank] <= SMALL * largest.max(SMALL) && before / after >= GAP {
-            gaps.push((before / after, rank));
+        let gap = before.max(noise) / after.max(noise);
+        if after <= SMALL * scale && gap >= GAP {
+            gaps.push((gap, rank));
         }
     }
     gaps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));

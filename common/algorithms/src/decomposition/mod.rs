@@ -264,7 +264,9 @@ pub fn run_locally(
                 let system = solve.system(stage.id).expect("an opened stage has one");
                 let find = |digest: Digest| objects.get(&digest).cloned();
                 let prepared = PreparedWork::new(system, stage, &find)?;
+                let began = std::time::Instant::now();
                 let results = prepared.run(0..prepared.items(), width);
+                if began.elapsed().as_millis() > 300 { eprintln!("STAGE {:?} {:?} items {} attempt {} {:?} steps {:?}", stage.id, stage.work, prepared.items(), stage.attempt, began.elapsed(), results.iter().map(|r| (r.outcome, r.counts, r.precision_bits, r.winding_number, r.accuracy)).collect::<Vec<_>>()); }
                 solve.absorb(stage.id, &mut results.into_iter());
             }
             Next::Done => break,
