@@ -7,10 +7,8 @@
 
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
-use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
+use cognate_numeric::scalar::{Complex, DoubleDouble, Jet, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
-use cognate_systems::expression::differentiate::directional;
-use cognate_systems::expression::{Node, NodeId};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -31,8 +29,6 @@ const NEAR: f64 = 1e-9;
 #[derive(Debug)]
 pub struct SlicedEquations {
     equations: Interpreter,
-    /// Second derivative in the direction of the variables that come after the first ones, twice.
-    second: Interpreter,
     variables: usize,
     /// A row each: the constant, then coefficients of the first variables.
     slices: Vec<Vec<Complex64>>,
@@ -47,7 +43,7 @@ pub struct RefinedPoint {
     pub correction: f64,
     /// How far all corrections moved it, relative to the point.
     pub moved: f64,
-    /// What the equations are there at most.
+    /// The largest equation there, as a part of what a change of the point by its size makes of it.
     pub residual: f64,
     /// Largest singular value of the Jacobian over the least.
     pub condition: f64,
@@ -64,10 +60,40 @@ pub struct Bend {
     pub error: f64,
 }
 
-/// Jacobian and values.
+/// The Jacobian and values, and singular values of the Jacobian with each row scaled to at most 1.
 struct Linearized {
     matrix: Matrix<DoubleDouble<f64>>,
+    weights: Vec<f64>,
     svd: Svd,
+}
+
+impl Linearized {
+    fn new(matrix: Matrix<DoubleDouble<f64>>, variables: usize) -> Self {
+        let weights: Vec<f64> = (0..matrix.rows())
+            .map(|i| {
+                let row = (0..variables).map(|j| rounded(matrix.at(i, j)).norm_sqr());
+                1.0 / row.sum::<f64>().sqrt().max(1.0)
+            })
+            .collect();
+        let column = |j: usize| -> Vec<Complex64> {
+            let rows = weights.iter().enumerate();
+            rows.map(|(i, weight)| rounded(matrix.at(i, j)) * weight)
+                .collect()
+        };
+        let svd = Svd::of((0..variables).map(column).collect());
+        Self {
+            matrix,
+            weights,
+            svd,
+        }
+    }
+
+    /// The shortest y for which J y is nearest to these values, as far as doubles tell.
+    fn solve(&self, values: &[Complex64]) -> Vec<Complex64> {
+        let pairs = values.iter().zip(&self.weights);
+        let weighted: Vec<Complex64> = pairs.map(|(z, w)| z * w).collect();
+        self.svd.least_squares(&weighted, self.svd.values.len())
+    }
 }
 
 /// The number as a double.
@@ -97,24 +123,9 @@ impl SlicedEquations {
     /// The equations of a system without parameters, and these slices in its first variables.
     pub fn new(system: &System, slices: Vec<Vec<Complex64>>) -> Self {
         let variables = system.variable_count();
-        let mut e = system.expressions.clone();
-        let along = |e: &mut cognate_systems::expression::Expressions, node: &Node| match node {
-            Node::Variable(v) => Some(e.variable(*v + variables as u32)),
-            _ => None,
-        };
-        let mut derive = |roots: &[NodeId]| -> Vec<NodeId> {
-            let found = directional(&mut e, roots, &mut |e, node| match node {
-                Node::Variable(v) if (*v as usize) < variables => along(e, node),
-                _ => None,
-            });
-            let zero = e.integer(0);
-            found.into_iter().map(|d| d.unwrap_or(zero)).collect()
-        };
-        let first = derive(&system.equations);
-        let second = derive(&first);
+        let (e, equations) = (&system.expressions, &system.equations);
         Self {
-            equations: Interpreter::compile(&e, &system.equations, variables, 0),
-            second: Interpreter::compile(&e, &second, 2 * variables, 0),
+            equations: Interpreter::compile(e, equations, variables, 0),
             variables,
             slices,
         }
@@ -147,13 +158,7 @@ impl SlicedEquations {
     }
 
     fn decompose(&self, x: &[Number]) -> Linearized {
-        let matrix = self.linearize(x);
-        let column = |j: usize| -> Vec<Complex64> {
-            let rows = 0..matrix.rows();
-            rows.map(|i| rounded(matrix.at(i, j))).collect()
-        };
-        let svd = Svd::of((0..self.variables).map(column).collect());
-        Linearized { matrix, svd }
+        Linearized::new(self.linearize(x), self.variables)
     }
 
     /// Values of the equations alone at a point.
@@ -175,9 +180,33 @@ impl SlicedEquations {
         (column(self.variables), columns)
     }
 
-    /// Singular values of the Jacobian of the equations alone at a point, descending.
+    /// Singular values of the Jacobian of the equations alone at a point, descending; each row scaled to at
+    /// most 1.
     pub fn singular_values(&self, x: &[Number]) -> Vec<f64> {
-        Svd::of(self.linear_part(x, 0).1).values
+        let all = self.linearize(x);
+        let mut own = Matrix::zeros((), self.rows(), self.variables);
+        for i in 0..self.rows() {
+            for j in 0..self.variables {
+                own.at_mut(i, j).set(all.at(i, j));
+            }
+        }
+        Linearized::new(own, self.variables).svd.values
+    }
+
+    /// The largest equation at a point, as a part of what a change of the point by its size makes of it.
+    fn relative_residual(&self, x: &[Number]) -> f64 {
+        let matrix = self.linearize(x);
+        let size = length(&doubles(x)).max(1.0);
+        let part = |i: usize| {
+            let row: Vec<Complex64> = (0..self.variables)
+                .map(|j| rounded(matrix.at(i, j)))
+                .collect();
+            let value = rounded(matrix.at(i, self.variables));
+            value.norm_sqr().sqrt() / (length(&row) * size).max(1.0)
+        };
+        (0..self.rows()).map(part).fold(0.0, |m: f64, r| {
+            if r.is_nan() { f64::INFINITY } else { m.max(r) }
+        })
     }
 
     /// Newton's method (of Gauss, where there are more equations than variables) from near a witness point;
@@ -194,7 +223,7 @@ impl SlicedEquations {
             let values: Vec<Complex64> = (0..now.rows())
                 .map(|i| rounded(now.at(i, self.variables)))
                 .collect();
-            let step = at.svd.least_squares(&values, self.variables);
+            let step = at.solve(&values);
             let size = length(&doubles(&x)).max(f64::MIN_POSITIVE);
             let correction = length(&step) / size;
             if !correction.is_finite() || correction > 1.0 {
@@ -213,7 +242,7 @@ impl SlicedEquations {
         let values = &at.svd.values;
         let condition = values.first()? / values.last()?;
         Some(RefinedPoint {
-            residual: length(&self.values(&x)),
+            residual: self.relative_residual(&x),
             point: x,
             correction: last,
             moved,
@@ -232,13 +261,44 @@ impl SlicedEquations {
                     rest.mul_sub(at.matrix.at(i, j), y);
                 }
             }
-            let step = at.svd.least_squares(&doubles(&rest), self.variables);
+            let step = at.solve(&doubles(&rest));
             for (y, &step) in y.iter_mut().zip(&step) {
                 y.add(&exactly(step));
             }
             last = length(&step);
         }
         (y, last)
+    }
+
+    /// The second derivative of the equations along x + s u, in s.
+    fn curvature(&self, x: &[Number], u: &[Number]) -> Vec<Number> {
+        type Series = Jet<DoubleDouble<f64>>;
+        let zero = || DoubleDouble::from_f64((), 0.0);
+        let series = |c0: &DoubleDouble<f64>, c1: &DoubleDouble<f64>| -> Series {
+            Jet([*c0, *c1, zero(), zero(), zero()])
+        };
+        let along: Vec<Complex<Series>> = x
+            .iter()
+            .zip(u)
+            .map(|(x, u)| Complex {
+                re: series(&x.re, &u.re),
+                im: series(&x.im, &u.im),
+            })
+            .collect();
+        let mut values = vec![Complex::<Series>::zero(()); self.rows()];
+        let mut scratch = Evaluate::<Series>::scratch(&self.equations, ());
+        self.equations
+            .value(&along, &[], &mut values, &mut scratch);
+        let twice = |z: &Complex<Series>| {
+            let mut second = Complex {
+                re: z.re.0[2],
+                im: z.im.0[2],
+            };
+            let same = second;
+            second.add(&same);
+            second
+        };
+        values.iter().map(twice).collect()
     }
 
     /// How a witness point moves when the constants of the slices move in this direction.
@@ -250,14 +310,9 @@ impl SlicedEquations {
             right.sub(&exactly(v));
         }
         let (velocity, _) = self.solve(&at, &right);
-        let mut point = refined.point.clone();
-        point.extend(velocity.iter().cloned());
-        let mut curved = zeros(rows);
-        let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.second, ());
-        self.second.value(&point, &[], &mut curved, &mut scratch);
         let mut right = zeros(rows + self.slices.len());
-        for (right, curved) in right.iter_mut().zip(&curved) {
-            right.sub(curved);
+        for (right, curved) in right.iter_mut().zip(self.curvature(&refined.point, &velocity)) {
+            right.sub(&curved);
         }
         let (acceleration, last) = self.solve(&at, &right);
         let size = length(&doubles(&acceleration)) + length(&doubles(&velocity));

@@ -21,6 +21,8 @@ use std::sync::Arc;
 const MOST_DEFLATIONS: usize = 6;
 /// Most unknowns of deflated equations.
 const MOST_UNKNOWNS: usize = 200;
+/// Most nodes of equations that are deflated once more.
+const MOST_NODES: usize = 20_000;
 /// A singular value below this part of the largest may be 0, at a point that is known to a few digits.
 const SMALL: f64 = 1e-3;
 /// ... where the one before it is larger by this factor.
@@ -147,7 +149,8 @@ impl Deflations {
             }
             let unknowns = start.len();
             for rank in candidates(&equations.singular_values(&start), end.accuracy) {
-                if unknowns + rank < MOST_UNKNOWNS {
+                let nodes = self.system(problem, &ranks).expressions.nodes().len();
+                if unknowns + rank < MOST_UNKNOWNS && nodes < MOST_NODES {
                     let mut ranks = ranks.clone();
                     ranks.push(rank as u32);
                     let start = self.with_multipliers(problem, dimension, &ranks, &start);

@@ -6,8 +6,10 @@ use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
+use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::{affine_chart, combine, equilibrate, slice};
+use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -49,6 +51,8 @@ pub(super) struct Problem {
     pub idle_loops: u32,
     /// The equations with nothing else, to evaluate.
     plain: SlicedEquations,
+    /// The units in which all of it is tracked.
+    scaling: Scaling,
 }
 
 impl Problem {
@@ -61,7 +65,12 @@ impl Problem {
             return Err(ProblemError::Parameters);
         }
         let seed = tracking.seed;
-        let given = equilibrate(&affine_chart(system, seed), seed);
+        let system = System {
+            scaling: scaling_of(system, &[]),
+            ..system.clone()
+        };
+        let scaling = system.scaling.clone();
+        let given = equilibrate(&affine_chart(&system.in_unknowns(), seed), seed);
         let of_given = degrees(&given)?;
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
@@ -85,6 +94,7 @@ impl Problem {
             tracking,
             idle_loops,
             plain,
+            scaling,
         })
     }
 
@@ -103,6 +113,22 @@ impl Problem {
         levels
             .map(|level| form(self.seed(), level as u32, 0, n))
             .collect()
+    }
+
+    /// The slices in the variables of the system that is given.
+    pub fn slices_of_variables(&self, dimension: usize) -> Vec<Vec<Complex64>> {
+        let mut rows = self.slices(dimension);
+        for row in &mut rows {
+            let inverse = self.scaling.inverse();
+            let coefficients = inverse.to_variables(&row[1..]);
+            row[1..].copy_from_slice(&coefficients);
+        }
+        rows
+    }
+
+    /// Values of the variables of the system that is given.
+    pub fn to_variables(&self, point: &[Complex64]) -> Vec<Complex64> {
+        self.scaling.to_variables(point)
     }
 
     /// As many combinations of the equations of a system as cut out a set of this dimension, and its slices.

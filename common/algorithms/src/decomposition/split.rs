@@ -390,7 +390,10 @@ impl Split {
     ) -> WitnessSet {
         let own = problem.variables();
         let set = &self.set;
-        let values = |&k: &usize| set.points[k].point[..own].iter().map(rounded).collect();
+        let values = |&k: &usize| {
+            let point: Vec<_> = set.points[k].point[..own].iter().map(rounded).collect();
+            problem.to_variables(&point)
+        };
         let condition = |&k: &usize| set.points[k].condition;
         let irreducible = match doubts.is_empty() {
             true => Irreducible::Yes,
@@ -408,7 +411,7 @@ impl Split {
             multiplicity: set.multiplicity.clone(),
             irreducible,
             deflation: set.ranks.clone(),
-            slice: problem.slices(set.dimension),
+            slice: problem.slices_of_variables(set.dimension),
             points: points.iter().map(values).collect(),
             evidence: Evidence {
                 trace,
