@@ -43,7 +43,8 @@ pub struct RefinedPoint {
     pub correction: f64,
     /// How far all corrections moved it, relative to the point.
     pub moved: f64,
-    /// The largest equation there, as a part of what a change of the point by its size makes of it.
+    /// The largest equation there, in its size or as a part of what a change of the point by its size makes of
+    /// it.
     pub residual: f64,
     /// Largest singular value of the Jacobian over the least.
     pub condition: f64,
@@ -161,14 +162,6 @@ impl SlicedEquations {
         Linearized::new(self.linearize(x), self.variables)
     }
 
-    /// Values of the equations alone at a point.
-    pub fn values(&self, x: &[Number]) -> Vec<Complex64> {
-        let mut values = zeros(self.rows());
-        let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.equations, ());
-        self.equations.value(x, &[], &mut values, &mut scratch);
-        doubles(&values)
-    }
-
     /// The values and the derivatives by the variables from `first` on, in columns.
     pub fn linear_part(&self, x: &[Number], first: usize) -> (Vec<Complex64>, Vec<Vec<Complex64>>) {
         let matrix = self.linearize(x);
@@ -193,20 +186,29 @@ impl SlicedEquations {
         Linearized::new(own, self.variables).svd.values
     }
 
-    /// The largest equation at a point, as a part of what a change of the point by its size makes of it.
-    fn relative_residual(&self, x: &[Number]) -> f64 {
+    /// For each equation its size, and the same as a part of what a change of the point by its size makes of
+    /// it: about the distance to where it is 0.
+    pub fn residuals(&self, x: &[Number]) -> Vec<(f64, f64)> {
         let matrix = self.linearize(x);
         let size = length(&doubles(x)).max(1.0);
-        let part = |i: usize| {
+        let of = |i: usize| {
             let row: Vec<Complex64> = (0..self.variables)
                 .map(|j| rounded(matrix.at(i, j)))
                 .collect();
-            let value = rounded(matrix.at(i, self.variables));
-            value.norm_sqr().sqrt() / (length(&row) * size).max(1.0)
+            let value = rounded(matrix.at(i, self.variables)).norm_sqr().sqrt();
+            (value, value / (length(&row) * size))
         };
-        (0..self.rows()).map(part).fold(0.0, |m: f64, r| {
-            if r.is_nan() { f64::INFINITY } else { m.max(r) }
-        })
+        (0..self.rows()).map(of).collect()
+    }
+
+    /// The largest equation at a point, as a part of what a change of the point by its size makes of it.
+    fn relative_residual(&self, x: &[Number]) -> f64 {
+        let parts = self.residuals(x).into_iter();
+        let parts = parts.map(|(value, distance)| value.min(distance));
+        parts.fold(
+            0.0,
+            |m: f64, r| if r.is_nan() { f64::INFINITY } else { m.max(r) },
+        )
     }
 
     /// Newton's method (of Gauss, where there are more equations than variables) from near a witness point;
@@ -287,8 +289,7 @@ impl SlicedEquations {
             .collect();
         let mut values = vec![Complex::<Series>::zero(()); self.rows()];
         let mut scratch = Evaluate::<Series>::scratch(&self.equations, ());
-        self.equations
-            .value(&along, &[], &mut values, &mut scratch);
+        self.equations.value(&along, &[], &mut values, &mut scratch);
         let twice = |z: &Complex<Series>| {
             let mut second = Complex {
                 re: z.re.0[2],
@@ -311,7 +312,10 @@ impl SlicedEquations {
         }
         let (velocity, _) = self.solve(&at, &right);
         let mut right = zeros(rows + self.slices.len());
-        for (right, curved) in right.iter_mut().zip(self.curvature(&refined.point, &velocity)) {
+        for (right, curved) in right
+            .iter_mut()
+            .zip(self.curvature(&refined.point, &velocity))
+        {
             right.sub(&curved);
         }
         let (acceleration, last) = self.solve(&at, &right);
@@ -349,7 +353,10 @@ mod tests {
             let bend = equations.bend(&refined, &[number(-1.0)]);
             let x = rounded(&bend.acceleration[0]);
             let exact = -sign * 0.25 / (2.0 * 2.0f64.sqrt());
-            assert!((x.re - exact).abs() < 1e-15 && bend.error < 1e-25, "{bend:?}");
+            assert!(
+                (x.re - exact).abs() < 1e-15 && bend.error < 1e-25,
+                "{bend:?}"
+            );
             sum.add(&bend.acceleration[0]);
         }
         assert!(rounded(&sum).norm_sqr().sqrt() < 1e-28);

@@ -6,7 +6,7 @@
 //! further; one that does not is regular with probability 1 and begins the next level.
 
 use super::job::Job;
-use super::problem::Problem;
+use super::problem::{Problem, REFINED, SINGULAR};
 use cognate_continuation::bend::exactly;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
@@ -15,13 +15,6 @@ use cognate_solutions::classification::Verdict;
 use cognate_solutions::path_crossing::coincidences;
 use cognate_solutions::point_shape::PointShape;
 use num_complex::Complex64;
-
-/// A refined point solves an equation below the first and does not above the second. Refined to 32 digits a
-/// solution has about 1e-28, another point about its distance from the solutions.
-const SOLVES: f64 = 1e-18;
-const SOLVES_NOT: f64 = 1e-10;
-/// A singular end, known to about 8 digits, solves the equations below this.
-const SINGULAR_SOLVES: f64 = 1e-6;
 
 /// A point at which several paths end, or one that is singular.
 #[derive(Clone, Debug)]
@@ -136,16 +129,16 @@ impl Cascade {
                 Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => self.failed += 1,
                 Verdict::Finite => {
                     let refined = equations.refine(&exact);
-                    match refined.map(|refined| problem.residual(&refined.point)) {
-                        Some(residual) if residual < SOLVES => superset.regular.push(values.clone()),
-                        Some(residual) if residual > SOLVES_NOT => self.points.push(values.clone()),
-                        _ => superset.unclear += 1,
+                    match refined.and_then(|refined| problem.solves(&refined.point, &REFINED)) {
+                        Some(true) => superset.regular.push(values.clone()),
+                        Some(false) => self.points.push(values.clone()),
+                        None => superset.unclear += 1,
                     }
                 }
                 Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional => {
-                    match problem.residual(&exact) < SINGULAR_SOLVES {
-                        true => singular.push(place),
-                        false => superset.unclear += 1,
+                    match problem.solves(&exact, &SINGULAR) {
+                        Some(true) => singular.push(place),
+                        _ => superset.unclear += 1,
                     }
                 }
             }

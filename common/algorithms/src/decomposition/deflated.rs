@@ -33,8 +33,9 @@ const CANDIDATES: usize = 2;
 const MOST_TRIED: usize = 16;
 /// Singular values below this many times a point's error may be 0 and tell nothing.
 const NOISE: f64 = 30.0;
-/// Condition number above which equations are not regular at a point.
-const SINGULAR: f64 = 1e10;
+/// Condition number above which equations are not regular at a point: there double-doubles lose half their
+/// digits. Below it what tells is that Newton's method comes to all its digits at once.
+const SINGULAR: f64 = 1e14;
 /// What Newton's method must reach: its last step relative to the point, and the equations.
 const STEP: f64 = 1e-22;
 const RESIDUAL: f64 = 1e-20;
@@ -70,7 +71,14 @@ impl PureSet {
 #[derive(Clone, Debug)]
 pub(super) struct DeflatedPoint {
     ranks: Vec<u32>,
-    refined: RefinedPoint,
+    pub refined: RefinedPoint,
+}
+
+impl DeflatedPoint {
+    /// Whether the given equations are regular there.
+    pub fn is_reduced(&self) -> bool {
+        self.ranks.is_empty()
+    }
 }
 
 /// A deflated point, its multiplicity where it is known, the paths that ended there and dual dimensions.
@@ -124,7 +132,8 @@ impl Deflations {
     ) -> Option<RefinedPoint> {
         let equations = self.sliced(problem, &[], dimension);
         let start: Vec<Number> = values.iter().map(|&z| exactly(z)).collect();
-        equations.refine(&start).filter(|refined| settled(refined, MOVED))
+        let refined = equations.refine(&start);
+        refined.filter(|refined| settled(refined, MOVED))
     }
 
     /// A point of a multiple set with the fewest deflations that make the equations regular there.

@@ -135,14 +135,6 @@ impl Job {
         }
     }
 
-    /// Verdicts on the ends of its paths.
-    pub fn decisions(&self) -> Vec<Decision> {
-        match &self.work {
-            Doing::Tracked(stages) => stages.decisions(),
-            Doing::Asked { .. } => Vec::new(),
-        }
-    }
-
     /// The results of its paths, what their ends are, and the values of the variables there.
     pub fn ends(&self) -> Vec<(&PathResult, Decision, Vec<Complex64>)> {
         let Doing::Tracked(stages) = &self.work else {

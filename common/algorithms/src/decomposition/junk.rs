@@ -47,7 +47,10 @@ enum Asking {
     Nothing,
     Isolation,
     /// Whether these suspects are on this set.
-    Membership { set: usize, suspects: Vec<usize> },
+    Membership {
+        set: usize,
+        suspects: Vec<usize>,
+    },
 }
 
 /// Dimension by dimension.
@@ -146,7 +149,13 @@ impl Sieve {
             let homotopy = HomotopyKind::Parameter { start, targets };
             let points = of.doubles();
             self.asking = Asking::Membership { set, suspects };
-            return Some(Job::track(id, &of.tracked, homotopy, &points, &problem.tracking));
+            return Some(Job::track(
+                id,
+                &of.tracked,
+                homotopy,
+                &points,
+                &problem.tracking,
+            ));
         }
         None
     }
@@ -186,7 +195,7 @@ impl Sieve {
         let dimension = superset.dimension;
         let higher = !sets.is_empty();
         let (mut junk, mut unclear, mut not_deflated) = (0, 0, 0);
-        let mut found = Vec::new();
+        let (mut found, mut regular) = (Vec::new(), Vec::new());
         for suspect in std::mem::take(&mut self.suspects) {
             let paths = suspect.end.paths;
             let isolated = match (suspect.isolation, suspect.member) {
@@ -205,13 +214,17 @@ impl Sieve {
                     };
                     let end = &suspect.end;
                     match self.deflations.regular_point(problem, dimension, end) {
+                        // The tracker called it singular for its condition.
+                        Some(point) if point.is_reduced() => match paths {
+                            1 => regular.push(point.refined),
+                            _ => unclear += paths,
+                        },
                         Some(point) => found.push((point, scheme, suspect)),
                         None => not_deflated += paths,
                     }
                 }
             }
         }
-        let mut regular = Vec::new();
         for values in &superset.regular {
             match self.deflations.reduced_point(problem, dimension, values) {
                 Some(point) => regular.push(point),
@@ -226,10 +239,25 @@ impl Sieve {
         sets.extend(deflations.multiple_sets(problem, dimension, found.collect()));
         let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
         let doubts = [
-            (superset.failed, Doubt::FailedPaths { paths: superset.failed }),
-            (superset.unclear, Doubt::Asked { points: superset.unclear }),
+            (
+                superset.failed,
+                Doubt::FailedPaths {
+                    paths: superset.failed,
+                },
+            ),
+            (
+                superset.unclear,
+                Doubt::Asked {
+                    points: superset.unclear,
+                },
+            ),
             (unclear, Doubt::Junk { points: unclear }),
-            (not_deflated, Doubt::NotDeflated { points: not_deflated }),
+            (
+                not_deflated,
+                Doubt::NotDeflated {
+                    points: not_deflated,
+                },
+            ),
         ];
         let doubts = doubts.into_iter().filter(|(count, _)| *count > 0);
         self.dimensions.push(Dimension {
@@ -269,10 +297,15 @@ fn slices_through(problem: &Problem, of: &PureSet, point: &[Complex64]) -> Vec<C
 /// Whether a path ends at the point: yes, no, or not clear.
 fn nearest(
     point: &SingularEnd,
-    ends: &[(&PathResult, cognate_solutions::classification::Decision, Vec<Complex64>)],
+    ends: &[(
+        &PathResult,
+        cognate_solutions::classification::Decision,
+        Vec<Complex64>,
+    )],
 ) -> Option<bool> {
     let mut answer = Some(false);
-    let length = |v: &mut dyn Iterator<Item = Complex64>| v.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+    let length =
+        |v: &mut dyn Iterator<Item = Complex64>| v.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
     let size = length(&mut point.values.iter().copied()).max(1.0);
     for (result, decision, values) in ends {
         match decision.verdict {

@@ -264,9 +264,7 @@ pub fn run_locally(
                 let system = solve.system(stage.id).expect("an opened stage has one");
                 let find = |digest: Digest| objects.get(&digest).cloned();
                 let prepared = PreparedWork::new(system, stage, &find)?;
-                let began = std::time::Instant::now();
                 let results = prepared.run(0..prepared.items(), width);
-                if began.elapsed().as_millis() > 300 { eprintln!("STAGE {:?} {:?} items {} attempt {} {:?} steps {:?}", stage.id, stage.work, prepared.items(), stage.attempt, began.elapsed(), results.iter().map(|r| (r.outcome, r.counts, r.precision_bits, r.winding_number, r.accuracy)).collect::<Vec<_>>()); }
                 solve.absorb(stage.id, &mut results.into_iter());
             }
             Next::Done => break,
@@ -274,4 +272,88 @@ pub fn run_locally(
     }
     let found = solve.decomposition().cloned();
     Ok(found.expect("it says what it found when it is done"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+    use cognate_systems::formats;
+
+    /// Decomposes with a tracker that spoils the results of each stage of the cascade.
+    fn decompose(text: &str, spoil: impl Fn(&mut Vec<PathResult>)) -> Decomposition {
+        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
+        let system = formats::read("test", text.as_bytes()).unwrap().system;
+        let options = DecompositionOptions::default();
+        let mut solve = DecompositionSolve::new(&system, &options).unwrap();
+        let mut objects = HashMap::new();
+        while let Next::Open(opening) = solve.next() {
+            for points in &opening.objects {
+                objects.insert(points.digest(), Arc::clone(points));
+            }
+            let system = Arc::clone(solve.system(opening.stage.id).unwrap());
+            let find = |digest: Digest| objects.get(&digest).cloned();
+            let prepared = PreparedWork::new(&system, &opening.stage, &find).unwrap();
+            let mut results = prepared.run(0..prepared.items(), 8);
+            spoil(&mut results);
+            solve.absorb(opening.stage.id, &mut results.into_iter());
+            assert!(!matches!(solve.next(), Next::Wait) || solve.job.is_some());
+        }
+        solve.decomposition().unwrap().clone()
+    }
+
+    /// A parabola and a circle.
+    const CURVES: &str = "variable_group x, y; function f; f = (y - x^2)*(x^2 + y^2 - 3);";
+
+    #[test]
+    fn two_curves_are_told_apart() {
+        let found = decompose(CURVES, |_| {});
+        let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
+        assert_eq!(degrees, [2, 2]);
+        assert!(found.settled() && found.adds_up(), "{found:?}");
+        for set in &found.components {
+            for point in &set.points {
+                let (x, y) = (point[0], point[1]);
+                let value = (y - x * x) * (x * x + y * y - 3.0);
+                assert!(value.norm_sqr() < 1e-24);
+                let slice = &set.slice[0];
+                let on_slice = slice[0] + slice[1] * x + slice[2] * y;
+                assert!(on_slice.norm_sqr() < 1e-24);
+            }
+        }
+    }
+
+    #[test]
+    fn a_lost_path_leaves_nothing_settled() {
+        // Four paths end at the four witness points: the last of them is lost, however often it is tracked.
+        let lost = |results: &mut Vec<PathResult>| {
+            for result in results.iter_mut().filter(|r| r.origin.0 == 3) {
+                result.outcome = PathOutcome::Failed(Failure::TooManySteps);
+            }
+        };
+        let found = decompose(CURVES, lost);
+        assert!(!found.settled());
+        let [dimension] = found.dimensions.as_slice() else {
+            panic!("one equation in two unknowns has curves: {found:?}");
+        };
+        assert_eq!(dimension.complete, Completeness::No);
+        assert!(dimension.doubts.contains(&Doubt::PointsMissing));
+        // What is whole is still a component.
+        assert!(
+            found.components.iter().any(|set| set.settled()),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn a_point_that_is_no_solution_is_not_taken() {
+        // The first path's end is moved away.
+        let moved = |results: &mut Vec<PathResult>| {
+            let cognate_continuation::path_result::Coordinates::Double(end) =
+                &mut results[0].endpoint;
+            end[1] += 0.3;
+        };
+        let found = decompose(CURVES, moved);
+        assert!(!found.settled(), "{found:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Problem: what does not change during a decomposition: equations, combinations of them, slices.
 
 use super::job::Tracking;
-use cognate_continuation::bend::{Number, SlicedEquations, exactly};
+use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -56,11 +56,7 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    pub fn new(
-        system: &System,
-        tracking: Tracking,
-        idle_loops: u32,
-    ) -> Result<Self, ProblemError> {
+    pub fn new(system: &System, tracking: Tracking, idle_loops: u32) -> Result<Self, ProblemError> {
         if !system.parameters.is_empty() {
             return Err(ProblemError::Parameters);
         }
@@ -146,22 +142,53 @@ impl Problem {
         SlicedEquations::new(&rows, self.slices(dimension))
     }
 
-    /// The largest equation at a point, each as its degree lets it grow.
-    pub fn residual(&self, point: &[Number]) -> f64 {
-        let largest = point
-            .iter()
-            .map(|z| cognate_continuation::bend::rounded(z).norm_sqr())
-            .fold(1.0f64, f64::max)
-            .sqrt();
-        let values = self.plain.values(point);
-        let each = values.iter().zip(&self.degrees.total);
-        each.map(|(value, &degree)| {
+    /// Whether a point that is known to 32 digits, or one that is known to a few, solves all given equations;
+    /// `None` where that is not clear.
+    pub fn solves(&self, point: &[Number], known: &Known) -> Option<bool> {
+        let sizes = point.iter().map(|z| rounded(z).norm_sqr());
+        let largest = sizes.fold(1.0f64, f64::max).sqrt();
+        let mut answer = Some(true);
+        for ((value, distance), &degree) in
+            self.plain.residuals(point).iter().zip(&self.degrees.total)
+        {
             let growth = (0..degree).fold(1.0, |power, _| power * largest);
-            value.norm_sqr().sqrt() / growth
-        })
-        .fold(0.0, |m: f64, r| if r.is_nan() { f64::INFINITY } else { m.max(r) })
+            let relative = value / growth;
+            // Where an equation has a multiple zero its derivative is rounding error, too.
+            if relative <= known.value || *distance <= known.distance {
+                continue;
+            }
+            if relative > known.value * 100.0 && *distance > known.other_distance {
+                return Some(false);
+            }
+            answer = None;
+        }
+        answer
     }
 }
+
+/// How well an equation must hold at a point.
+#[derive(Debug)]
+pub(super) struct Known {
+    /// What it is, relative to how its degree lets it grow: rounding error below this.
+    value: f64,
+    /// How far it is from where it is 0, relative to the point's size: none below the first, some above the
+    /// second.
+    distance: f64,
+    other_distance: f64,
+}
+
+/// A point that was refined to 32 digits.
+pub(super) const REFINED: Known = Known {
+    value: 1e-26,
+    distance: 1e-16,
+    other_distance: 1e-9,
+};
+/// A singular end of a path, known to some 8 digits.
+pub(super) const SINGULAR: Known = Known {
+    value: 1e-14,
+    distance: 1e-5,
+    other_distance: 1e-4,
+};
 
 fn rank_at_random(equations: &SlicedEquations, variables: usize, seed: u64) -> usize {
     let mut random = RandomStream::new(seed, Purpose::Probe, u64::MAX);

@@ -170,7 +170,10 @@ impl Split {
         for (&from, to) in self.travellers.iter().zip(images) {
             let place = |classes: &[Class], point: usize| {
                 let holds = |class: &Class| class.points.contains(&point);
-                classes.iter().position(holds).expect("every point has a class")
+                classes
+                    .iter()
+                    .position(holds)
+                    .expect("every point has a class")
             };
             let (a, b) = (place(&self.classes, from), place(&self.classes, to));
             if a != b {
