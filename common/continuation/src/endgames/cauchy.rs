@@ -315,8 +315,10 @@ impl Cauchy {
                 self.previous = None;
                 return self.inward(WITHIN * part, settings);
             }
-            Infinity::BelowNoise | Infinity::Unresolved | Infinity::Apart { .. } | Infinity::No => {
-            }
+            Infinity::BelowNoise
+            | Infinity::Unresolved
+            | Infinity::Apart { .. }
+            | Infinity::No => {}
         }
         let samples = f64::from(self.turns * VERTICES);
         let mean: Vec<Complex64> = self.sum.iter().map(|s| s / samples).collect();

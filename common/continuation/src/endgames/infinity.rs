@@ -68,9 +68,7 @@ impl Zero {
         match accuracy > 0.0 {
             true => Self {
                 value: FARTHEST.min(accuracy * accuracy).max(1e-40),
-                power_sum: LEAST_POWER_SUM
-                    .min(accuracy * accuracy * accuracy)
-                    .max(1e-60),
+                power_sum: LEAST_POWER_SUM.min(accuracy * accuracy * accuracy).max(1e-60),
             },
             false => Self::EXACT,
         }
@@ -280,9 +278,6 @@ mod tests {
             |z: &num_complex::Complex64| Homogenizing::from_f64((), 0.1 + 1e-3 * z.re, 1e-3 * z.im);
         let samples: Vec<Homogenizing> = circle.iter().map(at).collect();
         let samples: Vec<&Homogenizing> = samples.iter().collect();
-        assert_eq!(
-            vanishes(&samples, 1, false, 1e-15, 1.0, Zero::EXACT),
-            Infinity::No
-        );
+        assert_eq!(vanishes(&samples, 1, false, 1e-15, 1.0, Zero::EXACT), Infinity::No);
     }
 }

@@ -157,8 +157,13 @@ impl Scope {
         let mut tokens = Tokens::new(&text.text, None);
         let end = "the end of the expression";
         let dialect = Dialect::BERTINI;
-        let result =
-            parse::expression(&mut tokens, &mut self.names, dialect, end, &mut self.totals);
+        let result = parse::expression(
+            &mut tokens,
+            &mut self.names,
+            dialect,
+            end,
+            &mut self.totals,
+        );
         let result = result.and_then(|parsed| match tokens.peek() {
             token if token.kind == TokenKind::End => Ok(parsed),
             token => {
