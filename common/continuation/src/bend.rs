@@ -39,9 +39,9 @@ pub struct SlicedEquations {
 pub struct RefinedPoint {
     /// The point.
     pub point: Vec<Number>,
-    /// The last correction, relative to the point.
+    /// The last correction, relative to the point or to 1, whichever is larger.
     pub correction: f64,
-    /// How far all corrections moved it, relative to the point.
+    /// How far all corrections moved it, in the same unit.
     pub moved: f64,
     /// The largest equation there, in its size or as a part of what a change of the point by its size makes of
     /// it.
@@ -226,7 +226,7 @@ impl SlicedEquations {
                 .map(|i| rounded(now.at(i, self.variables)))
                 .collect();
             let step = at.solve(&values);
-            let size = length(&doubles(&x)).max(f64::MIN_POSITIVE);
+            let size = length(&doubles(&x)).max(1.0);
             let correction = length(&step) / size;
             if !correction.is_finite() || correction > 1.0 {
                 return None;
@@ -347,7 +347,7 @@ mod tests {
         let equations = SlicedEquations::new(&parabola(), vec![slice]);
         let mut sum = Number::zero(());
         for sign in [1.0, -1.0] {
-            let near = [number(sign * 1.4142), number(2.0)].map(exactly);
+            let near = [number(sign * 1.4), number(2.0)].map(exactly);
             let refined = equations.refine(&near).unwrap();
             assert!(refined.correction < 1e-28 && refined.residual < 1e-28);
             let bend = equations.bend(&refined, &[number(-1.0)]);
