@@ -81,8 +81,16 @@ impl DeflatedPoint {
     }
 }
 
-/// A deflated point, its multiplicity where it is known, the paths that ended there and dual dimensions.
-pub(super) type Multiple = (DeflatedPoint, Option<u64>, u64, Vec<u32>);
+/// A point of a multiple set.
+#[derive(Clone, Debug)]
+pub(super) struct Multiple {
+    pub point: DeflatedPoint,
+    /// Its multiplicity, where it is known.
+    pub scheme: Option<u64>,
+    /// Paths that ended there.
+    pub paths: u64,
+    pub dual_dimensions: Vec<u32>,
+}
 
 /// Deflated equations by their ranks, made once.
 #[derive(Debug, Default)]
@@ -212,36 +220,36 @@ impl Deflations {
         dimension: usize,
         found: Vec<Multiple>,
     ) -> Vec<PureSet> {
-        let mut groups: BTreeMap<(Vec<u32>, Option<u64>), Vec<(RefinedPoint, u64, Vec<u32>)>> =
-            BTreeMap::new();
-        for (point, scheme, paths, dual_dimensions) in found {
-            let group = groups.entry((point.ranks, scheme)).or_default();
-            let own = problem.variables();
-            let near = |known: &&mut (RefinedPoint, u64, Vec<u32>)| {
-                distance(&known.0.point[..own], &point.refined.point[..own]) < SAME
-            };
-            match group.iter_mut().find(near) {
-                Some(known) => known.1 += paths,
-                None => group.push((point.refined, paths, dual_dimensions)),
+        let own = problem.variables();
+        let mut different: Vec<Multiple> = Vec::new();
+        for multiple in found {
+            let place = |m: &Multiple| m.point.refined.point[..own].to_vec();
+            let at = place(&multiple);
+            let same = |known: &&mut Multiple| distance(&place(known), &at) < SAME;
+            match different.iter_mut().find(same) {
+                Some(known) => known.paths += multiple.paths,
+                None => different.push(multiple),
             }
         }
-        // Points at which as many paths ended are more likely of one component than others.
+        // Points to which as many paths came: on one component each has as many.
+        let mut groups: BTreeMap<(Vec<u32>, Option<u64>, u64), Vec<Multiple>> = BTreeMap::new();
+        for multiple in different {
+            let key = (
+                multiple.point.ranks.clone(),
+                multiple.scheme,
+                multiple.paths,
+            );
+            groups.entry(key).or_default().push(multiple);
+        }
         let mut sets = Vec::new();
-        for ((ranks, scheme), group) in groups {
-            let mut by_paths: BTreeMap<u64, Vec<RefinedPoint>> = BTreeMap::new();
-            let mut dual = Vec::new();
-            for (refined, paths, dual_dimensions) in group {
-                by_paths.entry(paths).or_default().push(refined);
-                dual = dual_dimensions;
-            }
-            for (tracked, points) in by_paths {
-                let multiplicity = Multiplicity {
-                    scheme,
-                    tracked,
-                    dual_dimensions: dual.clone(),
-                };
-                sets.push(self.set(problem, dimension, ranks.clone(), multiplicity, points));
-            }
+        for ((ranks, scheme, tracked), group) in groups {
+            let multiplicity = Multiplicity {
+                scheme,
+                tracked,
+                dual_dimensions: group[0].dual_dimensions.clone(),
+            };
+            let points = group.into_iter().map(|m| m.point.refined).collect();
+            sets.push(self.set(problem, dimension, ranks, multiplicity, points));
         }
         sets
     }

@@ -6,7 +6,7 @@
 //! one of them. Where both speak they must agree.
 
 use super::cascade::{SingularEnd, Superset};
-use super::deflated::{Deflations, PureSet};
+use super::deflated::{Deflations, Multiple, PureSet};
 use super::job::Job;
 use super::problem::Problem;
 use cognate_continuation::homotopies::HomotopyKind;
@@ -219,7 +219,12 @@ impl Sieve {
                             1 => regular.push(point.refined),
                             _ => unclear += paths,
                         },
-                        Some(point) => found.push((point, scheme, suspect)),
+                        Some(point) => found.push(Multiple {
+                            point,
+                            scheme,
+                            paths,
+                            dual_dimensions: suspect.dual_dimensions,
+                        }),
                         None => not_deflated += paths,
                     }
                 }
@@ -233,10 +238,7 @@ impl Sieve {
         }
         let deflations = &mut self.deflations;
         sets.extend(deflations.reduced_set(problem, dimension, regular));
-        let found = found.into_iter().map(|(point, scheme, suspect)| {
-            (point, scheme, suspect.end.paths, suspect.dual_dimensions)
-        });
-        sets.extend(deflations.multiple_sets(problem, dimension, found.collect()));
+        sets.extend(deflations.multiple_sets(problem, dimension, found));
         let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
         let doubts = [
             (

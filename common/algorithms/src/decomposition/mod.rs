@@ -118,7 +118,7 @@ impl DecompositionSolve {
     }
 
     /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
-    pub fn next(&mut self) -> Next {
+    pub fn next_stage(&mut self) -> Next {
         loop {
             if let Some(job) = &mut self.job {
                 match job.next() {
@@ -227,7 +227,7 @@ impl DecompositionSolve {
         self.systems.get(stage.0 as usize)
     }
 
-    /// What was found, when `next` has said `Done`.
+    /// What was found, when `next_stage` has said `Done`.
     pub fn decomposition(&self) -> Option<&Decomposition> {
         match &self.step {
             Step::Done(found) => Some(found),
@@ -253,7 +253,7 @@ pub fn run_locally(
     let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
     let mut open: VecDeque<Box<Opening>> = VecDeque::new();
     loop {
-        match solve.next() {
+        match solve.next_stage() {
             Next::Open(opening) => open.push_back(opening),
             Next::Wait => {
                 let opening = open.pop_front();
@@ -287,7 +287,7 @@ mod tests {
         let options = DecompositionOptions::default();
         let mut solve = DecompositionSolve::new(&system, &options).unwrap();
         let mut objects = HashMap::new();
-        while let Next::Open(opening) = solve.next() {
+        while let Next::Open(opening) = solve.next_stage() {
             for points in &opening.objects {
                 objects.insert(points.digest(), Arc::clone(points));
             }
@@ -297,7 +297,7 @@ mod tests {
             let mut results = prepared.run(0..prepared.items(), 8);
             spoil(&mut results);
             solve.absorb(opening.stage.id, &mut results.into_iter());
-            assert!(!matches!(solve.next(), Next::Wait) || solve.job.is_some());
+            assert!(!matches!(solve.next_stage(), Next::Wait) || solve.job.is_some());
         }
         solve.decomposition().unwrap().clone()
     }
