@@ -245,12 +245,12 @@ fn grid(point: &[num_complex::Complex64]) -> Vec<i64> {
         .collect()
 }
 
-/// Decomposes in one thread, with lanes of this width.
-pub fn run_locally(
-    mut solve: DecompositionSolve,
-    width: usize,
-) -> Result<Decomposition, PrepareError> {
-    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+/// Drives a decomposition until it is done. `track` does all items of a stage on its system, in item order;
+/// its first error ends the run.
+pub fn drive<E>(
+    solve: &mut DecompositionSolve,
+    track: &mut dyn FnMut(&System, &Opening) -> Result<Vec<PathResult>, E>,
+) -> Result<(), E> {
     let mut open: VecDeque<Box<Opening>> = VecDeque::new();
     loop {
         match solve.next_stage() {
@@ -258,18 +258,41 @@ pub fn run_locally(
             Next::Wait => {
                 let opening = open.pop_front();
                 let opening = opening.expect("it waits only for a stage that it opened");
-                let made = opening.objects.iter();
-                objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
-                let stage = &opening.stage;
-                let system = solve.system(stage.id).expect("an opened stage has one");
-                let find = |digest: Digest| objects.get(&digest).cloned();
-                let prepared = PreparedWork::new(system, stage, &find)?;
-                let results = prepared.run(0..prepared.items(), width);
-                solve.absorb(stage.id, &mut results.into_iter());
+                let system = solve.system(opening.stage.id);
+                let results = track(system.expect("an opened stage has one"), &opening)?;
+                solve.absorb(opening.stage.id, &mut results.into_iter());
             }
-            Next::Done => break,
+            Next::Done => return Ok(()),
         }
     }
+}
+
+/// Decomposes in one thread, with lanes of this width.
+///
+/// ```
+/// use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
+///
+/// let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; f = (x - y)*(x^2 + y^2 - 1);\nEND;\n";
+/// let system = cognate_systems::formats::read("example", text)?.system;
+/// let solve = DecompositionSolve::new(&system, &DecompositionOptions::default())?;
+/// let found = run_locally(solve, 8)?;
+/// let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
+/// assert_eq!(degrees, [2, 1]);
+/// assert!(found.settled());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn run_locally(
+    mut solve: DecompositionSolve,
+    width: usize,
+) -> Result<Decomposition, PrepareError> {
+    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+    drive(&mut solve, &mut |system, opening| {
+        let made = opening.objects.iter();
+        objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+        let find = |digest: Digest| objects.get(&digest).cloned();
+        let prepared = PreparedWork::new(system, &opening.stage, &find)?;
+        Ok::<_, PrepareError>(prepared.run(0..prepared.items(), width))
+    })?;
     let found = solve.decomposition().cloned();
     Ok(found.expect("it says what it found when it is done"))
 }
@@ -287,18 +310,16 @@ mod tests {
         let options = DecompositionOptions::default();
         let mut solve = DecompositionSolve::new(&system, &options).unwrap();
         let mut objects = HashMap::new();
-        while let Next::Open(opening) = solve.next_stage() {
-            for points in &opening.objects {
-                objects.insert(points.digest(), Arc::clone(points));
-            }
-            let system = Arc::clone(solve.system(opening.stage.id).unwrap());
+        let done: Result<(), PrepareError> = drive(&mut solve, &mut |system, opening| {
+            let made = opening.objects.iter();
+            objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let find = |digest: Digest| objects.get(&digest).cloned();
-            let prepared = PreparedWork::new(&system, &opening.stage, &find).unwrap();
+            let prepared = PreparedWork::new(system, &opening.stage, &find)?;
             let mut results = prepared.run(0..prepared.items(), 8);
             spoil(&mut results);
-            solve.absorb(opening.stage.id, &mut results.into_iter());
-            assert!(!matches!(solve.next_stage(), Next::Wait) || solve.job.is_some());
-        }
+            Ok(results)
+        });
+        assert_eq!(done, Ok(()));
         solve.decomposition().unwrap().clone()
     }
 
