@@ -166,6 +166,8 @@ impl Cascade {
             superset.excess = std::mem::take(&mut self.points).len() as u64;
         }
         superset.failed = self.failed;
+        // What is not gone on from may lead to sets of lower dimension.
+        self.failed += superset.unclear;
         self.supersets.push(superset);
     }
 }

@@ -3,7 +3,7 @@
 //! A regular point is isolated on its slice, and no junk. Of a singular one the dual space of all
 //! equations on the slice says whether it is isolated (Bates, Hauenstein, Peterson, Sommese 2009); unless it
 //! says that it is not, paths on the sets of higher dimension to slices through the point ask whether it is on
-//! one of them. Where both speak they must agree.
+//! one of them; with `confirm_junk` also then. Where both speak they must agree.
 
 use super::cascade::{SingularEnd, Superset};
 use super::deflated::{Deflations, Multiple, PureSet};
@@ -135,7 +135,8 @@ impl Sieve {
         while !self.sets_left.is_empty() {
             let set = self.sets_left.remove(0);
             let asks = |suspect: &Suspect| {
-                suspect.isolation != Isolation::PositiveDimensional && suspect.member != Some(true)
+                let clear = suspect.isolation == Isolation::PositiveDimensional;
+                (problem.confirm_junk || !clear) && suspect.member != Some(true)
             };
             let places = 0..self.suspects.len();
             let suspects: Vec<usize> = places.filter(|&k| asks(&self.suspects[k])).collect();
@@ -199,6 +200,7 @@ impl Sieve {
         for suspect in std::mem::take(&mut self.suspects) {
             let paths = suspect.end.paths;
             let isolated = match (suspect.isolation, suspect.member) {
+                (Isolation::PositiveDimensional, Some(false)) if problem.confirm_junk => None,
                 (Isolation::PositiveDimensional, _) if higher => Some(false),
                 (Isolation::Undecided, Some(true)) => Some(false),
                 (Isolation::Isolated { .. } | Isolation::Undecided, Some(false)) => Some(true),

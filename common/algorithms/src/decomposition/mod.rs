@@ -48,6 +48,9 @@ pub struct DecompositionOptions {
     pub tolerances: Tolerances,
     /// How often a path is tracked again at most.
     pub max_retries: u16,
+    /// Whether paths on the sets of higher dimension confirm what dual spaces and moved slices call junk; else
+    /// they are asked only where these are not clear.
+    pub confirm_junk: bool,
     /// Loops in a row that bring no points together before points stay apart.
     pub idle_loops: u32,
 }
@@ -59,6 +62,7 @@ impl Default for DecompositionOptions {
             settings: Settings::default(),
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,
+            confirm_junk: true,
             idle_loops: 12,
         }
     }
@@ -103,7 +107,7 @@ impl DecompositionSolve {
             max_retries: options.max_retries,
             seed: options.seed,
         };
-        let problem = Problem::new(system, tracking, options.idle_loops)?;
+        let problem = Problem::new(system, tracking, options)?;
         Ok(Self {
             step: Step::Cascade(Cascade::new(&problem)),
             problem,
@@ -249,7 +253,7 @@ fn grid(point: &[num_complex::Complex64]) -> Vec<i64> {
 /// its first error ends the run.
 pub fn drive<E>(
     solve: &mut DecompositionSolve,
-    track: &mut dyn FnMut(&System, &Opening) -> Result<Vec<PathResult>, E>,
+    mut track: impl FnMut(&System, &Opening) -> Result<Vec<PathResult>, E>,
 ) -> Result<(), E> {
     let mut open: VecDeque<Box<Opening>> = VecDeque::new();
     loop {
@@ -286,7 +290,7 @@ pub fn run_locally(
     width: usize,
 ) -> Result<Decomposition, PrepareError> {
     let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-    drive(&mut solve, &mut |system, opening| {
+    drive(&mut solve, |system, opening| {
         let made = opening.objects.iter();
         objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
         let find = |digest: Digest| objects.get(&digest).cloned();
@@ -314,7 +318,7 @@ mod tests {
         };
         let mut solve = DecompositionSolve::new(&system, &options).unwrap();
         let mut objects = HashMap::new();
-        let done: Result<(), PrepareError> = drive(&mut solve, &mut |system, opening| {
+        let done: Result<(), PrepareError> = drive(&mut solve, |system, opening| {
             let made = opening.objects.iter();
             objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let find = |digest: Digest| objects.get(&digest).cloned();

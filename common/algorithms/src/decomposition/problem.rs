@@ -1,5 +1,6 @@
 //! Problem: what does not change during a decomposition: equations, combinations of them, slices.
 
+use super::DecompositionOptions;
 use super::job::Tracking;
 use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
 use cognate_continuation::start_systems::slices::form;
@@ -49,6 +50,7 @@ pub(super) struct Problem {
     pub levels: usize,
     pub tracking: Tracking,
     pub idle_loops: u32,
+    pub confirm_junk: bool,
     /// The equations with nothing else, to evaluate.
     plain: SlicedEquations,
     /// The units in which all of it is tracked.
@@ -88,7 +90,8 @@ impl Problem {
             row_degrees,
             levels,
             tracking,
-            idle_loops,
+            idle_loops: options.idle_loops,
+            confirm_junk: options.confirm_junk,
             plain,
             scaling,
         })

@@ -42,9 +42,10 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
-    /// Whether every claim is settled.
+    /// Whether every claim is settled, and something was asked.
     pub fn settled(&self) -> bool {
-        self.components.iter().all(WitnessSet::settled)
+        !self.dimensions.is_empty()
+            && self.components.iter().all(WitnessSet::settled)
             && self
                 .dimensions
                 .iter()
