@@ -58,7 +58,11 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    pub fn new(system: &System, tracking: Tracking, idle_loops: u32) -> Result<Self, ProblemError> {
+    pub fn new(
+        system: &System,
+        tracking: Tracking,
+        options: &DecompositionOptions,
+    ) -> Result<Self, ProblemError> {
         if !system.parameters.is_empty() {
             return Err(ProblemError::Parameters);
         }
