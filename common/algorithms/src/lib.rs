@@ -15,6 +15,7 @@
 //! | regeneration | all regular solutions, equation by equation; singular ones may be missed | [`regeneration_solve`] |
 //! | parameters | solutions of other members of a family, from those of one | [`parameter_solve`] |
 //! | monodromy | solutions of a generic member, from one of them, by loops | [`monodromy`] |
+//! | decomposition | components of every dimension, by witness sets | [`decomposition`] |
 //!
 //! Around any of these: [`sharpened_solve`] brings solutions to more digits, [`certified_solve`] proves
 //! them. Inside all of them: [`retried_stage`] tracks again what failed or met. Paths meet that end at one
@@ -31,6 +32,7 @@ pub mod certified_solve;
 pub mod closing_stage;
 mod coefficient_family;
 pub mod completeness;
+pub mod decomposition;
 mod given_start;
 pub mod monodromy;
 pub mod opening;

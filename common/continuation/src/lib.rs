@@ -6,7 +6,7 @@
 //! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left;
 //! [`asked_system`] holds it against all equations that are asked, [`local_dimension`] says
 //! whether it is isolated, [`sharpening`] brings it to more digits, [`certification`] proves what is
-//! there; these look at the [`points_at_targets`] of a stage. [`projection`] tells points apart by numbers.
+//! there; [`bend`] says how it moves with its slice; these look at the [`points_at_targets`] of a stage. [`projection`] tells points apart by numbers.
 //!
 //! # A tour: two conics meet in four points
 //!
@@ -70,6 +70,7 @@
 #![forbid(unsafe_code)]
 
 pub mod asked_system;
+pub mod bend;
 pub mod certification;
 pub mod chart;
 pub mod endgames;

@@ -1,14 +1,20 @@
 //! Systems made from systems.
 
+mod affine_chart;
 pub mod clear_denominators;
+mod combine;
 mod deflate;
 mod fix_parameters;
 mod homogenize;
 mod independent;
 mod randomize;
 mod rescale;
+mod slice;
 
+pub use affine_chart::affine_chart;
+pub use combine::{combine, equilibrate};
 pub use deflate::deflate;
 pub use fix_parameters::{FixError, fix_parameters};
 pub use homogenize::homogenize;
 pub use randomize::randomize;
+pub use slice::slice;

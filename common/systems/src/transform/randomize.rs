@@ -95,14 +95,14 @@ pub fn randomize(system: &System, degrees: &Degrees, seed: u64) -> System {
 
 /// A random real number between 1/4 and 1 in modulus, a multiple of 2^-16: exact in doubles, and
 /// cheap in exact arithmetic.
-fn coefficient(random: &mut RandomStream) -> Rational {
+pub(super) fn coefficient(random: &mut RandomStream) -> Rational {
     let size = Rational::from((16_384 + random.below(49_152), 65_536u32));
     if random.below(2) == 0 { size } else { -size }
 }
 
 /// The equations, each times a power of two, so that none drowns the others: their values at
 /// random points with coordinates of modulus 1 are about 1.
-fn scaled(system: &System, out: &mut Expressions, seed: u64) -> Vec<NodeId> {
+pub(super) fn scaled(system: &System, out: &mut Expressions, seed: u64) -> Vec<NodeId> {
     const PROBES: u64 = 3;
     let native = |z: num_complex::Complex64| Complex { re: z.re, im: z.im };
     let program = Interpreter::compile(

@@ -1,0 +1,173 @@
+//! The cascade: equation by equation, the solutions of all equations are taken out in each dimension.
+//!
+//! Level k holds points of the first k combinations of the equations on slices k, k+1, ...; its own slice
+//! slides to as many forms as the next combination has degrees, and their product becomes that combination.
+//! An end that solves all given equations belongs to the witness superset of dimension n - k - 1 and goes no
+//! further; one that does not is regular with probability 1 and begins the next level.
+
+use super::job::Job;
+use super::problem::{Problem, REFINED, SINGULAR};
+use cognate_continuation::bend::exactly;
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::start_systems::slices::common_point;
+use cognate_continuation::work::StageId;
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::path_crossing::coincidences;
+use cognate_solutions::point_shape::PointShape;
+use num_complex::Complex64;
+
+/// A point at which several paths end, or one that is singular.
+#[derive(Clone, Debug)]
+pub(super) struct SingularEnd {
+    pub values: Vec<Complex64>,
+    pub accuracy: f64,
+    /// How many paths end there.
+    pub paths: u64,
+}
+
+/// Ends of one level that solve all equations.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Superset {
+    pub dimension: usize,
+    pub regular: Vec<Vec<Complex64>>,
+    pub singular: Vec<SingularEnd>,
+    /// Ends that solve combinations only, at the last level.
+    pub excess: u64,
+    /// Paths lost up to this level.
+    pub failed: u64,
+    /// Ends of which it is not clear whether they solve all equations.
+    pub unclear: u64,
+}
+
+/// Level by level.
+#[derive(Debug)]
+pub(super) struct Cascade {
+    level: usize,
+    /// Points that the level began with; with slid ones once it slid.
+    points: Vec<Vec<Complex64>>,
+    sliding: bool,
+    failed: u64,
+    supersets: Vec<Superset>,
+    started: bool,
+}
+
+impl Cascade {
+    pub fn new(problem: &Problem) -> Self {
+        let start = common_point(problem.seed(), problem.variables());
+        Self {
+            level: 0,
+            points: start.into_iter().collect(),
+            sliding: false,
+            failed: 0,
+            supersets: Vec::new(),
+            started: false,
+        }
+    }
+
+    /// The supersets, highest dimension first, of dimensions that have points or lost some.
+    pub fn supersets(&mut self) -> Vec<Superset> {
+        std::mem::take(&mut self.supersets)
+    }
+
+    /// Learns from the stage that is done, and says which comes next.
+    pub fn advance(&mut self, problem: &Problem, done: Option<&Job>, id: StageId) -> Option<Job> {
+        match done {
+            None if self.started => return None,
+            None => self.started = true,
+            Some(job) if self.sliding => self.slid(job),
+            Some(job) => self.intersected(problem, job),
+        }
+        if self.points.is_empty() || self.level >= problem.levels {
+            return None;
+        }
+        let degree = problem.row_degrees[self.level];
+        self.sliding = !self.sliding && degree > 1;
+        let (parameters, level) = (Vec::new(), self.level as u32);
+        let order = (0..problem.variables() as u32).collect();
+        let homotopy = match self.sliding {
+            true => HomotopyKind::Slide {
+                parameters,
+                order,
+                level,
+                forms: degree - 1,
+            },
+            false => HomotopyKind::Intersect {
+                parameters,
+                order,
+                level,
+            },
+        };
+        let (system, with) = (&problem.staircase, &problem.tracking);
+        Some(Job::track(id, system, homotopy, &self.points, with))
+    }
+
+    fn slid(&mut self, job: &Job) {
+        for (_, decision, values) in job.ends() {
+            match decision.verdict {
+                Verdict::Finite => self.points.push(values),
+                // From one general slice to another all solutions are regular.
+                _ => self.failed += 1,
+            }
+        }
+        self.failed += job.crossings_left();
+    }
+
+    fn intersected(&mut self, problem: &Problem, job: &Job) {
+        let dimension = problem.variables() - self.level - 1;
+        let mut superset = Superset {
+            dimension,
+            ..Superset::default()
+        };
+        let equations = problem.level_equations(dimension);
+        let mut singular = Vec::new();
+        let ends = job.ends();
+        self.points.clear();
+        for (place, (_, decision, values)) in ends.iter().enumerate() {
+            let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
+            match decision.verdict {
+                Verdict::AtInfinity => {}
+                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => self.failed += 1,
+                Verdict::Finite => {
+                    let refined = equations.refine(&exact);
+                    match refined.and_then(|refined| problem.solves(&refined.point, &REFINED)) {
+                        Some(true) => superset.regular.push(values.clone()),
+                        Some(false) => self.points.push(values.clone()),
+                        None => superset.unclear += 1,
+                    }
+                }
+                Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional => {
+                    match problem.solves(&exact, &SINGULAR) {
+                        Some(true) => singular.push(place),
+                        _ => superset.unclear += 1,
+                    }
+                }
+            }
+        }
+        let shape = PointShape::of(&problem.staircase);
+        let results = job.results();
+        let (tolerances, seed) = (&problem.tracking.tolerances, problem.seed());
+        let chosen = |place: usize| singular.binary_search(&place).is_ok();
+        for members in coincidences(results, &shape, tolerances, seed, chosen) {
+            let accuracy = |&m: &usize| results[m].accuracy;
+            let best = members
+                .iter()
+                .copied()
+                .min_by(|a, b| accuracy(a).total_cmp(&accuracy(b)));
+            let best = best.expect("a cluster has members");
+            superset.singular.push(SingularEnd {
+                values: ends[best].2.clone(),
+                accuracy: accuracy(&best),
+                paths: members.len() as u64,
+            });
+        }
+        self.failed += job.crossings_left();
+        self.level += 1;
+        if self.level == problem.levels {
+            superset.excess = std::mem::take(&mut self.points).len() as u64;
+        }
+        superset.failed = self.failed;
+        // What is not gone on from may lead to sets of lower dimension.
+        self.failed += superset.unclear;
+        self.supersets.push(superset);
+    }
+}

@@ -1,0 +1,340 @@
+//! Pure sets: witness points of one dimension and one multiplicity, with equations that are regular there.
+//!
+//! Where the Jacobian of the given equations has too small a rank at a witness point, its kernel joins the
+//! equations with new unknowns, until they are regular with the slice (Leykin, Verschelde, Zhao 2006). The
+//! ranks depend on the component alone, since its witness points are general on it (Hauenstein, Wampler:
+//! Isosingular sets and deflation, Found. Comput. Math. 13, 2013): points of other ranks are on others.
+
+use super::cascade::SingularEnd;
+use super::problem::Problem;
+use cognate_continuation::bend::{Number, RefinedPoint, SlicedEquations, exactly, rounded};
+use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::witness::Multiplicity;
+use cognate_systems::system::{System, VariableGroup};
+use cognate_systems::transform::deflate;
+use num_complex::Complex64;
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+/// Most deflations one after the other.
+const MOST_DEFLATIONS: usize = 6;
+/// Most unknowns of deflated equations.
+const MOST_UNKNOWNS: usize = 200;
+/// Most nodes of equations that are deflated once more.
+const MOST_NODES: usize = 20_000;
+/// A singular value below this part of the largest may be 0, at a point that is known to a few digits.
+const SMALL: f64 = 1e-3;
+/// ... where the one before it is larger by this factor.
+const GAP: f64 = 30.0;
+/// How many ranks are tried at one point,
+const CANDIDATES: usize = 2;
+/// ... and how many sequences of ranks, shortest first.
+const MOST_TRIED: usize = 16;
+/// Singular values below this many times a point's error may be 0 and tell nothing.
+const NOISE: f64 = 30.0;
+/// Condition number above which equations are not regular at a point: there double-doubles lose half their
+/// digits. Below it what tells is that Newton's method comes to all its digits at once.
+const SINGULAR: f64 = 1e14;
+/// What Newton's method must reach: its last step relative to the point, and the equations.
+const STEP: f64 = 1e-22;
+const RESIDUAL: f64 = 1e-20;
+/// A refined end has moved at most this far, or this many times its error, relative to the point.
+const MOVED: f64 = 1e-5;
+const MOVED_FACTOR: f64 = 1e3;
+/// Refined points nearer than this, relative to their size, are one.
+const SAME: f64 = 1e-14;
+
+/// Witness points that are to be told apart.
+#[derive(Clone, Debug)]
+pub(super) struct PureSet {
+    pub dimension: usize,
+    /// Rank of the Jacobian before each deflation.
+    pub ranks: Vec<u32>,
+    pub multiplicity: Multiplicity,
+    /// All equations, regular at the points.
+    pub equations: Arc<SlicedEquations>,
+    /// As many combinations of them as are tracked, with the slices, whose coefficients are parameters.
+    pub tracked: Arc<System>,
+    pub points: Vec<RefinedPoint>,
+}
+
+impl PureSet {
+    /// The points in the unknowns that are tracked.
+    pub fn doubles(&self) -> Vec<Vec<Complex64>> {
+        let double = |p: &RefinedPoint| p.point.iter().map(rounded).collect();
+        self.points.iter().map(double).collect()
+    }
+}
+
+/// A point of a multiple set at which the equations are regular after these deflations.
+#[derive(Clone, Debug)]
+pub(super) struct DeflatedPoint {
+    ranks: Vec<u32>,
+    pub refined: RefinedPoint,
+}
+
+impl DeflatedPoint {
+    /// Whether the given equations are regular there.
+    pub fn is_reduced(&self) -> bool {
+        self.ranks.is_empty()
+    }
+}
+
+/// A point of a multiple set.
+#[derive(Clone, Debug)]
+pub(super) struct Multiple {
+    pub point: DeflatedPoint,
+    /// Its multiplicity, where it is known.
+    pub scheme: Option<u64>,
+    /// Paths that ended there.
+    pub paths: u64,
+    pub dual_dimensions: Vec<u32>,
+}
+
+/// Deflated equations by their ranks, made once.
+#[derive(Debug, Default)]
+pub(super) struct Deflations {
+    systems: BTreeMap<Vec<u32>, Arc<System>>,
+    sliced: BTreeMap<(Vec<u32>, usize), Arc<SlicedEquations>>,
+}
+
+impl Deflations {
+    fn system(&mut self, problem: &Problem, ranks: &[u32]) -> Arc<System> {
+        if let Some(known) = self.systems.get(ranks) {
+            return Arc::clone(known);
+        }
+        let made = match ranks.split_last() {
+            None => Arc::clone(&problem.given),
+            Some((&rank, before)) => {
+                let inner = self.system(problem, before);
+                Arc::new(deflated(&inner, rank as usize, ranks.len(), problem.seed()))
+            }
+        };
+        self.systems.insert(ranks.to_vec(), Arc::clone(&made));
+        made
+    }
+
+    fn sliced(
+        &mut self,
+        problem: &Problem,
+        ranks: &[u32],
+        dimension: usize,
+    ) -> Arc<SlicedEquations> {
+        let key = (ranks.to_vec(), dimension);
+        if let Some(known) = self.sliced.get(&key) {
+            return Arc::clone(known);
+        }
+        let system = self.system(problem, ranks);
+        let made = Arc::new(SlicedEquations::new(&system, problem.slices(dimension)));
+        self.sliced.insert(key, Arc::clone(&made));
+        made
+    }
+
+    /// A witness point at which the given equations are regular.
+    pub fn reduced_point(
+        &mut self,
+        problem: &Problem,
+        dimension: usize,
+        values: &[Complex64],
+    ) -> Option<RefinedPoint> {
+        let equations = self.sliced(problem, &[], dimension);
+        let start: Vec<Number> = values.iter().map(|&z| exactly(z)).collect();
+        let refined = equations.refine(&start);
+        refined.filter(|refined| settled(refined, MOVED))
+    }
+
+    /// A point of a multiple set with the fewest deflations that make the equations regular there.
+    pub fn regular_point(
+        &mut self,
+        problem: &Problem,
+        dimension: usize,
+        end: &SingularEnd,
+    ) -> Option<DeflatedPoint> {
+        let start: Vec<Number> = end.values.iter().map(|&z| exactly(z)).collect();
+        let moved = (MOVED_FACTOR * end.accuracy).max(MOVED);
+        let mut untried = VecDeque::from([(Vec::new(), start)]);
+        for _ in 0..MOST_TRIED {
+            let (ranks, start): (Vec<u32>, Vec<Number>) = untried.pop_front()?;
+            let equations = self.sliced(problem, &ranks, dimension);
+            let refined = equations.refine(&start);
+            if let Some(refined) = refined.filter(|refined| settled(refined, moved)) {
+                return Some(DeflatedPoint { ranks, refined });
+            }
+            if ranks.len() == MOST_DEFLATIONS {
+                continue;
+            }
+            let unknowns = start.len();
+            for rank in candidates(&equations.singular_values(&start), end.accuracy) {
+                let nodes = self.system(problem, &ranks).expressions.nodes().len();
+                if unknowns + rank < MOST_UNKNOWNS && nodes < MOST_NODES {
+                    let mut ranks = ranks.clone();
+                    ranks.push(rank as u32);
+                    let start = self.with_multipliers(problem, dimension, &ranks, &start);
+                    untried.push_back((ranks, start));
+                }
+            }
+        }
+        None
+    }
+
+    /// The point with the multipliers of the last deflation: the solution of linear equations.
+    fn with_multipliers(
+        &mut self,
+        problem: &Problem,
+        dimension: usize,
+        ranks: &[u32],
+        start: &[Number],
+    ) -> Vec<Number> {
+        let count = ranks.last().map_or(0, |&rank| rank as usize + 1);
+        let equations = self.sliced(problem, ranks, dimension);
+        let mut longer = start.to_vec();
+        longer.resize(start.len() + count, Number::zero(()));
+        let (values, columns) = equations.linear_part(&longer, start.len());
+        let multipliers = Svd::of(columns).least_squares(&values, count);
+        for (place, multiplier) in longer[start.len()..].iter_mut().zip(multipliers) {
+            *place = exactly(-multiplier);
+        }
+        longer
+    }
+
+    /// The set of these points at which the given equations are regular.
+    pub fn reduced_set(
+        &mut self,
+        problem: &Problem,
+        dimension: usize,
+        points: Vec<RefinedPoint>,
+    ) -> Option<PureSet> {
+        let multiplicity = Multiplicity {
+            scheme: Some(1),
+            tracked: 1,
+            dual_dimensions: Vec::new(),
+        };
+        (!points.is_empty()).then(|| self.set(problem, dimension, Vec::new(), multiplicity, points))
+    }
+
+    /// The sets of these points of multiple sets: one for each sequence of ranks and each multiplicity.
+    pub fn multiple_sets(
+        &mut self,
+        problem: &Problem,
+        dimension: usize,
+        found: Vec<Multiple>,
+    ) -> Vec<PureSet> {
+        let own = problem.variables();
+        let mut different: Vec<Multiple> = Vec::new();
+        for multiple in found {
+            let place = |m: &Multiple| m.point.refined.point[..own].to_vec();
+            let at = place(&multiple);
+            let same = |known: &&mut Multiple| distance(&place(known), &at) < SAME;
+            match different.iter_mut().find(same) {
+                Some(known) => known.paths += multiple.paths,
+                None => different.push(multiple),
+            }
+        }
+        // Points to which as many paths came: on one component each has as many.
+        let mut groups: BTreeMap<(Vec<u32>, Option<u64>, u64), Vec<Multiple>> = BTreeMap::new();
+        for multiple in different {
+            let key = (
+                multiple.point.ranks.clone(),
+                multiple.scheme,
+                multiple.paths,
+            );
+            groups.entry(key).or_default().push(multiple);
+        }
+        let mut sets = Vec::new();
+        for ((ranks, scheme, tracked), group) in groups {
+            let multiplicity = Multiplicity {
+                scheme,
+                tracked,
+                dual_dimensions: group[0].dual_dimensions.clone(),
+            };
+            let points = group.into_iter().map(|m| m.point.refined).collect();
+            sets.push(self.set(problem, dimension, ranks, multiplicity, points));
+        }
+        sets
+    }
+
+    fn set(
+        &mut self,
+        problem: &Problem,
+        dimension: usize,
+        ranks: Vec<u32>,
+        multiplicity: Multiplicity,
+        points: Vec<RefinedPoint>,
+    ) -> PureSet {
+        let system = self.system(problem, &ranks);
+        let tracked = problem.tracked(&system, dimension);
+        PureSet {
+            dimension,
+            equations: self.sliced(problem, &ranks, dimension),
+            tracked: Arc::new(tracked.expect("derivatives of polynomials have degrees")),
+            ranks,
+            multiplicity,
+            points,
+        }
+    }
+}
+
+fn settled(refined: &RefinedPoint, moved: f64) -> bool {
+    refined.correction < STEP
+        && refined.residual < RESIDUAL
+        && refined.condition < SINGULAR
+        && refined.moved < moved
+}
+
+/// Distance of two points relative to their size.
+fn distance(a: &[Number], b: &[Number]) -> f64 {
+    let pairs = a.iter().zip(b).map(|(x, y)| (rounded(x), rounded(y)));
+    let (mut apart, mut size) = (0.0, 1.0);
+    for (x, y) in pairs {
+        apart += (x - y).norm_sqr();
+        size += x.norm_sqr();
+    }
+    (apart / size).sqrt()
+}
+
+/// Ranks that a matrix with these singular values, descending, can have where its entries have errors of this
+/// size, by the gap after them.
+fn candidates(values: &[f64], accuracy: f64) -> Vec<usize> {
+    let scale = values.first().copied().unwrap_or(0.0).max(1.0);
+    let noise = NOISE * accuracy.max(1e-14) * scale;
+    let mut gaps: Vec<(f64, usize)> = Vec::new();
+    for (rank, &after) in values.iter().enumerate() {
+        let before = match rank {
+            0 => scale,
+            _ => values[rank - 1],
+        };
+        let gap = before.max(noise) / after.max(noise);
+        if after <= SMALL * scale && gap >= GAP {
+            gaps.push((gap, rank));
+        }
+    }
+    gaps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    gaps.truncate(CANDIDATES);
+    gaps.into_iter().map(|(_, rank)| rank).collect()
+}
+
+/// The equations with the kernel of their Jacobian, which has this rank.
+fn deflated(system: &System, rank: usize, depth: usize, seed: u64) -> System {
+    let mut result = system.clone();
+    let unknowns: Vec<usize> = (0..system.variable_count()).collect();
+    let first = unknowns.len();
+    let mut random = RandomStream::new(seed, Purpose::Deflation, depth as u64);
+    result.equations = deflate(
+        &mut result.expressions,
+        &system.equations,
+        &unknowns,
+        first,
+        rank,
+        &mut random,
+    );
+    let names = (0..=rank).map(|k| format!("multiplier {depth} {k}"));
+    result.variables.extend(names);
+    result.groups = vec![VariableGroup {
+        variables: (0..result.variables.len()).collect(),
+        homogeneous: false,
+    }];
+    let count = result.equations.len();
+    result.equation_names = (1..=count).map(|k| format!("equation {k}")).collect();
+    result
+}

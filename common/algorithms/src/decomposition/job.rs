@@ -1,0 +1,186 @@
+//! Job: one stage of a decomposition with its repetitions, on the system that was made for it.
+
+use crate::retried_stage::RetriedStage;
+use crate::{Next, Opening};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_solutions::classification::{Decision, Tolerances};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// What a stage is tracked with.
+#[derive(Clone, Debug)]
+pub(super) struct Tracking {
+    pub settings: Settings,
+    pub tolerances: Tolerances,
+    pub max_retries: u16,
+    pub seed: u64,
+}
+
+/// What the job does.
+#[derive(Clone, Debug)]
+enum Doing {
+    /// Paths, tracked again where they failed or crossed.
+    Tracked(Box<RetriedStage>),
+    /// Points about which something is asked once.
+    Asked {
+        stage: Box<Stage>,
+        opened: bool,
+        results: Option<Vec<PathResult>>,
+    },
+}
+
+/// One stage, and all that belongs to it.
+#[derive(Clone, Debug)]
+pub(super) struct Job {
+    pub system: Arc<System>,
+    work: Doing,
+    unsent: Option<Arc<StoredPoints>>,
+}
+
+fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
+    Arc::new(StoredPoints {
+        dimension: points.first().map_or(0, Vec::len),
+        coordinates: points.concat(),
+    })
+}
+
+impl Job {
+    /// Paths from these points.
+    pub fn track(
+        id: StageId,
+        system: &Arc<System>,
+        homotopy: HomotopyKind,
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        let points = stored(points);
+        let targets = homotopy.targets();
+        let first = stage(id, Work::Track, homotopy, &points, with);
+        let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
+        Self {
+            system: Arc::clone(system),
+            work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
+            unsent: Some(points),
+        }
+    }
+
+    /// Whether these candidates at the only target are isolated.
+    pub fn isolate(
+        id: StageId,
+        system: &Arc<System>,
+        parameters: Vec<Complex64>,
+        candidates: StoredPoints,
+        with: &Tracking,
+    ) -> Self {
+        let points = Arc::new(candidates);
+        let homotopy = HomotopyKind::Parameter {
+            start: parameters.clone(),
+            targets: vec![parameters],
+        };
+        let stage = stage(id, Work::LocalDimension, homotopy, &points, with);
+        Self {
+            system: Arc::clone(system),
+            work: Doing::Asked {
+                stage: Box::new(stage),
+                opened: false,
+                results: None,
+            },
+            unsent: Some(points),
+        }
+    }
+
+    /// What is wanted next.
+    pub fn next(&mut self) -> Next {
+        let next = match &mut self.work {
+            Doing::Tracked(stages) => stages.next_stage(),
+            Doing::Asked {
+                stage,
+                opened: opened @ false,
+                ..
+            } => {
+                *opened = true;
+                Next::Open(Box::new((**stage).clone().into()))
+            }
+            Doing::Asked { results: None, .. } => Next::Wait,
+            Doing::Asked { .. } => Next::Done,
+        };
+        match next {
+            Next::Open(mut opening) => {
+                let Opening { objects, .. } = &mut *opening;
+                objects.extend(self.unsent.take());
+                Next::Open(opening)
+            }
+            other => other,
+        }
+    }
+
+    /// Takes the results of an open stage.
+    pub fn absorb(&mut self, id: StageId, taken: &mut dyn Iterator<Item = PathResult>) {
+        match &mut self.work {
+            Doing::Tracked(stages) => stages.absorb(id, taken),
+            Doing::Asked { results, .. } => *results = Some(taken.collect()),
+        }
+    }
+
+    /// The last results of all items, in their order.
+    pub fn results(&self) -> &[PathResult] {
+        match &self.work {
+            Doing::Tracked(stages) => stages.results(),
+            Doing::Asked { results, .. } => results.as_deref().unwrap_or(&[]),
+        }
+    }
+
+    /// The results of its paths, what their ends are, and the values of the variables there.
+    pub fn ends(&self) -> Vec<(&PathResult, Decision, Vec<Complex64>)> {
+        let Doing::Tracked(stages) = &self.work else {
+            return Vec::new();
+        };
+        let values = |r: &PathResult| stages.shape().to_variables(r.endpoint.to_double());
+        let pairs = stages.results().iter().zip(stages.decisions());
+        pairs.map(|(r, d)| (r, d, values(r))).collect()
+    }
+
+    /// Number of its paths, without repetitions.
+    pub fn paths(&self) -> u64 {
+        match &self.work {
+            Doing::Tracked(stages) => stages.results().len() as u64,
+            Doing::Asked { .. } => 0,
+        }
+    }
+
+    /// Crossings of its paths that are left.
+    pub fn crossings_left(&self) -> u64 {
+        let Doing::Tracked(stages) = &self.work else {
+            return 0;
+        };
+        let targets = stages.first().homotopy.targets() as usize;
+        let left = |target| {
+            let history = stages.history(target, false);
+            history.crossings_found - history.crossings_resolved
+        };
+        (0..targets).map(left).sum()
+    }
+}
+
+fn stage(
+    id: StageId,
+    work: Work,
+    homotopy: HomotopyKind,
+    points: &Arc<StoredPoints>,
+    with: &Tracking,
+) -> Stage {
+    Stage {
+        id,
+        work,
+        homotopy,
+        start_points: points.as_start(),
+        settings: with.settings.clone(),
+        seed: with.seed,
+        attempt: 0,
+    }
+}

@@ -1,0 +1,334 @@
+//! The sieve: points of a superset that lie on sets of higher dimension are left out.
+//!
+//! A regular point is isolated on its slice, and no junk. Of a singular one the dual space of all
+//! equations on the slice says whether it is isolated (Bates, Hauenstein, Peterson, Sommese 2009); unless it
+//! says that it is not, paths on the sets of higher dimension to slices through the point ask whether it is on
+//! one of them; with `confirm_junk` also then. Where both speak they must agree.
+
+use super::cascade::{SingularEnd, Superset};
+use super::deflated::{Deflations, Multiple, PureSet};
+use super::job::Job;
+use super::problem::Problem;
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::local_dimension::Question;
+use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::work::StageId;
+use cognate_solutions::classification::{Isolation, Verdict, isolation};
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::witness::{Dimension, Doubt};
+use cognate_systems::transform::slice;
+use num_complex::Complex64;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Highest order of functionals that are asked for.
+const DEPTH: u32 = 12;
+/// An end of a path is the point, relative to its size, within this many times their errors, or
+const NEAR_FACTOR: f64 = 100.0;
+/// ... within this,
+const NEAR: f64 = 1e-7;
+/// ... and is not beyond this.
+const FAR: f64 = 1e-3;
+
+/// What is known of a singular point.
+#[derive(Clone, Debug)]
+struct Suspect {
+    end: SingularEnd,
+    isolation: Isolation,
+    dual_dimensions: Vec<u32>,
+    /// On a set of higher dimension: `None` where that is not clear.
+    member: Option<bool>,
+}
+
+/// What the open stage asks.
+#[derive(Debug)]
+enum Asking {
+    Nothing,
+    Isolation,
+    /// Whether these suspects are on this set.
+    Membership {
+        set: usize,
+        suspects: Vec<usize>,
+    },
+}
+
+/// Dimension by dimension.
+#[derive(Debug)]
+pub(super) struct Sieve {
+    supersets: VecDeque<Superset>,
+    current: Option<Superset>,
+    suspects: Vec<Suspect>,
+    asking: Asking,
+    /// Sets of higher dimension that are still to be asked.
+    sets_left: Vec<usize>,
+    dimensions: Vec<Dimension>,
+    deflations: Deflations,
+}
+
+impl Sieve {
+    pub fn new(supersets: Vec<Superset>) -> Self {
+        Self {
+            supersets: supersets.into(),
+            current: None,
+            suspects: Vec::new(),
+            asking: Asking::Nothing,
+            sets_left: Vec::new(),
+            dimensions: Vec::new(),
+            deflations: Deflations::default(),
+        }
+    }
+
+    /// What is known of the dimensions, highest first.
+    pub fn dimensions(&mut self) -> Vec<Dimension> {
+        std::mem::take(&mut self.dimensions)
+    }
+
+    /// Learns from the stage that is done, and says which comes next. What is found is added to `sets`.
+    pub fn advance(
+        &mut self,
+        problem: &Problem,
+        done: Option<&Job>,
+        id: StageId,
+        sets: &mut Vec<PureSet>,
+    ) -> Option<Job> {
+        if let Some(job) = done {
+            self.learn(problem, job, sets);
+        }
+        loop {
+            if self.current.is_some() {
+                if let Some(job) = self.membership(problem, id, sets) {
+                    return Some(job);
+                }
+                self.settle(problem, sets);
+            }
+            let superset = self.supersets.pop_front()?;
+            self.suspects = superset.singular.iter().map(Suspect::new).collect();
+            self.sets_left = (0..sets.len()).collect();
+            let dimension = superset.dimension;
+            self.current = Some(superset);
+            if !self.suspects.is_empty() {
+                self.asking = Asking::Isolation;
+                return Some(self.isolate(problem, dimension, id));
+            }
+        }
+    }
+
+    fn isolate(&self, problem: &Problem, dimension: usize, id: StageId) -> Job {
+        let system = slice(&problem.given, dimension, problem.variables());
+        let candidate = |suspect: &Suspect| Candidate {
+            values: suspect.end.values.clone(),
+            target: 0,
+            question: Question {
+                accuracy: suspect.end.accuracy,
+                bound: u64::MAX,
+                depth: DEPTH,
+            },
+        };
+        let candidates: Vec<Candidate> = self.suspects.iter().map(candidate).collect();
+        let (points, parameters) = (to_stored(&candidates), problem.slices(dimension).concat());
+        Job::isolate(id, &Arc::new(system), parameters, points, &problem.tracking)
+    }
+
+    /// Paths on the next set that may hold points about which something is to be learnt.
+    fn membership(&mut self, problem: &Problem, id: StageId, sets: &[PureSet]) -> Option<Job> {
+        while !self.sets_left.is_empty() {
+            let set = self.sets_left.remove(0);
+            let asks = |suspect: &Suspect| {
+                let clear = suspect.isolation == Isolation::PositiveDimensional;
+                (problem.confirm_junk || !clear) && suspect.member != Some(true)
+            };
+            let places = 0..self.suspects.len();
+            let suspects: Vec<usize> = places.filter(|&k| asks(&self.suspects[k])).collect();
+            if suspects.is_empty() {
+                continue;
+            }
+            let of = &sets[set];
+            let start = problem.slices(of.dimension).concat();
+            let through = |&k: &usize| slices_through(problem, of, &self.suspects[k].end.values);
+            let targets = suspects.iter().map(through).collect();
+            let homotopy = HomotopyKind::Parameter { start, targets };
+            let points = of.doubles();
+            self.asking = Asking::Membership { set, suspects };
+            return Some(Job::track(
+                id,
+                &of.tracked,
+                homotopy,
+                &points,
+                &problem.tracking,
+            ));
+        }
+        None
+    }
+
+    fn learn(&mut self, problem: &Problem, job: &Job, sets: &[PureSet]) {
+        match std::mem::replace(&mut self.asking, Asking::Nothing) {
+            Asking::Nothing => {}
+            Asking::Isolation => {
+                for (suspect, result) in self.suspects.iter_mut().zip(job.results()) {
+                    suspect.isolation = isolation(result, &problem.tracking.tolerances);
+                    if let Some(found) = &result.local_dimension {
+                        suspect.dual_dimensions.clone_from(&found.dual_dimensions);
+                    }
+                }
+            }
+            Asking::Membership { set, suspects } => {
+                let ends = job.ends();
+                let paths = sets[set].points.len();
+                for (place, ends) in suspects.iter().zip(ends.chunks(paths)) {
+                    let suspect = &mut self.suspects[*place];
+                    let found = nearest(&suspect.end, ends);
+                    suspect.member = match (suspect.member, found) {
+                        (_, Some(true)) => Some(true),
+                        (known, Some(false)) => known,
+                        (_, None) => None,
+                    };
+                }
+            }
+        }
+    }
+
+    /// Decides about the points of the current dimension.
+    fn settle(&mut self, problem: &Problem, sets: &mut Vec<PureSet>) {
+        let Some(superset) = self.current.take() else {
+            return;
+        };
+        let dimension = superset.dimension;
+        let higher = !sets.is_empty();
+        let (mut junk, mut unclear, mut not_deflated) = (0, 0, 0);
+        let (mut found, mut regular) = (Vec::new(), Vec::new());
+        for suspect in std::mem::take(&mut self.suspects) {
+            let paths = suspect.end.paths;
+            let isolated = match (suspect.isolation, suspect.member) {
+                (Isolation::PositiveDimensional, Some(false)) if problem.confirm_junk => None,
+                (Isolation::PositiveDimensional, _) if higher => Some(false),
+                (Isolation::Undecided, Some(true)) => Some(false),
+                (Isolation::Isolated { .. } | Isolation::Undecided, Some(false)) => Some(true),
+                _ => None,
+            };
+            match isolated {
+                Some(false) => junk += paths,
+                None => unclear += paths,
+                Some(true) => {
+                    let scheme = match suspect.isolation {
+                        Isolation::Isolated { multiplicity } => Some(u64::from(multiplicity)),
+                        _ => None,
+                    };
+                    let end = &suspect.end;
+                    match self.deflations.regular_point(problem, dimension, end) {
+                        // The tracker called it singular for its condition.
+                        Some(point) if point.is_reduced() => match paths {
+                            1 => regular.push(point.refined),
+                            _ => unclear += paths,
+                        },
+                        Some(point) => found.push(Multiple {
+                            point,
+                            scheme,
+                            paths,
+                            dual_dimensions: suspect.dual_dimensions,
+                        }),
+                        None => not_deflated += paths,
+                    }
+                }
+            }
+        }
+        for values in &superset.regular {
+            match self.deflations.reduced_point(problem, dimension, values) {
+                Some(point) => regular.push(point),
+                None => not_deflated += 1,
+            }
+        }
+        let deflations = &mut self.deflations;
+        sets.extend(deflations.reduced_set(problem, dimension, regular));
+        sets.extend(deflations.multiple_sets(problem, dimension, found));
+        let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
+        let doubts = [
+            (
+                superset.failed,
+                Doubt::FailedPaths {
+                    paths: superset.failed,
+                },
+            ),
+            (
+                superset.unclear,
+                Doubt::Asked {
+                    points: superset.unclear,
+                },
+            ),
+            (unclear, Doubt::Junk { points: unclear }),
+            (
+                not_deflated,
+                Doubt::NotDeflated {
+                    points: not_deflated,
+                },
+            ),
+        ];
+        let doubts = doubts.into_iter().filter(|(count, _)| *count > 0);
+        self.dimensions.push(Dimension {
+            number: dimension as u32,
+            superset: superset.regular.len() as u64 + singular,
+            junk,
+            excess: superset.excess,
+            failed: superset.failed,
+            degree: 0,
+            complete: Completeness::NotKnown,
+            doubts: doubts.map(|(_, doubt)| doubt).collect(),
+        });
+    }
+}
+
+impl Suspect {
+    fn new(end: &SingularEnd) -> Self {
+        Self {
+            end: end.clone(),
+            isolation: Isolation::Undecided,
+            dual_dimensions: Vec::new(),
+            member: Some(false),
+        }
+    }
+}
+
+/// The slices of a set, moved in parallel until they pass the point.
+fn slices_through(problem: &Problem, of: &PureSet, point: &[Complex64]) -> Vec<Complex64> {
+    let mut rows = problem.slices(of.dimension);
+    for row in &mut rows {
+        let terms = row[1..].iter().zip(point);
+        row[0] = -terms.map(|(c, x)| c * x).sum::<Complex64>();
+    }
+    rows.concat()
+}
+
+/// Whether a path ends at the point: yes, no, or not clear.
+fn nearest(
+    point: &SingularEnd,
+    ends: &[(
+        &PathResult,
+        cognate_solutions::classification::Decision,
+        Vec<Complex64>,
+    )],
+) -> Option<bool> {
+    let mut answer = Some(false);
+    let length =
+        |v: &mut dyn Iterator<Item = Complex64>| v.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+    let size = length(&mut point.values.iter().copied()).max(1.0);
+    for (result, decision, values) in ends {
+        match decision.verdict {
+            Verdict::AtInfinity => continue,
+            Verdict::Failed | Verdict::WithinDataAccuracy => {
+                answer = None;
+                continue;
+            }
+            _ => {}
+        }
+        let pairs = point.values.iter().zip(values);
+        let distance = length(&mut pairs.map(|(a, b)| a - b)) / size;
+        let errors = point.accuracy + result.accuracy;
+        if distance <= (NEAR_FACTOR * errors).clamp(NEAR, FAR) {
+            return Some(true);
+        }
+        if distance <= FAR {
+            answer = None;
+        }
+    }
+    answer
+}

@@ -1,0 +1,208 @@
+//! Problem: what does not change during a decomposition: equations, combinations of them, slices.
+
+use super::DecompositionOptions;
+use super::job::Tracking;
+use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
+use cognate_continuation::start_systems::slices::form;
+use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
+use cognate_systems::scaling::Scaling;
+use cognate_systems::system::System;
+use cognate_systems::transform::{affine_chart, combine, equilibrate, slice};
+use cognate_systems::units::scaling_of;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Singular values below this part of the largest are 0 at a random point.
+const RANK_AT_RANDOM: f64 = 1e-9;
+
+/// Why a system cannot be decomposed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ProblemError {
+    /// Its parameters have no values.
+    #[error("the system has parameters; a decomposition needs their values")]
+    Parameters,
+    /// It has no degrees.
+    #[error("{0}")]
+    Degrees(String),
+}
+
+impl From<PolynomialError> for ProblemError {
+    fn from(error: PolynomialError) -> Self {
+        Self::Degrees(error.to_string())
+    }
+}
+
+/// The equations in one affine group, and all that is made of them once.
+#[derive(Debug)]
+pub(super) struct Problem {
+    /// The equations that are given, and patches; each scaled to about 1.
+    pub given: Arc<System>,
+    degrees: Degrees,
+    /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
+    /// others that are never reached.
+    pub staircase: Arc<System>,
+    /// Their degrees.
+    pub row_degrees: Vec<u32>,
+    /// Rank of the Jacobian at a random point: no component has a smaller dimension than the variables
+    /// that it leaves.
+    pub levels: usize,
+    pub tracking: Tracking,
+    pub idle_loops: u32,
+    pub confirm_junk: bool,
+    /// The equations with nothing else, to evaluate.
+    plain: SlicedEquations,
+    /// The units in which all of it is tracked.
+    scaling: Scaling,
+}
+
+impl Problem {
+    pub fn new(
+        system: &System,
+        tracking: Tracking,
+        options: &DecompositionOptions,
+    ) -> Result<Self, ProblemError> {
+        if !system.parameters.is_empty() {
+            return Err(ProblemError::Parameters);
+        }
+        let seed = tracking.seed;
+        let system = System {
+            scaling: scaling_of(system, &[]),
+            ..system.clone()
+        };
+        let scaling = system.scaling.clone();
+        let given = equilibrate(&affine_chart(&system.in_unknowns(), seed), seed);
+        let of_given = degrees(&given)?;
+        let variables = given.variable_count();
+        let plain = SlicedEquations::new(&given, Vec::new());
+        let levels = rank_at_random(&plain, variables, seed).min(given.equation_count());
+        let mut staircase = combine(&given, &of_given, levels, seed);
+        for v in levels..variables {
+            let row = staircase.expressions.variable(v as u32);
+            staircase.equations.push(row);
+            staircase.equation_names.push(format!("place {}", v + 1));
+        }
+        staircase.symmetry.clear();
+        staircase.conjugates.clear();
+        staircase.degenerate.clear();
+        let row_degrees = degrees(&staircase)?.total;
+        Ok(Self {
+            given: Arc::new(given),
+            degrees: of_given,
+            staircase: Arc::new(staircase),
+            row_degrees,
+            levels,
+            tracking,
+            idle_loops: options.idle_loops,
+            confirm_junk: options.confirm_junk,
+            plain,
+            scaling,
+        })
+    }
+
+    pub fn variables(&self) -> usize {
+        self.given.variable_count()
+    }
+
+    pub fn seed(&self) -> u64 {
+        self.tracking.seed
+    }
+
+    /// The slices of a set of this dimension, a row each: those of smaller dimensions are among them.
+    pub fn slices(&self, dimension: usize) -> Vec<Vec<Complex64>> {
+        let n = self.variables();
+        let levels = n - dimension..n;
+        levels
+            .map(|level| form(self.seed(), level as u32, 0, n))
+            .collect()
+    }
+
+    /// The slices in the variables of the system that is given.
+    pub fn slices_of_variables(&self, dimension: usize) -> Vec<Vec<Complex64>> {
+        let mut rows = self.slices(dimension);
+        for row in &mut rows {
+            let inverse = self.scaling.inverse();
+            let coefficients = inverse.to_variables(&row[1..]);
+            row[1..].copy_from_slice(&coefficients);
+        }
+        rows
+    }
+
+    /// Values of the variables of the system that is given.
+    pub fn to_variables(&self, point: &[Complex64]) -> Vec<Complex64> {
+        self.scaling.to_variables(point)
+    }
+
+    /// As many combinations of the equations of a system as cut out a set of this dimension, and its slices.
+    pub fn tracked(&self, equations: &System, dimension: usize) -> Result<System, ProblemError> {
+        let of = degrees(equations)?;
+        let rows = equations.variable_count() - dimension;
+        let rows = combine(equations, &of, rows, self.seed());
+        Ok(slice(&rows, dimension, self.variables()))
+    }
+
+    /// The first rows of the staircase with the slices of that dimension.
+    pub fn level_equations(&self, dimension: usize) -> SlicedEquations {
+        let mut rows = (*self.staircase).clone();
+        rows.equations.truncate(self.variables() - dimension);
+        SlicedEquations::new(&rows, self.slices(dimension))
+    }
+
+    /// Whether a point that is known to 32 digits, or one that is known to a few, solves all given equations;
+    /// `None` where that is not clear.
+    pub fn solves(&self, point: &[Number], known: &Known) -> Option<bool> {
+        let sizes = point.iter().map(|z| rounded(z).norm_sqr());
+        let largest = sizes.fold(1.0f64, f64::max).sqrt();
+        let mut answer = Some(true);
+        for ((value, distance), &degree) in
+            self.plain.residuals(point).iter().zip(&self.degrees.total)
+        {
+            let growth = (0..degree).fold(1.0, |power, _| power * largest);
+            let relative = value / growth;
+            // Where an equation has a multiple zero its derivative is rounding error, too.
+            if relative <= known.value || *distance <= known.distance {
+                continue;
+            }
+            if relative > known.value * 100.0 && *distance > known.other_distance {
+                return Some(false);
+            }
+            answer = None;
+        }
+        answer
+    }
+}
+
+/// How well an equation must hold at a point.
+#[derive(Debug)]
+pub(super) struct Known {
+    /// What it is, relative to how its degree lets it grow: rounding error below this.
+    value: f64,
+    /// How far it is from where it is 0, relative to the point's size: none below the first, some above the
+    /// second.
+    distance: f64,
+    other_distance: f64,
+}
+
+/// A point that was refined to 32 digits.
+pub(super) const REFINED: Known = Known {
+    value: 1e-26,
+    distance: 1e-16,
+    other_distance: 1e-9,
+};
+/// A singular end of a path, known to some 8 digits.
+pub(super) const SINGULAR: Known = Known {
+    value: 1e-14,
+    distance: 1e-5,
+    other_distance: 1e-4,
+};
+
+fn rank_at_random(equations: &SlicedEquations, variables: usize, seed: u64) -> usize {
+    let mut random = RandomStream::new(seed, Purpose::Probe, u64::MAX);
+    let point: Vec<Number> = (0..variables).map(|_| exactly(random.unit())).collect();
+    let (_, columns) = equations.linear_part(&point, 0);
+    let values = Svd::of(columns).values;
+    let largest = values.first().copied().unwrap_or(0.0);
+    let clear = values.iter().filter(|&&s| s > RANK_AT_RANDOM * largest);
+    clear.count()
+}

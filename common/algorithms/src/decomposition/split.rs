@@ -1,0 +1,447 @@
+//! The split of a pure set into components: sums of second derivatives say what is closed, loops what belongs
+//! together.
+//!
+//! A union of components, and nothing else, has witness points whose second derivatives along a moving slice
+//! have the sum 0 (see `continuation::bend`); a least such union is a component. Few classes of points are
+//! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
+//! point comes to one of the same component.
+
+use super::deflated::PureSet;
+use super::job::Job;
+use super::problem::Problem;
+use cognate_continuation::bend::{Bend, Number, length, rounded};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::start_systems::slices::form;
+use cognate_continuation::work::StageId;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::witness::{
+    ComponentId, Dimension, Doubt, Evidence, Irreducible, Trace, WitnessSet,
+};
+use num_complex::Complex64;
+use std::collections::BTreeMap;
+
+/// A sum is 0 within this many times its error,
+const CLOSED: f64 = 1e3;
+/// ... and clearly not 0 above this many times its error.
+const OPEN: f64 = 1e7;
+/// Errors above this part of the derivatives tell nothing.
+const NOISY: f64 = 1e-16;
+/// Errors are not believed to be smaller than this part of the derivatives.
+const LEAST_NOISE: f64 = 1e-28;
+/// Most classes of which all unions are tried.
+const MOST_CLASSES: usize = 16;
+/// Most loops in all.
+const MOST_LOOPS: u32 = 200;
+/// A path that came back is at a witness point within this, relative to the point.
+const BACK: f64 = 1e-6;
+/// Stages of a loop: to two other slices and back.
+const LEGS: usize = 3;
+
+/// Points that belong together.
+#[derive(Clone, Debug)]
+struct Class {
+    points: Vec<usize>,
+    /// What it rests on, once it is a component.
+    closed: Option<Trace>,
+}
+
+/// One set on its way to components.
+#[derive(Debug)]
+pub(super) struct Split {
+    set: PureSet,
+    bends: Vec<Bend>,
+    classes: Vec<Class>,
+    smallest_wrong: Option<f64>,
+    loops: u32,
+    idle: u32,
+    broken: u64,
+    /// The leg that is open, its points, and the witness points where its paths began.
+    leg: usize,
+    travellers: Vec<usize>,
+}
+
+impl Split {
+    pub fn new(problem: &Problem, set: PureSet) -> Self {
+        let mut random = RandomStream::new(problem.seed(), Purpose::Detour, set.dimension as u64);
+        let direction: Vec<Complex64> = (0..set.dimension).map(|_| random.unit()).collect();
+        let bends = match set.dimension {
+            0 => Vec::new(),
+            _ => set
+                .points
+                .iter()
+                .map(|point| set.equations.bend(point, &direction))
+                .collect(),
+        };
+        let class = |k| Class {
+            points: vec![k],
+            closed: None,
+        };
+        Self {
+            classes: (0..set.points.len()).map(class).collect(),
+            bends,
+            set,
+            smallest_wrong: None,
+            loops: 0,
+            idle: 0,
+            broken: 0,
+            leg: 0,
+            travellers: Vec::new(),
+        }
+    }
+
+    /// Learns from the stage that is done, and says which comes next.
+    pub fn advance(&mut self, problem: &Problem, done: Option<&Job>, id: StageId) -> Option<Job> {
+        if self.set.dimension == 0 {
+            return None;
+        }
+        let own = problem.variables();
+        let mut points = self.travelling();
+        if let Some(job) = done {
+            let arrived = arrivals(job);
+            self.leg += 1;
+            match (arrived, self.leg == LEGS) {
+                (Some(ends), false) => points = ends,
+                (Some(ends), true) => self.close_loop(&ends, own),
+                (None, _) => self.give_up_loop(),
+            }
+            if self.leg > 0 {
+                return Some(self.track(problem, &points, id));
+            }
+        }
+        self.close(own);
+        let open = self.open().count();
+        let more = self.idle < problem.idle_loops && self.loops < MOST_LOOPS;
+        if open <= 1 || self.hopeless(own) || !more {
+            return None;
+        }
+        self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
+        self.travellers.sort_unstable();
+        let points = self.travelling();
+        Some(self.track(problem, &points, id))
+    }
+
+    fn open(&self) -> impl Iterator<Item = &Class> {
+        self.classes.iter().filter(|class| class.closed.is_none())
+    }
+
+    fn travelling(&self) -> Vec<Vec<Complex64>> {
+        let double = |&k: &usize| self.set.points[k].point.iter().map(rounded).collect();
+        self.travellers.iter().map(double).collect()
+    }
+
+    /// Where the leg of a loop begins or ends: coefficients of all slices.
+    fn corner(&self, problem: &Problem, leg: usize) -> Vec<Complex64> {
+        let (n, dimension) = (problem.variables(), self.set.dimension);
+        if leg == 0 || leg == LEGS {
+            return problem.slices(dimension).concat();
+        }
+        let number = 1 + self.loops * LEGS as u32 + leg as u32;
+        let mut random = RandomStream::new(problem.seed(), Purpose::Loop, u64::from(number));
+        let seed = random.bits();
+        let rows = 0..dimension as u32;
+        rows.flat_map(|row| form(seed, row, number, n)).collect()
+    }
+
+    fn track(&self, problem: &Problem, points: &[Vec<Complex64>], id: StageId) -> Job {
+        let homotopy = HomotopyKind::Parameter {
+            start: self.corner(problem, self.leg),
+            targets: vec![self.corner(problem, self.leg + 1)],
+        };
+        Job::track(id, &self.set.tracked, homotopy, points, &problem.tracking)
+    }
+
+    fn give_up_loop(&mut self) {
+        self.broken += 1;
+        self.idle += 1;
+        self.loops += 1;
+        self.leg = 0;
+    }
+
+    /// Joins the classes between which the loop leads, where it is a permutation.
+    fn close_loop(&mut self, ends: &[Vec<Complex64>], own: usize) {
+        let Some(images) = self.images(ends, own) else {
+            return self.give_up_loop();
+        };
+        self.loops += 1;
+        self.leg = 0;
+        let before = self.classes.len();
+        for (&from, to) in self.travellers.iter().zip(images) {
+            let place = |classes: &[Class], point: usize| {
+                let holds = |class: &Class| class.points.contains(&point);
+                classes
+                    .iter()
+                    .position(holds)
+                    .expect("every point has a class")
+            };
+            let (a, b) = (place(&self.classes, from), place(&self.classes, to));
+            if a != b {
+                let joined = self.classes.remove(a.max(b));
+                self.classes[a.min(b)].points.extend(joined.points);
+            }
+        }
+        match self.classes.len() < before {
+            true => self.idle = 0,
+            false => self.idle += 1,
+        }
+    }
+
+    /// The witness point to which each path came back; `None` where they are no permutation.
+    fn images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
+        let mut images = Vec::with_capacity(ends.len());
+        for end in ends {
+            let distance = |&k: &usize| {
+                let point = self.set.points[k].point[..own].iter().map(rounded);
+                let pairs = point.zip(end).map(|(x, &y)| (x, x - y));
+                let (size, apart) = pairs.fold((1.0, 0.0), |(size, apart), (x, d)| {
+                    (size + x.norm_sqr(), apart + d.norm_sqr())
+                });
+                apart / size
+            };
+            let nearest = self
+                .travellers
+                .iter()
+                .map(|k| (distance(k), *k))
+                .min_by(|a, b| a.0.total_cmp(&b.0))?;
+            if nearest.0 > BACK * BACK {
+                return None;
+            }
+            images.push(nearest.1);
+        }
+        let mut sorted = images.clone();
+        sorted.sort_unstable();
+        (sorted == self.travellers).then_some(images)
+    }
+
+    /// The sum of second derivatives over these points.
+    fn trace(&self, points: impl Iterator<Item = usize>, own: usize) -> Trace {
+        let mut sum = vec![Number::zero(()); own];
+        let (mut lengths, mut errors) = (0.0, 0.0);
+        for k in points {
+            let bend = &self.bends[k];
+            let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
+            lengths += length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
+            errors += bend.error;
+            for (sum, t) in sum.iter_mut().zip(&bend.acceleration) {
+                sum.add(t);
+            }
+        }
+        let sum: Vec<Complex64> = sum.iter().map(rounded).collect();
+        Trace {
+            deviation: length(&sum) / lengths,
+            noise: (errors / lengths).max(LEAST_NOISE),
+            precision_bits: 106,
+        }
+    }
+
+    /// Whether not even all open points together are closed: some are missing, and no loop helps.
+    fn hopeless(&self, own: usize) -> bool {
+        let all = self.open().flat_map(|class| class.points.iter().copied());
+        !is_closed(&self.trace(all, own))
+    }
+
+    /// Finds the classes that are components, alone or, where few are left, in unions.
+    fn close(&mut self, own: usize) {
+        for k in 0..self.classes.len() {
+            if self.classes[k].closed.is_none() {
+                let trace = self.trace(self.classes[k].points.iter().copied(), own);
+                match is_closed(&trace) {
+                    true => self.classes[k].closed = Some(trace),
+                    false => self.wrong(&trace),
+                }
+            }
+        }
+        while let Some((members, trace)) = self.least_closed_union(own) {
+            let mut points = Vec::new();
+            for &k in members.iter().rev() {
+                points.extend(self.classes.remove(k).points);
+            }
+            points.sort_unstable();
+            let closed = Some(trace);
+            self.classes.push(Class { points, closed });
+        }
+    }
+
+    fn wrong(&mut self, trace: &Trace) {
+        let least = self.smallest_wrong.unwrap_or(f64::INFINITY);
+        self.smallest_wrong = Some(least.min(trace.deviation));
+    }
+
+    /// The closed union of the fewest open classes, by their places, ascending; `None` where there is none or
+    /// there are too many classes to try.
+    fn least_closed_union(&mut self, own: usize) -> Option<(Vec<usize>, Trace)> {
+        let places = 0..self.classes.len();
+        let open: Vec<usize> = places
+            .filter(|&k| self.classes[k].closed.is_none())
+            .collect();
+        if open.len() < 2 || open.len() > MOST_CLASSES {
+            return None;
+        }
+        let mut masks: Vec<u32> = (1..1u32 << open.len())
+            .filter(|mask| mask.count_ones() > 1)
+            .collect();
+        masks.sort_by_key(|mask| (mask.count_ones(), *mask));
+        // Sums in doubles leave few unions to be looked at in all digits.
+        let rough: Vec<(Vec<Complex64>, f64)> = open
+            .iter()
+            .map(|&k| self.rough(&self.classes[k].points, own))
+            .collect();
+        for mask in masks {
+            let chosen = (0..open.len()).filter(|k| mask >> k & 1 == 1);
+            let mut sum = vec![Complex64::default(); own];
+            let mut lengths = 0.0;
+            for k in chosen.clone() {
+                lengths += rough[k].1;
+                for (sum, t) in sum.iter_mut().zip(&rough[k].0) {
+                    *sum += t;
+                }
+            }
+            let deviation = length(&sum) / lengths;
+            if deviation > 1e-10 {
+                let least = self.smallest_wrong.unwrap_or(f64::INFINITY);
+                self.smallest_wrong = Some(least.min(deviation));
+                continue;
+            }
+            let members: Vec<usize> = chosen.map(|k| open[k]).collect();
+            let points = members.iter().flat_map(|&k| self.classes[k].points.clone());
+            let trace = self.trace(points, own);
+            match is_closed(&trace) {
+                true => return Some((members, trace)),
+                false => self.wrong(&trace),
+            }
+        }
+        None
+    }
+
+    fn rough(&self, points: &[usize], own: usize) -> (Vec<Complex64>, f64) {
+        let mut sum = vec![Complex64::default(); own];
+        let mut lengths = 0.0;
+        for &k in points {
+            let bend = &self.bends[k];
+            let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
+            let t = of(&bend.acceleration);
+            lengths += length(&t) + length(&of(&bend.velocity));
+            for (sum, t) in sum.iter_mut().zip(t) {
+                *sum += t;
+            }
+        }
+        (sum, lengths)
+    }
+
+    /// What was found of the set, and what it says of its dimension.
+    pub fn components(&self, problem: &Problem) -> (Vec<WitnessSet>, Dimension) {
+        let own = problem.variables();
+        let dimension = self.set.dimension as u32;
+        let mut doubts = Vec::new();
+        let mut components = Vec::new();
+        let mut left: Vec<usize> = Vec::new();
+        let mut classes_left = 0;
+        for class in &self.classes {
+            if dimension == 0 {
+                components.push(self.component(problem, &class.points, None, Vec::new()));
+                continue;
+            }
+            match class.closed {
+                Some(trace) => {
+                    let sure = self.smallest_wrong.is_none_or(|s| s > OPEN * trace.noise);
+                    let doubts = match sure {
+                        true => Vec::new(),
+                        false => vec![Doubt::Open { classes: 1 }],
+                    };
+                    components.push(self.component(problem, &class.points, Some(trace), doubts));
+                }
+                None => {
+                    classes_left += 1;
+                    left.extend(&class.points);
+                }
+            }
+        }
+        if !left.is_empty() {
+            left.sort_unstable();
+            let trace = self.trace(left.iter().copied(), own);
+            if !is_closed(&trace) {
+                doubts.push(Doubt::PointsMissing);
+            }
+            let open = vec![Doubt::Open {
+                classes: classes_left,
+            }];
+            components.push(self.component(problem, &left, Some(trace), open));
+        }
+        if self.broken > 0 && !left.is_empty() {
+            doubts.push(Doubt::BrokenLoops { loops: self.broken });
+        }
+        let dimension = Dimension {
+            number: dimension,
+            superset: 0,
+            junk: 0,
+            excess: 0,
+            failed: 0,
+            degree: 0,
+            complete: Completeness::NotKnown,
+            doubts,
+        };
+        (components, dimension)
+    }
+
+    fn component(
+        &self,
+        problem: &Problem,
+        points: &[usize],
+        trace: Option<Trace>,
+        mut doubts: Vec<Doubt>,
+    ) -> WitnessSet {
+        let own = problem.variables();
+        let set = &self.set;
+        let values = |&k: &usize| {
+            let point: Vec<_> = set.points[k].point[..own].iter().map(rounded).collect();
+            problem.to_variables(&point)
+        };
+        let condition = |&k: &usize| set.points[k].condition;
+        let irreducible = match doubts.is_empty() {
+            true => Irreducible::Yes,
+            false => Irreducible::Unsettled,
+        };
+        if set.multiplicity.scheme.is_none() {
+            doubts.push(Doubt::Multiplicity);
+        }
+        WitnessSet {
+            id: ComponentId {
+                dimension: set.dimension as u32,
+                number: 0,
+            },
+            degree: points.len() as u64,
+            multiplicity: set.multiplicity.clone(),
+            irreducible,
+            deflation: set.ranks.clone(),
+            slice: problem.slices_of_variables(set.dimension),
+            points: points.iter().map(values).collect(),
+            evidence: Evidence {
+                trace,
+                smallest_wrong_union: self.smallest_wrong,
+                loops: self.loops,
+                worst_condition: points.iter().map(condition).fold(0.0, f64::max),
+                doubts,
+            },
+        }
+    }
+}
+
+fn is_closed(trace: &Trace) -> bool {
+    trace.noise < NOISY && trace.deviation <= CLOSED * trace.noise
+}
+
+/// Where all paths of a stage arrived, in their order; `None` where one did not, or some met.
+fn arrivals(job: &Job) -> Option<Vec<Vec<Complex64>>> {
+    if job.crossings_left() > 0 {
+        return None;
+    }
+    let mut ends: BTreeMap<u64, Vec<Complex64>> = BTreeMap::new();
+    for (result, decision, values) in job.ends() {
+        if decision.verdict != Verdict::Finite {
+            return None;
+        }
+        ends.insert(result.origin.0, values);
+    }
+    Some(ends.into_values().collect())
+}

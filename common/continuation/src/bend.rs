@@ -1,0 +1,364 @@
+//! Bends: how witness points move when their slice moves, to the second order, in double-doubles.
+//!
+//! Along a slice A x + b + s v = 0 a witness point is a path x(s). The sum of x''(0) over the points of
+//! a component is 0, over a proper part of them it is not, with probability 1: a trace test without a
+//! path (Brake, Hauenstein, Liddell: Decomposing solution sets of polynomial systems using derivatives,
+//! ICMS 2016). Both derivatives are linear equations with the Jacobian at the point.
+
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::scalar::{Complex, DoubleDouble, Jet, Real};
+use cognate_systems::evaluation::{Evaluate, Interpreter};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+
+/// A number of about 32 digits.
+pub type Number = Complex<DoubleDouble<f64>>;
+
+/// Corrections of a linear solution: each brings about as many digits as a double has, less those of
+/// the condition number.
+const CORRECTIONS: usize = 4;
+/// Most corrections of a point by Newton's method.
+const MOST_ROUNDS: usize = 12;
+/// A correction this small, relative to the point, is rounding error.
+const CONVERGED: f64 = 1e-29;
+/// Above this correction the Jacobian is taken again.
+const NEAR: f64 = 1e-9;
+
+/// Equations that are regular at their witness points, with the slice that these lie on.
+#[derive(Debug)]
+pub struct SlicedEquations {
+    equations: Interpreter,
+    variables: usize,
+    /// A row each: the constant, then coefficients of the first variables.
+    slices: Vec<Vec<Complex64>>,
+}
+
+/// A witness point with all its digits.
+#[derive(Clone, Debug)]
+pub struct RefinedPoint {
+    /// The point.
+    pub point: Vec<Number>,
+    /// The last correction, relative to the point or to 1, whichever is larger.
+    pub correction: f64,
+    /// How far all corrections moved it, in the same unit.
+    pub moved: f64,
+    /// The largest equation there, in its size or as a part of what a change of the point by its size makes of
+    /// it.
+    pub residual: f64,
+    /// Largest singular value of the Jacobian over the least.
+    pub condition: f64,
+}
+
+/// How a witness point moves.
+#[derive(Clone, Debug)]
+pub struct Bend {
+    /// x'.
+    pub velocity: Vec<Number>,
+    /// x''.
+    pub acceleration: Vec<Number>,
+    /// Estimated error of x''.
+    pub error: f64,
+}
+
+/// The Jacobian and values, and singular values of the Jacobian with each row scaled to at most 1.
+struct Linearized {
+    matrix: Matrix<DoubleDouble<f64>>,
+    weights: Vec<f64>,
+    svd: Svd,
+}
+
+impl Linearized {
+    fn new(matrix: Matrix<DoubleDouble<f64>>, variables: usize) -> Self {
+        let weights: Vec<f64> = (0..matrix.rows())
+            .map(|i| {
+                let row = (0..variables).map(|j| rounded(matrix.at(i, j)).norm_sqr());
+                1.0 / row.sum::<f64>().sqrt().max(1.0)
+            })
+            .collect();
+        let column = |j: usize| -> Vec<Complex64> {
+            let rows = weights.iter().enumerate();
+            rows.map(|(i, weight)| rounded(matrix.at(i, j)) * weight)
+                .collect()
+        };
+        let svd = Svd::of((0..variables).map(column).collect());
+        Self {
+            matrix,
+            weights,
+            svd,
+        }
+    }
+
+    /// The shortest y for which J y is nearest to these values, as far as doubles tell.
+    fn solve(&self, values: &[Complex64]) -> Vec<Complex64> {
+        let pairs = values.iter().zip(&self.weights);
+        let weighted: Vec<Complex64> = pairs.map(|(z, w)| z * w).collect();
+        self.svd.least_squares(&weighted, self.svd.values.len())
+    }
+}
+
+/// The number as a double.
+pub fn rounded(z: &Number) -> Complex64 {
+    Complex64::new(z.re.control(), z.im.control())
+}
+
+/// The double as it is.
+pub fn exactly(z: Complex64) -> Number {
+    Number::from_f64((), z.re, z.im)
+}
+
+fn zeros(count: usize) -> Vec<Number> {
+    vec![Number::zero(()); count]
+}
+
+fn doubles(numbers: &[Number]) -> Vec<Complex64> {
+    numbers.iter().map(rounded).collect()
+}
+
+/// Euclidean length.
+pub fn length(values: &[Complex64]) -> f64 {
+    values.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt()
+}
+
+impl SlicedEquations {
+    /// The equations of a system without parameters, and these slices in its first variables.
+    pub fn new(system: &System, slices: Vec<Vec<Complex64>>) -> Self {
+        let variables = system.variable_count();
+        let (e, equations) = (&system.expressions, &system.equations);
+        Self {
+            equations: Interpreter::compile(e, equations, variables, 0),
+            variables,
+            slices,
+        }
+    }
+
+    fn rows(&self) -> usize {
+        Evaluate::<f64>::shape(&self.equations).equations
+    }
+
+    fn linearize(&self, x: &[Number]) -> Matrix<DoubleDouble<f64>> {
+        let (rows, n) = (self.rows(), self.variables);
+        let mut matrix = Matrix::zeros((), rows, n + 2);
+        let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.equations, ());
+        self.equations.jacobian(x, &[], &mut matrix, &mut scratch);
+        let mut all = Matrix::zeros((), rows + self.slices.len(), n + 1);
+        for i in 0..rows {
+            for j in 0..=n {
+                all.at_mut(i, j).set(matrix.at(i, j));
+            }
+        }
+        for (i, slice) in self.slices.iter().enumerate() {
+            let mut value = exactly(slice[0]);
+            for (j, &c) in slice[1..].iter().enumerate() {
+                value.mul_add(&exactly(c), &x[j]);
+                all.at_mut(rows + i, j).set(&exactly(c));
+            }
+            all.at_mut(rows + i, n).set(&value);
+        }
+        all
+    }
+
+    fn decompose(&self, x: &[Number]) -> Linearized {
+        Linearized::new(self.linearize(x), self.variables)
+    }
+
+    /// The values and the derivatives by the variables from `first` on, in columns.
+    pub fn linear_part(&self, x: &[Number], first: usize) -> (Vec<Complex64>, Vec<Vec<Complex64>>) {
+        let matrix = self.linearize(x);
+        let column = |j: usize| -> Vec<Complex64> {
+            let rows = 0..self.rows();
+            rows.map(|i| rounded(matrix.at(i, j))).collect()
+        };
+        let columns = (first..self.variables).map(column).collect();
+        (column(self.variables), columns)
+    }
+
+    /// Singular values of the Jacobian of the equations alone at a point, descending; each row scaled to at
+    /// most 1.
+    pub fn singular_values(&self, x: &[Number]) -> Vec<f64> {
+        let all = self.linearize(x);
+        let mut own = Matrix::zeros((), self.rows(), self.variables);
+        for i in 0..self.rows() {
+            for j in 0..self.variables {
+                own.at_mut(i, j).set(all.at(i, j));
+            }
+        }
+        Linearized::new(own, self.variables).svd.values
+    }
+
+    /// For each equation its size, and the same as a part of what a change of the point by its size makes of
+    /// it: about the distance to where it is 0.
+    pub fn residuals(&self, x: &[Number]) -> Vec<(f64, f64)> {
+        let matrix = self.linearize(x);
+        let size = length(&doubles(x)).max(1.0);
+        let of = |i: usize| {
+            let row: Vec<Complex64> = (0..self.variables)
+                .map(|j| rounded(matrix.at(i, j)))
+                .collect();
+            let value = rounded(matrix.at(i, self.variables)).norm_sqr().sqrt();
+            (value, value / (length(&row) * size))
+        };
+        (0..self.rows()).map(of).collect()
+    }
+
+    /// The largest equation at a point, as a part of what a change of the point by its size makes of it.
+    fn relative_residual(&self, x: &[Number]) -> f64 {
+        let parts = self.residuals(x).into_iter();
+        let parts = parts.map(|(value, distance)| value.min(distance));
+        parts.fold(
+            0.0,
+            |m: f64, r| if r.is_nan() { f64::INFINITY } else { m.max(r) },
+        )
+    }
+
+    /// Newton's method (of Gauss, where there are more equations than variables) from near a witness point;
+    /// `None` where it leaves or does not settle.
+    pub fn refine(&self, start: &[Number]) -> Option<RefinedPoint> {
+        let mut x = start.to_vec();
+        let mut at = self.decompose(&x);
+        let (mut last, mut moved) = (f64::INFINITY, 0.0);
+        for round in 0..MOST_ROUNDS {
+            if round > 0 && last > NEAR {
+                at = self.decompose(&x);
+            }
+            let now = self.linearize(&x);
+            let values: Vec<Complex64> = (0..now.rows())
+                .map(|i| rounded(now.at(i, self.variables)))
+                .collect();
+            let step = at.solve(&values);
+            let size = length(&doubles(&x)).max(1.0);
+            let correction = length(&step) / size;
+            if !correction.is_finite() || correction > 1.0 {
+                return None;
+            }
+            for (x, &step) in x.iter_mut().zip(&step) {
+                x.sub(&exactly(step));
+            }
+            moved += correction;
+            let settled = correction <= CONVERGED || (correction >= 0.5 * last && last < 1e-25);
+            last = correction;
+            if settled {
+                break;
+            }
+        }
+        let values = &at.svd.values;
+        let condition = values.first()? / values.last()?;
+        Some(RefinedPoint {
+            residual: self.relative_residual(&x),
+            point: x,
+            correction: last,
+            moved,
+            condition,
+        })
+    }
+
+    /// y with J y = `right`, in double-doubles, and the last correction.
+    fn solve(&self, at: &Linearized, right: &[Number]) -> (Vec<Number>, f64) {
+        let mut y = zeros(self.variables);
+        let mut last = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            let mut rest = right.to_vec();
+            for (i, rest) in rest.iter_mut().enumerate() {
+                for (j, y) in y.iter().enumerate() {
+                    rest.mul_sub(at.matrix.at(i, j), y);
+                }
+            }
+            let step = at.solve(&doubles(&rest));
+            for (y, &step) in y.iter_mut().zip(&step) {
+                y.add(&exactly(step));
+            }
+            last = length(&step);
+        }
+        (y, last)
+    }
+
+    /// The second derivative of the equations along x + s u, in s.
+    fn curvature(&self, x: &[Number], u: &[Number]) -> Vec<Number> {
+        type Series = Jet<DoubleDouble<f64>>;
+        let zero = || DoubleDouble::from_f64((), 0.0);
+        let series = |c0: &DoubleDouble<f64>, c1: &DoubleDouble<f64>| -> Series {
+            Jet([*c0, *c1, zero(), zero(), zero()])
+        };
+        let along: Vec<Complex<Series>> = x
+            .iter()
+            .zip(u)
+            .map(|(x, u)| Complex {
+                re: series(&x.re, &u.re),
+                im: series(&x.im, &u.im),
+            })
+            .collect();
+        let mut values = vec![Complex::<Series>::zero(()); self.rows()];
+        let mut scratch = Evaluate::<Series>::scratch(&self.equations, ());
+        self.equations.value(&along, &[], &mut values, &mut scratch);
+        let twice = |z: &Complex<Series>| {
+            let mut second = Complex {
+                re: z.re.0[2],
+                im: z.im.0[2],
+            };
+            let same = second;
+            second.add(&same);
+            second
+        };
+        values.iter().map(twice).collect()
+    }
+
+    /// How a witness point moves when the constants of the slices move in this direction.
+    pub fn bend(&self, refined: &RefinedPoint, direction: &[Complex64]) -> Bend {
+        let at = self.decompose(&refined.point);
+        let rows = self.rows();
+        let mut right = zeros(rows + self.slices.len());
+        for (right, &v) in right[rows..].iter_mut().zip(direction) {
+            right.sub(&exactly(v));
+        }
+        let (velocity, _) = self.solve(&at, &right);
+        let mut right = zeros(rows + self.slices.len());
+        for (right, curved) in right
+            .iter_mut()
+            .zip(self.curvature(&refined.point, &velocity))
+        {
+            right.sub(&curved);
+        }
+        let (acceleration, last) = self.solve(&at, &right);
+        let size = length(&doubles(&acceleration)) + length(&doubles(&velocity));
+        let error = last + refined.condition * (refined.correction + 1e-31) * size;
+        Bend {
+            velocity,
+            acceleration,
+            error,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parabola() -> System {
+        let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y; function f;\
+                     f = y - x^2;\nEND;\n";
+        cognate_systems::formats::read("test", text).unwrap().system
+    }
+
+    #[test]
+    fn the_points_of_a_parabola_bend_by_opposite_amounts() {
+        // y = 2 + s: x = +-sqrt(2 + s), x'' = -+ 1/4 (2 + s)^(-3/2).
+        let number = |re: f64| Complex64::new(re, 0.0);
+        let slice = vec![number(-2.0), number(0.0), number(1.0)];
+        let equations = SlicedEquations::new(&parabola(), vec![slice]);
+        let mut sum = Number::zero(());
+        for sign in [1.0, -1.0] {
+            let near = [number(sign * 1.4), number(2.0)].map(exactly);
+            let refined = equations.refine(&near).unwrap();
+            assert!(refined.correction < 1e-28 && refined.residual < 1e-28);
+            let bend = equations.bend(&refined, &[number(-1.0)]);
+            let x = rounded(&bend.acceleration[0]);
+            let exact = -sign * 0.25 / (2.0 * 2.0f64.sqrt());
+            assert!(
+                (x.re - exact).abs() < 1e-15 && bend.error < 1e-25,
+                "{bend:?}"
+            );
+            sum.add(&bend.acceleration[0]);
+        }
+        assert!(rounded(&sum).norm_sqr().sqrt() < 1e-28);
+    }
+}

@@ -1,0 +1,65 @@
+//! Decomposition: all components of all dimensions, and how the paths that found them add up.
+
+use super::evidence::Doubt;
+use super::witness_set::WitnessSet;
+use crate::completeness::Completeness;
+use serde::{Deserialize, Serialize};
+
+/// What the paths to one dimension came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Dimension {
+    /// Which.
+    pub number: u32,
+    /// Paths that ended at solutions of the given equations.
+    pub superset: u64,
+    /// ... and of these at points of sets of higher dimension.
+    pub junk: u64,
+    /// Paths that ended at solutions of combinations of the equations alone, in the last dimension.
+    pub excess: u64,
+    /// Paths that failed on the way to this dimension.
+    pub failed: u64,
+    /// Sum of the degrees of its components.
+    pub degree: u64,
+    /// Whether all its components are found.
+    pub complete: Completeness,
+    /// What is not clear.
+    pub doubts: Vec<Doubt>,
+}
+
+/// All irreducible components of a system.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Decomposition {
+    /// Number of variables.
+    pub ambient: u32,
+    /// The components: by dimension, degree and multiplicity, largest first.
+    pub components: Vec<WitnessSet>,
+    /// The dimensions that were asked, highest first.
+    pub dimensions: Vec<Dimension>,
+    /// Paths that were tracked to the superset.
+    pub paths: u64,
+    /// ... and to tell its points apart.
+    pub paths_of_loops: u64,
+}
+
+impl Decomposition {
+    /// Whether every claim is settled, and something was asked.
+    pub fn settled(&self) -> bool {
+        !self.dimensions.is_empty()
+            && self.components.iter().all(WitnessSet::settled)
+            && self
+                .dimensions
+                .iter()
+                .all(|d| d.doubts.is_empty() && d.complete == Completeness::Yes)
+    }
+
+    /// Whether in every dimension the paths to its solutions are those to components, each as often as
+    /// paths came to it, and to junk.
+    pub fn adds_up(&self) -> bool {
+        self.dimensions.iter().all(|d| {
+            let own = self.components.iter();
+            let own = own.filter(|set| set.dimension() == d.number);
+            let paths: u64 = own.map(|set| set.degree * set.multiplicity.tracked).sum();
+            d.superset == paths + d.junk
+        })
+    }
+}

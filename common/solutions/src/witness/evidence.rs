@@ -1,0 +1,70 @@
+//! Evidence: what the claim rests on that a witness set is one component.
+
+use serde::{Deserialize, Serialize};
+
+/// Second derivatives of all witness points along a moving slice, summed: 0 over a component.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trace {
+    /// Length of the sum over the sum of lengths.
+    pub deviation: f64,
+    /// What rounding makes of it, in the same unit.
+    pub noise: f64,
+    /// Precision of the derivatives, in bits.
+    pub precision_bits: u32,
+}
+
+/// Why something is not settled.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Doubt {
+    /// The sum of second derivatives over all points of the dimension is not 0: points are missing.
+    PointsMissing,
+    /// Points that loops did not bring together, and that are no component in any union that was tried.
+    Open {
+        /// Classes of points that stayed.
+        classes: u64,
+    },
+    /// Paths that failed may have ended here.
+    FailedPaths {
+        /// How many.
+        paths: u64,
+    },
+    /// It is not clear whether points lie on a set of higher dimension.
+    Junk {
+        /// How many.
+        points: u64,
+    },
+    /// No deflation made these points regular.
+    NotDeflated {
+        /// How many.
+        points: u64,
+    },
+    /// Points of which it is not clear whether they solve all equations.
+    Asked {
+        /// How many.
+        points: u64,
+    },
+    /// The dual space did not close, so that the multiplicity is not known.
+    Multiplicity,
+    /// The order in which loops bring points back is no permutation.
+    BrokenLoops {
+        /// How many loops.
+        loops: u64,
+    },
+}
+
+/// What a witness set rests on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// Of its points; `None` for a single point, of which nothing is asked.
+    pub trace: Option<Trace>,
+    /// The least deviation of a union of classes of points that is no component; `None` where none was
+    /// tried.
+    pub smallest_wrong_union: Option<f64>,
+    /// Loops that brought points together.
+    pub loops: u32,
+    /// Largest condition number of the witness points.
+    pub worst_condition: f64,
+    /// What is not clear.
+    pub doubts: Vec<Doubt>,
+}

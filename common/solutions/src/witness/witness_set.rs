@@ -1,0 +1,75 @@
+//! WitnessSet: one component by its witness points on a general slice.
+
+use super::evidence::Evidence;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// A component's name, such as `1.3`: the third of dimension 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct ComponentId {
+    /// Its dimension.
+    pub dimension: u32,
+    /// Its place among those of the dimension, from 1.
+    pub number: u32,
+}
+
+impl std::fmt::Display for ComponentId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}.{}", self.dimension, self.number)
+    }
+}
+
+/// How often a component counts.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Multiplicity {
+    /// Of the scheme: dimension of the dual space of the equations and the slice at a witness point;
+    /// `None` where the dual space did not close.
+    pub scheme: Option<u64>,
+    /// Paths that came to each witness point: those of combinations of the equations, which can be more.
+    pub tracked: u64,
+    /// Dimensions of the dual space by order.
+    pub dual_dimensions: Vec<u32>,
+}
+
+/// Whether a witness set is one component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Irreducible {
+    /// It is, with probability 1.
+    Yes,
+    /// It may be several, or a part of one.
+    Unsettled,
+}
+
+/// A component, or points of one dimension that could not be told apart.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WitnessSet {
+    /// Its name.
+    pub id: ComponentId,
+    /// Number of its witness points.
+    pub degree: u64,
+    /// How often it counts.
+    pub multiplicity: Multiplicity,
+    /// Whether it is one component.
+    pub irreducible: Irreducible,
+    /// Rank of the Jacobian before each deflation; empty where the equations are regular.
+    pub deflation: Vec<u32>,
+    /// The slice, a row for each dimension: constant first, then a coefficient for each variable.
+    pub slice: Vec<Vec<Complex64>>,
+    /// Values of the variables at the witness points.
+    pub points: Vec<Vec<Complex64>>,
+    /// What it rests on.
+    pub evidence: Evidence,
+}
+
+impl WitnessSet {
+    /// Its dimension.
+    pub fn dimension(&self) -> u32 {
+        self.id.dimension
+    }
+
+    /// Whether nothing about it is in doubt.
+    pub fn settled(&self) -> bool {
+        self.irreducible == Irreducible::Yes && self.evidence.doubts.is_empty()
+    }
+}

@@ -1,0 +1,83 @@
+//! Combinations of equations for a cascade: row i is general in the equations from i on.
+//!
+//! Equations by descending degree, each row one of them plus random real multiples of all that
+//! come after it. On the zeros of the rows before it, a row is general among all equations, so
+//! that outside the solutions of all of them every set that the rows cut out is smooth (Bertini's
+//! theorem; Hauenstein, Sommese, Wampler: Regenerative cascade homotopies, Appl. Math. Comput. 218,
+//! 2011). Equations that `independent` finds come first and stay as they are.
+
+use super::independent::independent;
+use super::randomize::{coefficient, scaled};
+use crate::expression::NodeId;
+use crate::polynomial::Degrees;
+use crate::system::System;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::rational::ComplexRational;
+use std::cmp::Reverse;
+
+/// The first `count` such rows of a system in affine groups; all of them where it has fewer equations.
+///
+/// A pure function of its arguments. `degrees` are those of `system`.
+///
+/// # Panics
+/// When `degrees` has another length, or a group is homogeneous.
+pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> System {
+    let equations = system.equation_count();
+    assert_eq!(degrees.total.len(), equations, "a degree for each equation");
+    let affine = system.groups.iter().all(|group| !group.homogeneous);
+    assert!(affine, "rows of several degrees are added as they are");
+    let mut whole = independent(system, degrees);
+    whole.truncate(count);
+    let mut order: Vec<usize> = (0..equations).filter(|i| !whole.contains(i)).collect();
+    order.sort_by_key(|&i| (Reverse(degrees.total[i]), i));
+    let mut result = System {
+        equations: whole.iter().map(|&i| system.equations[i]).collect(),
+        equation_names: Vec::new(),
+        ..system.clone()
+    };
+    let out = &mut result.expressions;
+    let scaled = scaled(system, out, seed);
+    let mixed = count.min(equations) - whole.len();
+    for row in 0..mixed {
+        let mut random = RandomStream::new(seed, Purpose::Randomization, row as u64);
+        let first: NodeId = scaled[order[row]];
+        let sum = order[row + 1..].iter().fold(first, |sum, &j| {
+            let a = out.constant(ComplexRational::real(coefficient(&mut random)));
+            let term = out.multiply(a, scaled[j]);
+            out.add(sum, term)
+        });
+        result.equations.push(sum);
+    }
+    result.equation_names = (1..=result.equations.len())
+        .map(|k| format!("combination {k}"))
+        .collect();
+    result
+}
+
+/// The system with each equation times a power of two, so that its values at points with coordinates of
+/// modulus 1 are about 1.
+pub fn equilibrate(system: &System, seed: u64) -> System {
+    let mut result = system.clone();
+    result.equations = scaled(system, &mut result.expressions, seed);
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::polynomial::degrees;
+
+    #[test]
+    fn rows_keep_the_degrees_and_what_is_linear_comes_first() {
+        let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y, z; function f1, f2, f3;\
+                     f1 = x*y - 1; f2 = x^3 - y^2*z; f3 = z - 2;\nEND;\n";
+        let problem = crate::formats::read("test", text);
+        let system = problem.expect("a problem of this test").system;
+        let of = degrees(&system).unwrap();
+        let rows = combine(&system, &of, 3, 1);
+        assert_eq!(degrees(&rows).unwrap().total, [1, 2, 3]);
+        assert_eq!(rows.equations[0], system.equations[2]);
+        assert_eq!(rows, combine(&system, &of, 3, 1));
+        assert_eq!(combine(&system, &of, 2, 1).equations, rows.equations[..2]);
+    }
+}

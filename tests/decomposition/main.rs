@@ -1,0 +1,252 @@
+//! Decompositions against known components: dimensions, degrees, multiplicities and counts, several seeds each.
+//!
+//! `SEEDS=30 cargo test -p cognate-tests --test decomposition` takes more seeds than the three of every run.
+
+use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::witness::Decomposition;
+use cognate_systems::system::System;
+use cognate_tests::systems::{shared, written};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Dimension, degree, multiplicity and how many there are of them.
+type Expected = (u32, u64, u64, u64);
+
+/// The system in `tests/decomposition/systems/NAME`, or among those that other tests solve.
+fn instance(name: &str) -> System {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("decomposition/systems");
+    match std::fs::read(folder.join(name).join("system.bertini")) {
+        Ok(content) => match cognate_systems::formats::read(name, &content) {
+            Ok(problem) => problem.system,
+            Err(error) => panic!("{error}"),
+        },
+        Err(_) => shared(name),
+    }
+}
+
+fn decompose(system: &System, seed: u64) -> Decomposition {
+    let options = DecompositionOptions {
+        seed,
+        ..DecompositionOptions::default()
+    };
+    let solve = match DecompositionSolve::new(system, &options) {
+        Ok(solve) => solve,
+        Err(error) => panic!("{error}"),
+    };
+    match run_locally(solve, 8) {
+        Ok(found) => found,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// The components by dimension, degree and multiplicity.
+fn counted(found: &Decomposition) -> Vec<Expected> {
+    let mut counts: BTreeMap<(u32, u64, u64), u64> = BTreeMap::new();
+    for set in &found.components {
+        let scheme = set.multiplicity.scheme.unwrap_or(0);
+        *counts
+            .entry((set.dimension(), set.degree, scheme))
+            .or_default() += 1;
+    }
+    let counts = counts.into_iter().rev();
+    counts.map(|((a, b, c), count)| (a, b, c, count)).collect()
+}
+
+/// What is doubted, in words.
+fn doubts(found: &Decomposition) -> String {
+    let mut text = String::new();
+    for dimension in &found.dimensions {
+        if !dimension.doubts.is_empty() {
+            let _ = write!(
+                text,
+                " dimension {}: {:?};",
+                dimension.number, dimension.doubts
+            );
+        }
+    }
+    for set in &found.components {
+        if !set.evidence.doubts.is_empty() {
+            let _ = write!(
+                text,
+                " {} of degree {}: {:?};",
+                set.id, set.degree, set.evidence.doubts
+            );
+        }
+    }
+    text
+}
+
+/// Checks three seeds, or as many as the variable says; none may be wrong, and none unsettled.
+fn check(name: &str, system: &System, expected: &[Expected]) {
+    let seeds = std::env::var("SEEDS").ok().and_then(|n| n.parse().ok());
+    let mut expected = expected.to_vec();
+    expected.sort_by(|a, b| b.cmp(a));
+    let mut report = String::new();
+    for seed in 1..=seeds.unwrap_or(3u64) {
+        let began = Instant::now();
+        let found = decompose(system, seed);
+        let (counts, settled) = (counted(&found), found.settled());
+        let (paths, loops) = (found.paths, found.paths_of_loops);
+        eprintln!(
+            "{name}, seed {seed}: {counts:?}, settled {settled}, {paths} + {loops} paths, {:.2} s{}",
+            began.elapsed().as_secs_f64(),
+            doubts(&found)
+        );
+        if settled && counts != expected {
+            let _ = write!(report, "\n{name}, seed {seed}: wrong: {counts:?}");
+        } else if !settled {
+            let _ = write!(
+                report,
+                "\n{name}, seed {seed}: unsettled: {counts:?}{}",
+                doubts(&found)
+            );
+        }
+        if !found.adds_up() {
+            let _ = write!(
+                report,
+                "\n{name}, seed {seed}: counts do not add up: {:?}",
+                found.dimensions
+            );
+        }
+    }
+    assert!(report.is_empty(), "{report}");
+}
+
+macro_rules! instances {
+    ($($name:ident: $expected:expr;)*) => {$(
+        #[test]
+        fn $name() {
+            check(stringify!($name), &instance(stringify!($name)), &$expected);
+        }
+    )*};
+}
+
+instances! {
+    twisted_cubic: [(1, 3, 1, 1)];
+    nid_illustrative: [(2, 2, 1, 1), (1, 3, 1, 1), (1, 1, 1, 3), (0, 1, 1, 1)];
+    sphere_and_curves: [(2, 2, 1, 1), (1, 3, 1, 1), (1, 1, 1, 4)];
+    sphere_line_point: [(2, 2, 1, 1), (1, 1, 1, 1), (0, 1, 1, 1)];
+    quadric_rulings: [(1, 2, 1, 2)];
+    viviani: [(1, 4, 1, 1)];
+    commuting_2x2: [(6, 3, 1, 1)];
+    rank_one_3x3: [(5, 6, 1, 1)];
+    adjacent_minors_2x4: [(5, 4, 1, 1), (5, 2, 1, 2)];
+    adjacent_minors_2x5: [(6, 5, 1, 1), (6, 4, 1, 1), (6, 3, 1, 2), (6, 1, 1, 1)];
+    adjacent_minors_2x9: [
+        (10, 16, 1, 1), (10, 15, 1, 2), (10, 12, 1, 5), (10, 9, 1, 4), (10, 8, 1, 6),
+        (10, 7, 1, 2), (10, 5, 1, 3), (10, 4, 1, 6), (10, 3, 1, 4), (10, 1, 1, 1)
+    ];
+    cyclic_4: [(1, 2, 1, 2)];
+    conic_p1p2: [(1, 3, 1, 1)];
+    double_line: [(1, 1, 2, 1)];
+    double_conic_and_line: [(2, 1, 1, 1), (1, 2, 2, 2)];
+    embedded_line: [(2, 1, 1, 2)];
+    fat_parabola: [(1, 2, 3, 1)];
+    jets_a3: [(4, 4, 2, 1), (4, 4, 1, 2)];
+    permanents_2x4: [(4, 1, 1, 2), (3, 2, 1, 6)];
+    kinematotropic: [(2, 4, 1, 1), (1, 2, 1, 2)];
+    bennett_b: [(1, 4, 1, 1)];
+    four_bar_loop_grashof: [(1, 6, 1, 1)];
+    four_bar_parallelogram: [(1, 4, 1, 1), (1, 2, 1, 1)];
+    four_bar_sextic: [(1, 6, 1, 1)];
+    quadrifolium: [(1, 6, 1, 1)];
+    real_acnode: [(1, 3, 1, 1)];
+    real_cubic: [(1, 3, 1, 1)];
+    seven_bar_roberts: [(1, 6, 1, 1), (0, 1, 1, 6)];
+}
+
+/// Slow, and not settled: the combinations of products of 15 and 20 planes in one row are too badly conditioned.
+#[test]
+#[ignore]
+fn grid_of_300_lines() {
+    check(
+        "grid_of_300_lines",
+        &instance("grid_of_300_lines"),
+        &[(1, 1, 1, 300)],
+    );
+}
+
+/// The union of a quadric surface, `lines` lines and `points` points with random small coefficients, by the
+/// products of one equation of each.
+fn planted_union(lines: usize, points: usize, number: u64) -> System {
+    let mut random = RandomStream::new(number, Purpose::Test, 20);
+    let mut plane = || {
+        let mut c = || random.below(19) as i64 - 9;
+        let constant = 2 * c() + 1;
+        format!(
+            "(({})*x + ({})*y + ({})*z + ({constant}))",
+            c(),
+            c(),
+            2 * c() + 1
+        )
+    };
+    let mut products = vec![format!("({}*{} + {})", plane(), plane(), plane())];
+    let sets = std::iter::repeat_n(2, lines).chain(std::iter::repeat_n(3, points));
+    for codimension in sets {
+        let factors: Vec<String> = (0..codimension).map(|_| plane()).collect();
+        let pairs = products.iter();
+        let pairs = pairs.flat_map(|p| factors.iter().map(move |f| format!("{p}*{f}")));
+        products = pairs.collect();
+    }
+    let names: Vec<String> = (1..=products.len()).map(|k| format!("f{k}")).collect();
+    let lines = names.iter().zip(&products);
+    let lines: Vec<String> = lines.map(|(f, p)| format!("{f} = {p};")).collect();
+    written(&format!(
+        "variable_group x, y, z; function {}; {}",
+        names.join(", "),
+        lines.join(" ")
+    ))
+}
+
+#[test]
+fn unions_of_a_quadric_lines_and_points() {
+    for number in 1..=6 {
+        let (lines, points) = (number % 3, number % 2);
+        let mut expected = vec![(2, 2, 1, 1)];
+        expected.extend((lines > 0).then_some((1, 1, 1, lines)));
+        expected.extend((points > 0).then_some((0, 1, 1, points)));
+        let system = planted_union(lines as usize, points as usize, number);
+        check(&format!("union {number}"), &system, &expected);
+    }
+}
+
+#[test]
+fn without_solutions_there_are_no_components() {
+    check(
+        "nothing",
+        &written("variable_group x, y; function f, g; f = x*y - 1; g = x*y - 2;"),
+        &[],
+    );
+}
+
+#[test]
+fn isolated_points_are_components() {
+    let system = written("variable_group x, y; function f, g; f = x^2 + y^2 - 5; g = x*y - 2;");
+    check("two conics", &system, &[(0, 1, 1, 4)]);
+    let double = written("variable_group x, y; function f, g; f = (x - y)^2; g = x^2 + y^2 - 2;");
+    check("two double points", &double, &[(0, 1, 2, 2)]);
+}
+
+/// Any file: `DECOMPOSE=FILE cargo test --test decomposition given -- --ignored --nocapture`.
+#[test]
+#[ignore]
+fn given() {
+    let Ok(path) = std::env::var("DECOMPOSE") else {
+        return;
+    };
+    let content = std::fs::read(&path).expect("a file");
+    let problem = cognate_systems::formats::read(&path, &content);
+    let began = Instant::now();
+    let found = decompose(&problem.expect("a problem").system, 1);
+    eprintln!(
+        "{path}: {:?}, settled {}, {} + {} paths, {:.2} s{}",
+        counted(&found),
+        found.settled(),
+        found.paths,
+        found.paths_of_loops,
+        began.elapsed().as_secs_f64(),
+        doubts(&found)
+    );
+}
