@@ -157,17 +157,6 @@ instances! {
     seven_bar_roberts: [(1, 6, 1, 1), (0, 1, 1, 6)];
 }
 
-/// Slow, and not settled: the combinations of products of 15 and 20 planes in one row are too badly conditioned.
-#[test]
-#[ignore]
-fn grid_of_300_lines() {
-    check(
-        "grid_of_300_lines",
-        &instance("grid_of_300_lines"),
-        &[(1, 1, 1, 300)],
-    );
-}
-
 /// The union of a quadric surface, `lines` lines and `points` points with random small coefficients, by the
 /// products of one equation of each.
 fn planted_union(lines: usize, points: usize, number: u64) -> System {
@@ -227,26 +216,4 @@ fn isolated_points_are_components() {
     check("two conics", &system, &[(0, 1, 1, 4)]);
     let double = written("variable_group x, y; function f, g; f = (x - y)^2; g = x^2 + y^2 - 2;");
     check("two double points", &double, &[(0, 1, 2, 2)]);
-}
-
-/// Any file: `DECOMPOSE=FILE cargo test --test decomposition given -- --ignored --nocapture`.
-#[test]
-#[ignore]
-fn given() {
-    let Ok(path) = std::env::var("DECOMPOSE") else {
-        return;
-    };
-    let content = std::fs::read(&path).expect("a file");
-    let problem = cognate_systems::formats::read(&path, &content);
-    let began = Instant::now();
-    let found = decompose(&problem.expect("a problem").system, 1);
-    eprintln!(
-        "{path}: {:?}, settled {}, {} + {} paths, {:.2} s{}",
-        counted(&found),
-        found.settled(),
-        found.paths,
-        found.paths_of_loops,
-        began.elapsed().as_secs_f64(),
-        doubts(&found)
-    );
 }

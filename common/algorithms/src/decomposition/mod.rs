@@ -12,61 +12,29 @@ mod cascade;
 mod deflated;
 mod job;
 mod junk;
+mod options;
 mod problem;
 mod split;
 
-use crate::retried_stage::MAX_RETRIES;
 use crate::{Next, Opening};
 use cascade::Cascade;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
-use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::StageId;
-use cognate_solutions::classification::Tolerances;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{ComponentId, Decomposition, Dimension, Doubt, WitnessSet};
 use cognate_systems::system::System;
 use deflated::PureSet;
 use job::{Job, Tracking};
 use junk::Sieve;
+pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
 use split::Split;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
-
-/// Everything that decides how a system is decomposed, besides the system.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DecompositionOptions {
-    /// Seed of everything random.
-    pub seed: u64,
-    /// How paths are tracked.
-    pub settings: Settings,
-    /// How verdicts are reached.
-    pub tolerances: Tolerances,
-    /// How often a path is tracked again at most.
-    pub max_retries: u16,
-    /// Whether paths on the sets of higher dimension confirm what dual spaces and moved slices call junk; else
-    /// they are asked only where these are not clear.
-    pub confirm_junk: bool,
-    /// Loops in a row that bring no points together before points stay apart.
-    pub idle_loops: u32,
-}
-
-impl Default for DecompositionOptions {
-    fn default() -> Self {
-        Self {
-            seed: 0,
-            settings: Settings::default(),
-            tolerances: Tolerances::default(),
-            max_retries: MAX_RETRIES,
-            confirm_junk: true,
-            idle_loops: 12,
-        }
-    }
-}
 
 /// Where a decomposition is.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! Problem: what does not change during a decomposition: equations, combinations of them, slices.
 
-use super::DecompositionOptions;
 use super::job::Tracking;
+use super::options::DecompositionOptions;
 use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
