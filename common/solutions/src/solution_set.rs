@@ -103,11 +103,12 @@ pub struct SolutionSet {
 
 impl SolutionSet {
     /// True when no path failed, every crossing came apart, of every endpoint that is on no declared set it
-    /// is known whether it is isolated, none is finite or at infinity only by the limit of the precision, and
+    /// is known whether it is isolated, none is infinite but for digits beyond the accuracy of the data, none is finite or at infinity only by the limit of the precision, and
     /// multiplicities are what the numbers of paths say.
     pub fn settled(&self) -> bool {
         self.paths.failed == 0
             && self.counts.undecided == 0
+            && self.paths.within_data_accuracy == 0
             && self.paths.decided_by_precision_limit == 0
             && self.counts.doubtful_multiplicity == 0
             && self.paths.crossings_found == self.paths.crossings_resolved

@@ -311,7 +311,9 @@ impl Cauchy {
             Infinity::Shown => return self.diverging(None),
             Infinity::BelowNoise if self.may_be_finer => return Next::Finer,
             Infinity::Apart { part, power_sum } if WITHIN * part < SHRINKAGE => {
-                let within_data = power_sum <= WITHIN_DATA * settings.data_accuracy;
+                // One sheet ends at a regular point, however far out: it is followed.
+                let within_data =
+                    self.turns > 1 && power_sum <= WITHIN_DATA * settings.data_accuracy;
                 if within_data && !settings.exact_data {
                     return self.diverging(Some(power_sum));
                 }

@@ -36,6 +36,12 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
             counted(paths.undecided, "path")
         ));
     }
+    if paths.within_data_accuracy > 0 {
+        let within = counted(paths.within_data_accuracy, "path");
+        open.push(format!(
+            "{within} to infinity as far as the accuracy of the decimals tells (--exact follows them)"
+        ));
+    }
     let doubtful = summary.solutions.doubtful_multiplicity;
     if doubtful > 0 {
         let points = counted(doubtful, "singular point");
