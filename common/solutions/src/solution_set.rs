@@ -536,6 +536,11 @@ impl<'a> Draft<'a> {
             "path",
             "finite or at infinity only by the limit of the precision",
         );
+        say(
+            paths.within_data_accuracy,
+            "path",
+            "to infinity as far as the accuracy of the data tells",
+        );
         let points = self.set.counts.undecided;
         say(
             points,
