@@ -80,7 +80,8 @@ fn result(path: u64, attempt: u32) -> v1::PathResult {
         t: Some(v1::Complex { re: 0.0, im: 0.0 }),
         residual: 1e-16,
         condition: 10.0 + (path % 97) as f64,
-        accuracy: 1e-15,
+        // A path that is clearly at infinity has no accuracy.
+        accuracy: if is_at_infinity(path) { f64::INFINITY } else { 1e-15 },
         precision_bits: 53,
         counts: Some(v1::Counts {
             steps: 40 + (path % 13) as u32,
