@@ -81,7 +81,11 @@ fn result(path: u64, attempt: u32) -> v1::PathResult {
         residual: 1e-16,
         condition: 10.0 + (path % 97) as f64,
         // A path that is clearly at infinity has no accuracy.
-        accuracy: if is_at_infinity(path) { f64::INFINITY } else { 1e-15 },
+        accuracy: if is_at_infinity(path) {
+            f64::INFINITY
+        } else {
+            1e-15
+        },
         precision_bits: 53,
         counts: Some(v1::Counts {
             steps: 40 + (path % 13) as u32,

@@ -14,7 +14,8 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, StageId, Work};
-use cognate_solutions::classification::{Decision, Tolerances, Verdict, classify};
+use cognate_numeric::precision::DOUBLE;
+use cognate_solutions::classification::{Decision, Tolerances, Verdict, classify, is_unconfirmed};
 use cognate_solutions::degenerate::{ASKED, DeclaredSets};
 use cognate_solutions::images::with_images;
 use cognate_solutions::path_crossing::{CrossingBook, broken_cycles, coincidences, crossings};
@@ -356,7 +357,9 @@ impl RetriedStage {
     }
 
     fn repetition(&self, indices: Vec<u64>) -> Stage {
-        let attempt = self.stages.len() as u16;
+        let tracked = |stage: &&StageProgress| stage.work != Work::LocalDimension;
+        let attempt = self.stages.iter().filter(tracked).count() as u16;
+        let attempt = attempt.min(self.max_retries);
         let tighter = self.first.settings.tightened(attempt);
         // Paths that met, or do not fit into their cycles, may have jumped; one that failed lacks steps
         // or digits, of which looking around takes more.
@@ -370,7 +373,7 @@ impl RetriedStage {
             false => tighter.robust(),
         };
         Stage {
-            id: StageId(self.first.id.0 + u32::from(attempt)),
+            id: StageId(self.first.id.0 + self.stages.len() as u32),
             start_points: StartPoints::Selected {
                 base: Box::new(self.first.start_points.clone()),
                 indices,
@@ -407,6 +410,7 @@ impl RetriedStage {
             }
             assert_eq!(taken, items, "a stage is absorbed as a whole");
             self.judge();
+            self.wanted = self.unconfirmed();
             return;
         }
         for result in results {
@@ -443,6 +447,33 @@ impl RetriedStage {
         }
     }
 
+    /// The paths that doubles lead to one point of which deflated equations do not confirm that it is
+    /// multiple: several points may lie there, closer together than doubles tell. They are tracked again
+    /// once; what is asked a second time stays as it is.
+    fn unconfirmed(&self) -> Option<Vec<u64>> {
+        let looks = |stage: &&StageProgress| stage.work == Work::LocalDimension;
+        if self.stages.iter().filter(looks).count() > 1 || self.max_retries == 0 {
+            return None;
+        }
+        let complete = self.first.homotopy.takes_all_paths();
+        let points = self.singular_points.iter().filter(|paths| {
+            let result = self.most_accurate(paths);
+            let in_doubles = result.precision_bits <= DOUBLE;
+            let number = complete.then_some(paths.len() as u64);
+            in_doubles && is_unconfirmed(result, number, &self.tolerances)
+        });
+        let mut paths: Vec<u64> = points.flatten().copied().collect();
+        // An image is tracked again by its path.
+        if self.first.start_points.exchange().is_some() {
+            paths
+                .iter_mut()
+                .for_each(|path| *path %= self.paths_per_target);
+        }
+        paths.sort_unstable();
+        paths.dedup();
+        (!paths.is_empty()).then_some(paths)
+    }
+
     /// The paths that end at one singular finite point, for each such point; with an exchange for
     /// one of each two points, images among the paths.
     fn find_singular_points(&self) -> Vec<Vec<u64>> {
@@ -467,7 +498,12 @@ impl RetriedStage {
             );
             let paths =
                 |members: Vec<usize>| members.iter().map(|&m| results[m].origin.0).collect();
-            let known = |members: &Vec<usize>| members.iter().any(|&m| m < tracked.len());
+            // One of which everything is known already is not asked again.
+            let known = |members: &Vec<usize>| {
+                let of_path = |&&m: &&usize| m < tracked.len();
+                let mut held = members.iter().filter(of_path);
+                held.any(|&m| tracked[m].local_dimension.is_none())
+            };
             points.extend(clusters.into_iter().filter(known).map(paths));
         }
         points

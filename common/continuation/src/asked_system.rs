@@ -7,7 +7,7 @@
 use crate::chart::{Chart, exact, norm};
 use crate::homotopies::HomotopyKind;
 use crate::homotopies::prepare::normalize;
-use crate::local_dimension::series::{Monomials, Series};
+use crate::local_dimension::series::{Constants, Monomials, Series};
 use crate::path_result::{AskedFit, PathResult};
 use crate::tracker::outcome::PathOutcome;
 use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
@@ -15,7 +15,8 @@ use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
-use cognate_systems::evaluation::{Evaluate, Interpreter};
+
+use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::polynomial::Degrees;
 use cognate_systems::system::System;
@@ -31,6 +32,11 @@ pub struct AskedSystem {
     chart: Chart,
     /// Values of the program's parameters at each target.
     targets: Vec<Vec<Complex64>>,
+    /// Work space with all constants, of which each evaluation takes a copy: rounding a fraction takes longer
+    /// than evaluating a small system.
+    doubles: Scratch<f64>,
+    double_doubles: Scratch<DoubleDouble<f64>>,
+    constants: Constants,
 }
 
 /// Values and derivatives at one point.
@@ -43,21 +49,21 @@ pub struct Linearization {
 }
 
 /// One evaluation, compiled for the instruction set.
-struct Linearize<'a> {
+struct Linearize<'a, R: Real> {
     program: &'a Interpreter,
-    x: &'a [Complex<f64>],
-    p: &'a [Complex<f64>],
-    matrix: &'a mut Matrix<f64>,
+    x: &'a [Complex<R>],
+    p: &'a [Complex<R>],
+    matrix: &'a mut Matrix<R>,
+    scratch: Scratch<R>,
 }
 
-impl Job for Linearize<'_> {
+impl<R: Real<Context = ()>> Job for Linearize<'_, R> {
     type Output = ();
     #[inline(always)]
-    fn run(self) {
-        let mut scratch = Evaluate::<f64>::scratch(self.program, ());
-        let dp = vec![Complex { re: 0.0, im: 0.0 }; self.p.len()];
+    fn run(mut self) {
+        let dp = vec![Complex::zero(()); self.p.len()];
         self.program
-            .linearize(self.x, self.p, &dp, self.matrix, &mut scratch);
+            .linearize(self.x, self.p, &dp, self.matrix, &mut self.scratch);
     }
 }
 
@@ -109,8 +115,12 @@ impl AskedSystem {
         let mut probe = RandomStream::new(seed, Purpose::Probe, 1);
         let dimension = chart.dimension();
         normalize(&mut out, &mut equations, dimension, &targets[0], &mut probe);
+        let program = Interpreter::compile(&out, &equations, dimension, targets[0].len());
         Self {
-            program: Interpreter::compile(&out, &equations, dimension, targets[0].len()),
+            doubles: Evaluate::<f64>::scratch(&program, ()),
+            double_doubles: Evaluate::<DoubleDouble<f64>>::scratch(&program, ()),
+            constants: Constants::of(&out, &equations),
+            program,
             expressions: out,
             equations,
             chart,
@@ -130,6 +140,7 @@ impl AskedSystem {
             x: &x,
             p: &p,
             matrix: &mut matrix,
+            scratch: self.doubles.clone(),
         });
         let column = |j: usize| -> Vec<Complex64> {
             let entry = |i: usize| Complex64::new(matrix.at(i, j).re, matrix.at(i, j).im);
@@ -147,24 +158,20 @@ impl AskedSystem {
         point: &[Complex<DoubleDouble<f64>>],
         target: u64,
     ) -> Linearization {
-        let zero = || DoubleDouble::<f64>::from_f64((), 0.0);
         let number = |z: &Complex64| Complex {
             re: DoubleDouble::<f64>::from_f64((), z.re),
             im: DoubleDouble::<f64>::from_f64((), z.im),
         };
         let p: Vec<_> = self.targets[target as usize].iter().map(number).collect();
-        let still: Vec<_> = p
-            .iter()
-            .map(|_| Complex {
-                re: zero(),
-                im: zero(),
-            })
-            .collect();
         let (rows, n) = (self.program.shape().equations, point.len());
         let mut matrix = Matrix::zeros((), rows, n + 2);
-        let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.program, ());
-        self.program
-            .linearize(point, &p, &still, &mut matrix, &mut scratch);
+        dispatch_single(Linearize {
+            program: &self.program,
+            x: point,
+            p: &p,
+            matrix: &mut matrix,
+            scratch: self.double_doubles.clone(),
+        });
         let column = |j: usize| -> Vec<Complex64> {
             let entry = |i: usize| {
                 let z: &Complex<DoubleDouble<f64>> = matrix.at(i, j);
@@ -209,7 +216,14 @@ impl AskedSystem {
         target: u64,
     ) -> Option<Vec<Series>> {
         let parameters = self.targets.get(usize::try_from(target).ok()?)?;
-        monomials.expand(&self.expressions, &self.equations, coordinates, parameters)
+        let (expressions, constants) = (&self.expressions, &self.constants);
+        monomials.expand(
+            expressions,
+            constants,
+            &self.equations,
+            coordinates,
+            parameters,
+        )
     }
 
     /// How well the endpoint of a path solves all equations; `None` for a failed path.

@@ -228,6 +228,20 @@ pub fn isolation(result: &PathResult, tolerances: &Tolerances) -> Isolation {
     }
 }
 
+/// Whether dual spaces are not clear about an endpoint's multiplicity, or find another than the number of `paths`
+/// that end there (where all paths are there, so that the number says something), and no slice says
+/// that the endpoint is one of many.
+pub fn is_unconfirmed(result: &PathResult, paths: Option<u64>, tolerances: &Tolerances) -> bool {
+    let Some(found) = &result.local_dimension else {
+        return false;
+    };
+    let other = match multiplicity(found, tolerances) {
+        Some(multiplicity) => paths.is_some_and(|paths| paths != u64::from(multiplicity)),
+        None => found.margin < tolerances.rank_margin,
+    };
+    other && !is_met(found, tolerances)
+}
+
 /// The dimension at which the dual space clearly stops growing.
 fn multiplicity(found: &LocalDimension, tolerances: &Tolerances) -> Option<u32> {
     let [.., before, last] = found.dual_dimensions.as_slice() else {

@@ -121,14 +121,16 @@ pub(super) fn vanishes(
         if !mean.is_finite() {
             return Infinity::No;
         }
-        if mean > CLEARLY * bound {
+        // One sheet ends at a regular point, however far out; several that part only below this do not.
+        let is_zero = sheets > 1 && mean <= zero.power_sum;
+        if mean > CLEARLY * bound && !is_zero {
             // Where y_0^c = b + a t, the mean of power c is b and y_0^c at the radius is a t; a mean of
             // power k speaks of values at t = 0 whose power c is that to c/k.
             let ratio = mean / scale.max(f64::MIN_POSITIVE);
             let part = (0..sheets / k).fold(1.0, |part, _| part * ratio);
             farthest = Some(farthest.map_or(part, |most: f64| most.max(part)));
             power_sum = power_sum.max(mean);
-        } else if mean > bound || bound > limit {
+        } else if (mean > bound && !is_zero) || bound > limit {
             // Where more samples are wanted as well, a smaller radius gives both.
             found = match found {
                 Infinity::Shown | Infinity::BelowNoise if mean <= bound && noise > limit => {

@@ -23,7 +23,7 @@ use crate::asked_system::AskedSystem;
 use crate::chart::norm;
 use crate::path_result::LocalDimension;
 use dual_space::{DualSpace, Stop};
-use moved_slice::{Around, Search, meets};
+use moved_slice::{Around, Search, meets, meets_within};
 use num_complex::Complex64;
 use precise_point::regular_nearby;
 use series::Monomials;
@@ -42,6 +42,9 @@ const ORDER_ON_A_SET: u32 = 3;
 /// Where dual spaces did not stop at this order, slices are searched in more directions.
 const ORDER_OF_DOUBT: u32 = 6;
 
+/// Residuals on slices of so many times the accuracy of the coefficients are 0 for others within it.
+const WITHIN_DATA: f64 = 100.0;
+
 /// What is asked of one endpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
@@ -55,11 +58,16 @@ pub struct Question {
 }
 
 /// The tower of dual spaces at a point of the chart.
+///
+/// `data_accuracy`: relative accuracy to which the equations' coefficients are known, 0 where they are exact. Where
+/// other coefficients within it have a set of positive dimension through the point no more orders are
+/// asked: they would tell rounding errors.
 pub fn local_dimension(
     system: &AskedSystem,
     target: u64,
     point: &[Complex64],
     question: Question,
+    data_accuracy: f64,
 ) -> LocalDimension {
     let mut found = LocalDimension {
         dual_dimensions: vec![1],
@@ -110,7 +118,8 @@ pub fn local_dimension(
         if stop.is_err() || found.margin < UNCLEAR {
             break;
         }
-        if order >= ORDER_ON_A_SET && meets(&found.moved_slices) {
+        if order >= ORDER_ON_A_SET && meets_within(&found.moved_slices, WITHIN_DATA * data_accuracy)
+        {
             break;
         }
         if order == ORDER_ON_A_SET || order == ORDER_OF_DOUBT {
@@ -128,7 +137,8 @@ pub fn local_dimension(
     // What is not isolated by low orders deserves a thorough search for others nearby.
     let order = found.dual_dimensions.len() as u32 - 1;
     let closed = found.dual_dimensions.windows(2).any(|w| w[1] <= w[0]) && found.margin >= UNCLEAR;
-    if order < ORDER_OF_DOUBT && !closed && !meets(&found.moved_slices) {
+    let met = meets_within(&found.moved_slices, WITHIN_DATA * data_accuracy);
+    if order < ORDER_OF_DOUBT && !closed && !met {
         found.moved_slices = around.moved_slices(Search {
             many: true,
             tangent: None,

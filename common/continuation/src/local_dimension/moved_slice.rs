@@ -13,6 +13,7 @@ use super::split::{Split, square};
 use crate::asked_system::AskedSystem;
 use crate::chart::norm;
 use crate::path_result::MovedSlice;
+use cognate_numeric::linear_algebra::least_squares::least_squares;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use num_complex::Complex64;
@@ -93,7 +94,12 @@ impl Around<'_> {
 
 /// Whether a slice was met that is not too near to mean something, and all that are nearer.
 pub(super) fn meets(slices: &[MovedSlice]) -> bool {
-    let met = |slice: &MovedSlice| slice.residual <= MET;
+    meets_within(slices, MET)
+}
+
+/// The same where residuals up to this, and rounding, are as good as 0.
+pub(super) fn meets_within(slices: &[MovedSlice], residual: f64) -> bool {
+    let met = |slice: &MovedSlice| slice.residual <= residual.max(MET);
     let mut near = slices.iter().filter(|slice| slice.distance < FAR);
     near.clone().any(|slice| slice.distance >= TELLING) && near.all(met)
 }
@@ -241,7 +247,7 @@ impl<'a> Slices<'a> {
                     column.push(l * scale);
                 }
             }
-            let step = limited_step(&Svd::of(columns), &values, distance);
+            let step = newton_step(columns, &values, distance);
             x.add(&step);
             offset.iter_mut().zip(&step).for_each(|(o, s)| *o += s);
         }
@@ -249,7 +255,16 @@ impl<'a> Slices<'a> {
     }
 }
 
-/// The least-squares Newton step, in no singular direction longer than the limit: where the equations are
+/// The least-squares Newton step.
+fn newton_step(columns: Vec<Vec<Complex64>>, values: &[Complex64], limit: f64) -> Vec<Complex64> {
+    let step = least_squares(&columns, values).filter(|step| square(step) <= limit * limit);
+    match step {
+        Some(step) => step.into_iter().map(|s| -s).collect(),
+        None => limited_step(&Svd::of(columns), values, limit),
+    }
+}
+
+/// The same by singular values, in no singular direction longer than the limit: where the equations are
 /// nearly singular it is long without reason.
 fn limited_step(svd: &Svd, values: &[Complex64], limit: f64) -> Vec<Complex64> {
     let largest = svd.values.first().copied().unwrap_or(0.0);

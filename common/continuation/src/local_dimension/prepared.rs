@@ -32,6 +32,8 @@ pub struct PreparedLocalDimension {
     /// Values of its parameters at each target.
     parameters: Vec<Vec<Complex64>>,
     seed: u64,
+    /// Relative accuracy to which coefficients are known.
+    data_accuracy: f64,
     candidates: Vec<Candidate>,
 }
 
@@ -92,6 +94,10 @@ impl PreparedLocalDimension {
             system: system.clone(),
             parameters: given.to_vec(),
             seed: stage.seed,
+            data_accuracy: match stage.settings.exact_data {
+                true => 0.0,
+                false => stage.settings.data_accuracy,
+            },
             candidates,
         })
     }
@@ -144,7 +150,10 @@ impl PreparedLocalDimension {
         let chart = self.asked.chart();
         let point = chart.from_variables(&candidate.values);
         let found = point.as_ref().map(|point| {
-            let found = local_dimension(&self.asked, candidate.target, point, candidate.question);
+            let Candidate {
+                target, question, ..
+            } = candidate;
+            let found = local_dimension(&self.asked, *target, point, *question, self.data_accuracy);
             self.confirmed(candidate, found)
         });
         // A patch that misses the point, with probability 0, leaves it undecided.

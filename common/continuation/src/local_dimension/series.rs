@@ -21,6 +21,29 @@ pub struct Monomials {
     products: Vec<Vec<u32>>,
 }
 
+/// The numbers in some expressions, rounded to doubles.
+#[derive(Clone, Debug)]
+pub struct Constants(HashMap<NodeId, Complex64>);
+
+impl Constants {
+    /// Of all that these expressions are made of.
+    pub fn of(expressions: &Expressions, roots: &[NodeId]) -> Self {
+        let rounded = |c: &ComplexRational| {
+            let c = Complex::<f64>::from_rational((), c);
+            Complex64::new(c.re, c.im)
+        };
+        let constant = |id: NodeId| match expressions.node(id) {
+            Node::Constant(c) => Some((id, rounded(c))),
+            Node::Root(..) | Node::Function(..) => (expressions.dependence(id)
+                == Dependence::Constant)
+                .then(|| (id, rounded(&algebraic(expressions, id, 53)))),
+            _ => None,
+        };
+        let nodes = below(expressions, roots).into_iter();
+        Self(nodes.filter_map(constant).collect())
+    }
+}
+
 /// A series: one coefficient for each monomial.
 pub type Series = Vec<Complex64>;
 
@@ -147,28 +170,22 @@ impl Monomials {
     }
 
     /// The series of some expressions, when the variables have these series and the parameters
-    /// these values. `None` where one is divided by something with variables, or by 0.
+    /// these values; `constants` are those of all of them. `None` where one is divided by something with variables, or by 0.
     pub fn expand(
         &self,
         expressions: &Expressions,
+        constants: &Constants,
         roots: &[NodeId],
         variables: &[Series],
         parameters: &[Complex64],
     ) -> Option<Vec<Series>> {
         let mut values: HashMap<NodeId, Series> = HashMap::new();
-        let constant = |c: &ComplexRational| {
-            let c = Complex::<f64>::from_rational((), c);
-            self.number(Complex64::new(c.re, c.im))
-        };
         for id in below(expressions, roots) {
             let node = expressions.node(id);
             let value = match node {
-                Node::Constant(c) => constant(c),
-                Node::Root(..) | Node::Function(..) => {
-                    if expressions.dependence(id) != Dependence::Constant {
-                        return None;
-                    }
-                    constant(&algebraic(expressions, id, 53))
+                // A root of what is not constant is none of them.
+                Node::Constant(_) | Node::Root(..) | Node::Function(..) => {
+                    self.number(*constants.0.get(&id)?)
                 }
                 Node::Variable(v) => variables.get(*v as usize)?.clone(),
                 Node::Parameter(p) => self.number(*parameters.get(*p as usize)?),
@@ -250,12 +267,13 @@ mod tests {
             s
         };
         let at = [shifted(0, 1.0), shifted(1, -1.0)];
-        let series = m.expand(&e, &[f], &at, &[number(2.0)]).unwrap();
+        let constants = Constants::of(&e, &[f]);
+        let series = m.expand(&e, &constants, &[f], &at, &[number(2.0)]).unwrap();
         // -((a + 2b - 1)^2 - 3)/2 = 1 + a + 2b - a^2/2 - 2ab - 2b^2
         let expected = [1.0, 1.0, 2.0, -0.5, -2.0, -2.0];
         for (found, expected) in series[0].iter().zip(expected) {
             assert!((found - expected).norm_sqr() < 1e-28, "{series:?}");
         }
-        assert_eq!(m.expand(&e, &[f], &at, &[number(0.0)]), None);
+        assert_eq!(m.expand(&e, &constants, &[f], &at, &[number(0.0)]), None);
     }
 }

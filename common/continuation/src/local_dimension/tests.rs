@@ -36,7 +36,7 @@ fn tower(system: &System, at: &[f64], bound: u64, error: f64, seed: u64) -> Loca
         bound,
         depth: 30,
     };
-    local_dimension(&asked, 0, &point, question)
+    local_dimension(&asked, 0, &point, question, 0.0)
 }
 
 fn check(what: &str, system: &System, at: &[f64], bound: u64, expected: &[u32]) {

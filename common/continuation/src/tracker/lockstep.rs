@@ -121,6 +121,18 @@ impl Step {
     }
 }
 
+/// `sum += weight * value`. Within a function of its own, since a closure that is called in several places would
+/// not be compiled for the instruction set of its caller.
+#[inline(always)]
+fn accumulate<R: Real>(
+    context: R::Context,
+    sum: &mut Complex<R>,
+    weight: &Complex<R::Control>,
+    value: &Complex<R>,
+) {
+    sum.mul_add(&Complex::from_control(context, weight), value);
+}
+
 impl<'a, R: Real> Lockstep<'a, R> {
     #[inline(always)]
     pub(super) fn new(
@@ -267,36 +279,44 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
         let mut candidate = std::mem::take(&mut batch.x[next]);
         let mut candidate_tangent = std::mem::take(&mut batch.tangent[next]);
+        let context = self.context;
         for i in 0..n {
-            let mut sum = Complex::zero(self.context);
-            let mut add = |weight: &Complex<R::Control>, value: &Complex<R>| {
-                sum.mul_add(&Complex::from_control(self.context, weight), value);
-            };
+            let mut sum = Complex::zero(context);
             // Weights are doubles: their rounding counts as a part of how far the points are apart,
             // not of how large they are, where there are more digits.
             if fine {
                 let here = &batch.x[newest][i];
                 let mut apart = candidate[i].clone();
                 apart.sub(here);
-                add(&w.point[POINTS - 1], &apart);
-                add(&w.tangent[POINTS - 1], &candidate_tangent[i]);
+                accumulate(context, &mut sum, &w.point[POINTS - 1], &apart);
+                accumulate(
+                    context,
+                    &mut sum,
+                    &w.tangent[POINTS - 1],
+                    &candidate_tangent[i],
+                );
                 for age in (0..POINTS - 1).rev() {
                     let slot = slots[age];
-                    add(&w.tangent[age], &batch.tangent[slot][i]);
+                    accumulate(context, &mut sum, &w.tangent[age], &batch.tangent[slot][i]);
                     if age > 0 {
                         apart.set(&batch.x[slot][i]);
                         apart.sub(here);
-                        add(&w.point[age], &apart);
+                        accumulate(context, &mut sum, &w.point[age], &apart);
                     }
                 }
                 sum.add(here);
             } else {
-                add(&w.point[POINTS - 1], &candidate[i]);
-                add(&w.tangent[POINTS - 1], &candidate_tangent[i]);
+                accumulate(context, &mut sum, &w.point[POINTS - 1], &candidate[i]);
+                accumulate(
+                    context,
+                    &mut sum,
+                    &w.tangent[POINTS - 1],
+                    &candidate_tangent[i],
+                );
                 for age in (0..POINTS - 1).rev() {
                     let slot = slots[age];
-                    add(&w.tangent[age], &batch.tangent[slot][i]);
-                    add(&w.point[age], &batch.x[slot][i]);
+                    accumulate(context, &mut sum, &w.tangent[age], &batch.tangent[slot][i]);
+                    accumulate(context, &mut sum, &w.point[age], &batch.x[slot][i]);
                 }
             }
             candidate[i].set(&sum);

@@ -126,17 +126,6 @@ impl<R: Real> Lockstep<'_, R> {
                     .follow(lane, Complex64::new(radius, 0.0), 0.1 * from);
                 self.lanes[lane].phase = Phase::Inward;
             }
-            // In doubles a multiple point and points that are only close are the same (a
-            // perturbation by the unit roundoff takes a double point apart by its square root):
-            // the next rung tells.
-            cauchy::Next::Settled(settled)
-                if settled.winding_number > 1 && self.room.bits == DOUBLE && self.room.up =>
-            {
-                let path = &mut self.lanes[lane];
-                let begin = path.last_turn.take().or(path.first_turn.take());
-                let (radius, point) = begin.expect("turns begin somewhere");
-                self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
-            }
             cauchy::Next::Settled(settled) => {
                 self.point.clear();
                 self.point.extend_from_slice(&settled.endpoint);
@@ -153,6 +142,17 @@ impl<R: Real> Lockstep<'_, R> {
                     && report.converged
                     && report.condition <= 100.0 * near
                     && moved <= 1e3 * settled.accuracy.max(1e-12);
+                // In doubles a multiple point and points that are only close are the same (a
+                // perturbation by the unit roundoff takes a double point apart by its square root). Deflated
+                // equations tell; where they did not the path is tracked again, and the next rung tells.
+                let again = self.stage.attempt() > 0;
+                if !regular && again && self.room.bits == DOUBLE && self.room.up {
+                    let path = &mut self.lanes[lane];
+                    let begin = path.last_turn.take().or(path.first_turn.take());
+                    let (radius, point) = begin.expect("turns begin somewhere");
+                    self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
+                    return;
+                }
                 let outcome = if regular {
                     PathOutcome::Regular
                 } else {

@@ -5,6 +5,7 @@
 
 pub mod condition;
 pub mod inverse;
+pub mod least_squares;
 pub mod lu;
 pub mod matrix;
 pub mod sparse;

@@ -278,7 +278,7 @@ impl Interpreter {
 }
 
 /// Work space of an [`Interpreter`]: inputs, constants, temporaries.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Scratch<R: Real> {
     memory: Vec<Complex<R>>,
     singles: Vec<Complex<R::Single>>,

@@ -4,7 +4,6 @@
 //! infinity that nobody asked for, and one from degrees that are too small
 //! would miss solutions; so [`degrees`] are exact even where terms cancel.
 
-pub mod accuracy;
 mod expansion;
 mod modular;
 
