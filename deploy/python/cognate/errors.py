@@ -45,7 +45,7 @@ class InputError(CognateError, ValueError):
         place = [file] if file is not None else []
         if field is not None:
             place.append(field)
-        elif line is not None:
+        if line is not None and field is None:
             place.append(f"line {line}")
         if column is not None:
             place.append(f"column {column}")
@@ -92,12 +92,16 @@ class RoundedWarning(CognateWarning):
     """An exact number had to be rounded to a double."""
 
 
+TEXT = "text"
+"""What a file is called that holds a text of the user's, whose lines they know."""
+
 _PACKAGE = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
 
 def warn(message: str, category: type[CognateWarning]) -> None:
     """A warning at the line of the user that called this package."""
-    level = 1
+    # Level 1 is this function itself.
+    level = 2
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
         frame = frame.f_back
@@ -121,7 +125,7 @@ _OPTION = re.compile(r"'--(?P<option>[a-z-]+)[ =]?[^']*'")
 def input_error(message: str, *, own: dict[str, str | None] | None = None) -> InputError:
     """An error of input from the program's words.
 
-    `own`: files that were written for the user's objects, with the name that the user knows them by, or None.
+    `own`: files that were written for the user's objects, with the option that they are of, `TEXT`, or None.
     """
     own = own or {}
     placed = _PLACED.match(message)
@@ -137,14 +141,12 @@ def input_error(message: str, *, own: dict[str, str | None] | None = None) -> In
     line: int | None = int(placed["line"])
     column = int(placed["within"] or placed["column"])
     if file in own:
-        # Lines of a file that the user has never seen say nothing.
-        file, line = own[file], None
-        if placed["field"] is None:
-            column_known = None
-        else:
-            column_known = column if placed["within"] else None
         reason = placed["reason"].splitlines()[0]
-        return InputError(reason, file=file, line=line, column=column_known, field=placed["field"])
+        if own[file] == TEXT:
+            return InputError(reason, line=line, column=column, field=placed["field"])
+        # Lines of a file that the user has never seen say nothing.
+        field = (own[file] or "") + (placed["field"] or "")
+        return InputError(reason, column=column if placed["within"] else None, field=field or None)
     return InputError(placed["reason"], file=file, line=line, column=column, field=placed["field"])
 
 

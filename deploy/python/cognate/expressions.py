@@ -38,6 +38,19 @@ def is_sympy(value: object) -> bool:
     return isinstance(value, (sympy.Basic, sympy.MatrixBase))
 
 
+def listed(value: object, field: str) -> list[Any]:
+    """A list of what may be one thing, a sequence or a matrix of sympy."""
+    if is_sympy(value):
+        import sympy
+
+        return list(value) if isinstance(value, (sympy.MatrixBase, sympy.Tuple)) else [value]
+    if isinstance(value, str):
+        return [value]
+    if not isinstance(value, Iterable):
+        raise InputError(f"expected one or several, found {value!r}", field=field)
+    return list(value)
+
+
 def equation(value: object, field: str) -> str:
     """An equation as the expression that is to vanish.
 
@@ -75,11 +88,7 @@ def name_list(values: object, field: str) -> tuple[str, ...]:
     """Names from "x, y z" or from a sequence of words or symbols; no name twice."""
     if isinstance(values, str):
         values = values.replace(",", " ").split()
-    elif is_sympy(values) and not isinstance(values, Iterable):
-        values = [values]
-    if not isinstance(values, Iterable):
-        raise InputError(f"expected names, found {values!r}", field=field)
-    found = tuple(name(value, f"{field}[{i}]") for i, value in enumerate(values))
+    found = tuple(name(value, f"{field}[{i}]") for i, value in enumerate(listed(values, field)))
     for i, one in enumerate(found):
         if one in found[:i]:
             raise InputError(f"the name {one} stands there twice", field=f"{field}[{i}]")

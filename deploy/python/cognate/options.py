@@ -156,7 +156,8 @@ def arguments(
     for name in ("seed", "preset", "precision", "idle_loops", "confidence", "expect", "digits"):
         value = options.get(name)
         if value is not None:
-            found.extend([f"--{name.replace('_', '-')}", str(value)])
+            # In one word, so that a negative number is no option.
+            found.append(f"--{name.replace('_', '-')}={value}")
     for name in ("certify", "deflate", "exact", "trace_test"):
         if options.get(name):
             found.append(f"--{name.replace('_', '-')}")

@@ -323,11 +323,18 @@ class _Embedded:
 
     def _wait(self) -> None:
         until = time.monotonic() + START_SECONDS
-        while not self.socket.exists():
+        while True:
             self.check()
+            # The socket is there before the ledger is open: only an answer shows that it has come up.
+            if self.socket.exists():
+                try:
+                    program.run(["workers", "--format", "json", "--coordinator", self.url])
+                    return
+                except Unreachable:
+                    pass
             if time.monotonic() > until:
-                raise ServiceError(f"the coordinator does not listen after {START_SECONDS:.0f} s{self._log()}")
-            time.sleep(0.01)
+                raise ServiceError(f"the coordinator does not answer after {START_SECONDS:.0f} s{self._log()}")
+            time.sleep(0.02)
 
     def check(self) -> None:
         """Raises where the keeper has ended."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from . import expressions, program
-from .errors import InputError
+from .errors import TEXT, InputError
 
 FIELDS = (
     "variables",
@@ -73,13 +73,8 @@ class System:
         symmetry: Iterable[Any] = (),
         path_variable: object = None,
     ) -> None:
-        if isinstance(equations, str) or (
-            expressions.is_sympy(equations) and not isinstance(equations, Iterable)
-        ):
-            equations = [equations]
-        if not isinstance(equations, Iterable):
-            raise InputError(f"expected equations, found {equations!r}", field="equations")
-        texts = tuple(expressions.equation(e, f"equations[{i}]") for i, e in enumerate(equations))
+        given = expressions.listed(equations, "equations")
+        texts = tuple(expressions.equation(e, f"equations[{i}]") for i, e in enumerate(given))
         if not texts:
             raise InputError("expected at least one equation", field="equations")
         named = {
@@ -144,7 +139,7 @@ class System:
         with program.Folder() as folder:
             path = folder.write("problem", text)
             command = ["convert", "--to", "json", "--", str(path)]
-            found = program.run(command, own={str(path): "text"})
+            found = program.run(command, own={str(path): TEXT})
         return cls.from_json(program.issue_warnings(found).output)
 
     def to_json(self) -> str:
@@ -300,7 +295,7 @@ def problem_file(problem: object, folder: program.Folder) -> ProblemFile:
             return ProblemFile(Path(problem), {})
         if kind == "text":
             path = folder.write("problem", problem)
-            return ProblemFile(path, {str(path): "text"})
+            return ProblemFile(path, {str(path): TEXT})
     if isinstance(problem, Mapping):
         problem = System.from_json(problem)
     if not isinstance(problem, System):
