@@ -6,7 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .result import Result
+    from .result import Result, _Answer
     from .solution import Solution
 
 SOLUTIONS_SHOWN = 10
@@ -16,7 +16,7 @@ VARIABLES_SHOWN = 6
 """Columns of coordinates in a table."""
 
 
-def verdict(result: Result) -> str:
+def verdict(result: _Answer) -> str:
     """The answer in a line."""
     counts = result.counts
     line = f"{counts.distinct} solution{'s' if counts.distinct != 1 else ''}"

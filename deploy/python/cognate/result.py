@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .display import html_table, text_table
+from .display import html_table, text_table, verdict
 from .errors import CognateError, CognateWarning, NotKnown, UnsettledWarning, warn
 from .solution import Solution, check_names
 
@@ -109,6 +109,12 @@ class _Answer:
     counts: SolutionCounts
     paths: PathCounts
 
+    if TYPE_CHECKING:
+
+        @property
+        def settled(self) -> bool:
+            """Whether every path is accounted for and every count is settled."""
+
     @property
     def variables(self) -> tuple[str, ...]:
         """Names of the variables, in the order of arrays' columns; empty where there is no solution."""
@@ -142,6 +148,9 @@ class _Answer:
     def complete(self) -> bool | None:
         """Whether these are all isolated solutions; None where that is not known (see `counts.complete_reason`)."""
         return {"yes": True, "no": False}.get(self.counts.complete)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {verdict(self)}{'' if self.settled else ', not settled'}>"
 
     def array(self) -> NDArray[numpy.complex128]:
         """The solutions as an array of shape (solutions, variables), in doubles."""
@@ -184,15 +193,15 @@ def _is_complex(solution: Solution, name: str) -> bool:
     return abs(z.imag) > 1e3 * accuracy * size
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TargetResult(_Answer):
     """The answer at one of several targets."""
 
     index: int
     paths: PathCounts
     counts: SolutionCounts
-    solutions: tuple[Solution, ...] = field(repr=False)
-    undecided: tuple[Solution, ...] = field(repr=False)
+    solutions: tuple[Solution, ...]
+    undecided: tuple[Solution, ...]
 
     @property
     def open_questions(self) -> list[str]:
@@ -205,7 +214,7 @@ class TargetResult(_Answer):
         return not self.open_questions
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Result(_Answer):
     """The answer of a solve.
 
@@ -224,14 +233,14 @@ class Result(_Answer):
     settled: bool
     paths: PathCounts
     counts: SolutionCounts
-    solutions: tuple[Solution, ...] = field(repr=False)
-    undecided: tuple[Solution, ...] = field(repr=False)
-    targets: tuple[TargetResult, ...] = field(repr=False)
+    solutions: tuple[Solution, ...]
+    undecided: tuple[Solution, ...]
+    targets: tuple[TargetResult, ...]
     parameters: Mapping[str, complex]
     failures: Mapping[str, int]
     warnings: tuple[str, ...]
     seconds: float
-    summary: Mapping[str, Any] = field(repr=False)
+    summary: Mapping[str, Any]
     output: Path | None
 
     @property
