@@ -45,6 +45,8 @@ class BuildWithProgram(build_py):
     """Copies the package, and the program beside it."""
 
     def run(self) -> None:
+        # A module of an earlier build that is no more must not come along.
+        shutil.rmtree(Path(self.build_lib) / "cognate", ignore_errors=True)
         super().run()
         # An editable install uses COGNATE_PROGRAM, or the program on the PATH.
         if self.editable_mode:

@@ -9,8 +9,9 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-import cognate as cg
 import pytest
+
+import cognate as cg
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 EXAMPLES = REPOSITORY / "deploy" / "examples"
@@ -50,7 +51,11 @@ def processes_with(word: str) -> list[str]:
     """Processes that have a word among their arguments, the test's own apart."""
     listed = subprocess.run(["ps", "-eo", "pid,stat,args"], capture_output=True, text=True, check=True)
     lines = (line for line in listed.stdout.splitlines() if word in line)
-    return [line for line in lines if " Z" not in line and not line.split(None, 2)[2].startswith(sys.executable + " -m pytest")]
+    return [
+        line
+        for line in lines
+        if " Z" not in line and not line.split(None, 2)[2].startswith(sys.executable + " -m pytest")
+    ]
 
 
 def until(condition, seconds: float = 20.0) -> bool:  # type: ignore[no-untyped-def]

@@ -5,9 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 from pathlib import Path
 
-import cognate as cg
 import numpy
 import pytest
+
+import cognate as cg
 
 FAMILY = cg.System(["x^2 + y^2 - p", "x*y - q"], parameters="p q")
 
@@ -26,14 +27,14 @@ def circle(p: float, q: float) -> set[complex]:
 def is_at(found: cg.TargetResult | cg.Result, p: float, q: float) -> bool:
     expected = sorted(circle(p, q), key=lambda z: (round(z.real, 9), round(z.imag, 9)))
     x = sorted((s["x"] for s in found.solutions), key=lambda z: (round(z.real, 9), round(z.imag, 9)))
-    return len(x) == 4 and max(abs(a - b) for a, b in zip(expected, x)) < 1e-9
+    return len(x) == 4 and max(abs(a - b) for a, b in zip(expected, x, strict=True)) < 1e-9
 
 
 def test_an_array_of_targets(base: cg.Result) -> None:
     targets = numpy.array([[4, 1], [5, 0.5], [1, 2], [3, -1]])
     found = cg.solve(FAMILY, start=base, targets=targets)
     assert len(found.targets) == 4 and found.paths.total == 16
-    for target, (p, q) in zip(found.targets, targets):
+    for target, (p, q) in zip(found.targets, targets, strict=True):
         assert is_at(target, p, q), (p, q)
         assert target.settled and target.paths.adds_up
     assert [len(t.real) for t in found.targets] == [4, 4, 0, 4]
@@ -61,11 +62,12 @@ def test_targets_said_in_other_ways(base: cg.Result, tmp_path: Path) -> None:
     file = tmp_path / "final_parameters"
     file.write_text(cg.formats.bertini.write_parameters([4, 1]))
     starts = tmp_path / "start"
-    starts.write_text(cg.formats.bertini.write_points(cg.formats.bertini.read_points(
-        cg.formats.bertini.write_points([s.coordinates for s in base.solutions]))))
-    found = cg.solve(
-        FAMILY, start_solutions=starts, start_parameters=base.parameters, targets=file, certify=True
+    starts.write_text(
+        cg.formats.bertini.write_points(
+            cg.formats.bertini.read_points(cg.formats.bertini.write_points([s.coordinates for s in base.solutions]))
+        )
     )
+    found = cg.solve(FAMILY, start_solutions=starts, start_parameters=base.parameters, targets=file, certify=True)
     assert is_at(found, 4, 1) and len(found.certified) == 4
 
 
@@ -81,8 +83,14 @@ def test_exact_parameters(base: cg.Result) -> None:
 
 @pytest.mark.parametrize(
     ("targets", "field"),
-    [([1, 2, 3], "targets"), ([[4, 1], [4]], "targets[1]"), ({"p": [1, 2], "q": [1, 2, 3]}, "targets"),
-     ({"p": "four", "q": 1}, "targets.p"), ([], "targets"), ({"p": float("inf"), "q": 1}, "targets.p")],
+    [
+        ([1, 2, 3], "targets"),
+        ([[4, 1], [4]], "targets[1]"),
+        ({"p": [1, 2], "q": [1, 2, 3]}, "targets"),
+        ({"p": "four", "q": 1}, "targets.p"),
+        ([], "targets"),
+        ({"p": float("inf"), "q": 1}, "targets.p"),
+    ],
 )
 def test_wrong_targets(base: cg.Result, targets: object, field: str) -> None:
     with pytest.raises(cg.InputError) as raised:

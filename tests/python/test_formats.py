@@ -6,10 +6,12 @@ import random
 from fractions import Fraction
 from pathlib import Path
 
-import cognate as cg
+import numpy
 import pytest
-from cognate.formats import bertini, homotopy_continuation, phcpack, phcpy
 from conftest import EXAMPLES
+
+import cognate as cg
+from cognate.formats import bertini, homotopy_continuation, phcpack, phcpy
 
 SYSTEMS = sorted(EXAMPLES.glob("*.bertini"))
 
@@ -57,11 +59,14 @@ def test_a_system_is_the_same_in_every_notation(notation: str, tmp_path: Path) -
     # Sums may be ordered otherwise, so points are compared and not digests.
     first, second = (sorted_points(cg.solve(s, digits=20)) for s in (system, again))
     assert len(first) == 18 == len(second)
-    assert all(abs(a - b) < 1e-13 * (1 + abs(a)) for p, q in zip(first, second) for a, b in zip(p, q))
+    assert numpy.allclose(first, second, rtol=1e-12, atol=1e-13)
 
 
 def sorted_points(found: cg.Result) -> list[tuple[complex, ...]]:
-    return sorted((s.coordinates for s in found.solutions), key=lambda p: [(round(z.real, 8), round(z.imag, 8)) for z in p])
+    return sorted(
+        (s.coordinates for s in found.solutions),
+        key=lambda p: [(round(z.real, 8), round(z.imag, 8)) for z in p],
+    )
 
 
 def test_what_a_notation_cannot_say(solved: cg.Result) -> None:
@@ -102,7 +107,14 @@ def test_points_of_bertini_there_and_back(solved: cg.Result, tmp_path: Path) -> 
 
 @pytest.mark.parametrize(
     ("text", "line"),
-    [("x\n", 1), ("2\n\n1 0\n", 1), ("2\n\n1 0\n2 0\n3 0\n", 1), ("1\n\n1 zero\n", 3), ("1\n\n1\n", 3), ("1\n", 1)],
+    [
+        ("x\n", 1),
+        ("2\n\n1 0\n", 1),
+        ("2\n\n1 0\n2 0\n3 0\n", 1),
+        ("1\n\n1 zero\n", 3),
+        ("1\n\n1\n", 3),
+        ("1\n", 1),
+    ],
 )
 def test_wrong_points_of_bertini(text: str, line: int) -> None:
     with pytest.raises(cg.InputError) as raised:
@@ -181,7 +193,7 @@ def test_text_of_julia() -> None:
     at = {"a": Fraction(1, 3), "b": 2}
     first, second = (sorted_points(cg.solve(s.at(at))) for s in (system, again))
     assert len(first) == len(second) == 4
-    assert all(abs(a - b) < 1e-12 for p, q in zip(first, second) for a, b in zip(p, q))
+    assert numpy.allclose(first, second, rtol=1e-12, atol=1e-13)
 
 
 def test_groups_and_defaults_of_julia() -> None:
@@ -211,7 +223,23 @@ def test_what_julia_means(expression: str, meaning: str) -> None:
 
 @pytest.mark.parametrize(
     "expression",
-    ["1/2x", "2^3x", "x^1//2", "1//2//3", "1//x", "x x", "2 3", "x(x)", "(x)(x)", "0x10", "x'", "x .+ 1", "x; y", "(x", ""],
+    [
+        "1/2x",
+        "2^3x",
+        "x^1//2",
+        "1//2//3",
+        "1//x",
+        "x x",
+        "2 3",
+        "x(x)",
+        "(x)(x)",
+        "0x10",
+        "x'",
+        "x .+ 1",
+        "x; y",
+        "(x",
+        "",
+    ],
 )
 def test_what_is_not_read_of_julia_is_refused(expression: str) -> None:
     with pytest.raises(cg.InputError) as raised:

@@ -10,8 +10,9 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from cognate import program
 from conftest import REPOSITORY
+
+from cognate import program
 
 SOURCE = REPOSITORY / "deploy" / "python"
 

@@ -7,8 +7,9 @@ import json
 import warnings
 from typing import Any
 
-import cognate as cg
 import pytest
+
+import cognate as cg
 from cognate import result as result_
 from cognate.solution import Solution
 from cognate.solving import checked
@@ -100,7 +101,11 @@ def test_a_point_at_the_wrong_target_is_refused() -> None:
     base = cg.solve(family, start="monodromy", expect=2)
     found = cg.solve(family, start=base, targets=[[1], [4], [9]])
     listed = list(found.solutions)
-    assert [sorted(round(s["x"].real) for s in t.solutions) for t in found.targets] == [[-1, 1], [-2, 2], [-3, 3]]
+    assert [sorted(round(s["x"].real) for s in t.solutions) for t in found.targets] == [
+        [-1, 1],
+        [-2, 2],
+        [-3, 3],
+    ]
     listed[0], listed[5] = listed[5], listed[0]
     with pytest.raises(cg.CognateError, match="target 0"):
         result_.from_summary(found.summary, listed, output=None)

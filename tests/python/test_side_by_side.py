@@ -7,8 +7,9 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import cognate as cg
 import pytest
+
+import cognate as cg
 from cognate.formats import phcpack, phcpy
 
 # From the tutorials of phcpy (the black box solver, circles of Apollonius, tangent lines, noon-3, cyclic-5),
@@ -72,7 +73,8 @@ def test_the_same_answers(name: str, tmp_path: Path) -> None:
         near = [
             i
             for i, s in enumerate(regular)
-            if max(abs(s[v] - solution[v]) for v in system.variables) < 1e-7 * max(1, *(abs(z) for z in solution.coordinates))
+            if max(abs(s[v] - solution[v]) for v in system.variables)
+            < 1e-7 * max(1, *(abs(z) for z in solution.coordinates))
         ]
         assert len(near) == 1, solution
         matched.add(near[0])

@@ -8,11 +8,12 @@ from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
-import cognate as cg
 import numpy
 import pytest
 import sympy
 from conftest import EXAMPLES, katsura, processes_with, until
+
+import cognate as cg
 
 X, Y = sympy.symbols("x y")
 CIRCLE_JSON = {"variables": ["x", "y"], "equations": ["x^2 + y^2 - 4", "x*y - 1"]}
@@ -65,7 +66,7 @@ def test_exact_numbers_stay_exact() -> None:
     assert abs(Fraction(solution.decimal("z")[0]) - Fraction(1, 10)) < Fraction(1, 10**40)
     certificate = solution.certificate
     assert certificate is not None and certificate.certified and certificate.real
-    for box, exactly in zip(certificate.coordinates, (third, third, Fraction(1, 10))):
+    for box, exactly in zip(certificate.coordinates, (third, third, Fraction(1, 10)), strict=True):
         assert abs(box.re - exactly) <= box.radius and box.error <= box.radius
 
 

@@ -4,25 +4,42 @@ from __future__ import annotations
 
 import doctest
 import importlib
+import os
 import pkgutil
 import subprocess
 import sys
 from pathlib import Path
 
-import cognate
 import pytest
 from conftest import REPOSITORY
 
+import cognate
+
 PACKAGE = Path(cognate.__file__).parent
-MODULES = sorted(
-    m.name for m in pkgutil.walk_packages([str(PACKAGE)], "cognate.") if not m.name.endswith("_keeper")
-)
+MODULES = sorted(m.name for m in pkgutil.walk_packages([str(PACKAGE)], "cognate.") if not m.name.endswith("_keeper"))
 SOURCE = REPOSITORY / "deploy" / "python"
 
 
 def test_types() -> None:
-    command = [sys.executable, "-m", "mypy", "--config-file", str(SOURCE / "pyproject.toml"), str(SOURCE / "cognate")]
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--cache-dir",
+        os.devnull,
+        "--config-file",
+        str(SOURCE / "pyproject.toml"),
+        str(SOURCE / "cognate"),
+    ]
     run = subprocess.run(command, capture_output=True, text=True, cwd=SOURCE)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+@pytest.mark.parametrize("command", [["check"], ["format", "--check"]], ids=["lints", "format"])
+def test_lints_and_format(command: list[str]) -> None:
+    paths = [str(SOURCE), str(REPOSITORY / "tests" / "python")]
+    ruff = [sys.executable, "-m", "ruff", *command, "--no-cache", "--config", str(SOURCE / "pyproject.toml")]
+    run = subprocess.run([*ruff, *paths], capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
 
 
@@ -35,7 +52,9 @@ def test_users_have_types(tmp_path: Path) -> None:
         "z: complex = found.solutions[0]['x']\n"
         "cg.solve(['x - 1'], certfy=True)\n"
     )
-    run = subprocess.run([sys.executable, "-m", "mypy", "--strict", str(user)], capture_output=True, text=True, cwd=tmp_path)
+    run = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", str(user)], capture_output=True, text=True, cwd=tmp_path
+    )
     assert "user.py:5" in run.stdout and "Found 1 error" in run.stdout, run.stdout
 
 
@@ -53,7 +72,9 @@ def test_examples_are_there() -> None:
 
 def test_examples_of_the_readme() -> None:
     failed, attempted = doctest.testfile(
-        str(SOURCE / "README.md"), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+        str(SOURCE / "README.md"),
+        module_relative=False,
+        optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS,
     )
     assert failed == 0 and attempted >= 15
 

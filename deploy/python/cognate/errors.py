@@ -134,9 +134,7 @@ def input_error(message: str, *, own: dict[str, str | None] | None = None) -> In
         if unreadable is not None:
             return InputError(message[unreadable.end() :], file=unreadable["file"])
         option = _OPTION.search(message.splitlines()[0]) if message else None
-        return InputError(
-            _without(message, own), field=option["option"].replace("-", "_") if option else None
-        )
+        return InputError(_without(message, own), field=option["option"].replace("-", "_") if option else None)
     file: str | None = placed["file"]
     line: int | None = int(placed["line"])
     column = int(placed["within"] or placed["column"])

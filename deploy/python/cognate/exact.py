@@ -6,11 +6,10 @@ import math
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Complex, Integral, Rational, Real
-from typing import Union
 
 from .errors import InputError, RoundedWarning, warn
 
-Number = Union[int, float, complex, Fraction, Decimal]
+Number = int | float | complex | Fraction | Decimal
 """Numbers that are taken, and numpy's kinds of them. A float is the decimal that Python shows for it."""
 
 

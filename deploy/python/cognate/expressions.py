@@ -147,7 +147,7 @@ def _printer(field: str) -> Any:
                 raise InputError(f"expected an integer exponent, found {exponent}", field=field)
             return str(super()._print_Pow(power, rational=rational))
 
-        def emptyPrinter(self, expr: Any) -> str:  # noqa: N802: sympy's name
+        def emptyPrinter(self, expr: Any) -> str:
             raise InputError(f"expected polynomials, found {type(expr).__name__}", field=field)
 
     return Printer()

@@ -177,9 +177,7 @@ def _pair(value: object, field: str) -> list[float]:
 def _values(values: object, names: _Names, field: str) -> dict[str, list[float]]:
     """One set of parameters, by name."""
     if isinstance(values, Mapping):
-        return {
-            expressions.name(key, field): _pair(value, f"{field}.{key}") for key, value in values.items()
-        }
+        return {expressions.name(key, field): _pair(value, f"{field}.{key}") for key, value in values.items()}
     return _in_order(values, names.parameters, field)
 
 
@@ -187,7 +185,7 @@ def _in_order(values: object, names: tuple[str, ...], field: str) -> dict[str, l
     listed = list(values) if isinstance(values, Iterable) and not isinstance(values, str) else [values]
     if len(listed) != len(names):
         raise InputError(f"expected {len(names)} values ({', '.join(names)}), found {len(listed)}", field=field)
-    return {name: _pair(value, f"{field}.{name}") for name, value in zip(names, listed)}
+    return {name: _pair(value, f"{field}.{name}") for name, value in zip(names, listed, strict=True)}
 
 
 def _is_list(value: object) -> TypeGuard[Iterable[Any]]:
@@ -232,11 +230,9 @@ def _points(solutions: object, names: _Names) -> str:
         if isinstance(point, Solution):
             if point.singular or point.undecided:
                 raise InputError("a singular solution is no start of a path", field=field)
-            values = {name: [z.real, z.imag] for name, z in zip(point.names, point.coordinates)}
+            values = {name: [z.real, z.imag] for name, z in zip(point.names, point.coordinates, strict=True)}
         elif isinstance(point, Mapping):
-            values = {
-                expressions.name(key, field): _pair(value, f"{field}.{key}") for key, value in point.items()
-            }
+            values = {expressions.name(key, field): _pair(value, f"{field}.{key}") for key, value in point.items()}
         else:
             values = _in_order(point, names.variables, field)
         lines.append(json.dumps({"variables": values}))

@@ -18,7 +18,6 @@ from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
-from typing import Union
 
 from .errors import CognateWarning, ProgramNotFound, error_of, warn
 
@@ -28,7 +27,7 @@ SOLVED, UNSETTLED = 0, 1
 INTERRUPTED = 130
 """The exit code after Ctrl-C."""
 
-Own = dict[str, Union[str, None]]
+Own = dict[str, str | None]
 """Files that were written for the user's objects (see `errors.input_error`)."""
 
 STOP_SECONDS = 10.0
@@ -253,9 +252,7 @@ class AsyncRun:
             if now is not None:
                 yield now
 
-    async def finished(
-        self, answers: Sequence[int] = (SOLVED, UNSETTLED), own: Own | None = None
-    ) -> Finished:
+    async def finished(self, answers: Sequence[int] = (SOLVED, UNSETTLED), own: Own | None = None) -> Finished:
         """As of `Run`."""
         async for _ in self:
             pass
@@ -273,9 +270,7 @@ def run(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | 
         return running.finished(own=own)
 
 
-async def run_async(
-    arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | None = None
-) -> Finished:
+async def run_async(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | None = None) -> Finished:
     """As `run`, for `await`; where the task is cancelled, so is the run."""
     async with AsyncRun(arguments) as running:
         async for now in running:
@@ -284,9 +279,7 @@ async def run_async(
         return await running.finished(own=own)
 
 
-def _finished(
-    exit_code: int, output: str, listener: Listener, answers: Sequence[int], own: Own | None
-) -> Finished:
+def _finished(exit_code: int, output: str, listener: Listener, answers: Sequence[int], own: Own | None) -> Finished:
     if exit_code == INTERRUPTED:
         raise KeyboardInterrupt
     # An exit code of an answer without one is the error that it stands for elsewhere.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import sys
 from types import TracebackType
-from typing import Any, Protocol, Union
+from typing import Any, Protocol
 
 from .program import Progress, Watcher
 
@@ -70,7 +70,7 @@ def in_notebook() -> bool:
     return shell is not None and type(shell).__name__ == "ZMQInteractiveShell"
 
 
-Wanted = Union[bool, Watcher, None]
+Wanted = bool | Watcher | None
 """None: a bar on a terminal and in notebooks. True, False: always, never. A function is told instead."""
 
 

@@ -176,9 +176,7 @@ class _Answer:
         """The solutions as a table of pandas: a column for each variable, then what is known of each."""
         import pandas
 
-        columns: dict[str, list[Any]] = {
-            name: [s[name] for s in self.solutions] for name in self.variables
-        }
+        columns: dict[str, list[Any]] = {name: [s[name] for s in self.solutions] for name in self.variables}
         for name in ("real", "singular", "multiplicity", "residual", "condition", "accuracy", "precision_bits"):
             # A variable may be called so, too.
             columns[name if name not in columns else f"{name}_"] = [getattr(s, name) for s in self.solutions]
@@ -274,17 +272,13 @@ def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
 
     unless_zero(paths.failed, "paths failed")
     unless_zero(paths.crossings_found - paths.crossings_resolved, "path crossings are not resolved")
-    unless_zero(
-        paths.decided_by_precision_limit, "paths are finite or at infinity only by the limit of the precision"
-    )
+    unless_zero(paths.decided_by_precision_limit, "paths are finite or at infinity only by the limit of the precision")
     unless_zero(
         max(paths.undecided, counts.undecided),
         "ends at singular points of which it is not known whether they are isolated",
     )
     unless_zero(paths.within_data_accuracy, "ends have another verdict within the accuracy of the decimals")
-    unless_zero(
-        counts.doubtful_multiplicity, "singular points have another multiplicity than paths that end there"
-    )
+    unless_zero(counts.doubtful_multiplicity, "singular points have another multiplicity than paths that end there")
     if not paths.adds_up:
         listed = sum(count or 0 for count in paths.classes.values())
         found.append(f"the classes of paths add up to {listed} of {paths.total}")

@@ -89,16 +89,12 @@ class System:
         put(
             self,
             "variables",
-            _occurring(texts, named, known)
-            if variables is None
-            else expressions.name_list(variables, "variables"),
+            _occurring(texts, named, known) if variables is None else expressions.name_list(variables, "variables"),
         )
         put(
             self,
             "groups",
-            None
-            if groups is None
-            else tuple(expressions.name_list(g, f"groups[{i}]") for i, g in enumerate(groups)),
+            None if groups is None else tuple(expressions.name_list(g, f"groups[{i}]") for i, g in enumerate(groups)),
         )
         put(self, "homogeneous", homogeneous if isinstance(homogeneous, bool) else tuple(homogeneous))
         put(self, "conjugates", tuple(_pair(p, i) for i, p in enumerate(conjugates)))
@@ -312,10 +308,8 @@ def _kind(text: str) -> str:
         return "file"
     # `three_rpr.bertini` is the name of a file that is not there, and no equation.
     stem, dot, suffix = text.rpartition(".")
-    if os.sep in stem and not any(mark in text for mark in "*+^= ") or (
+    if (os.sep in stem and not any(mark in text for mark in "*+^= ")) or (
         dot and suffix.isalpha() and stem and not any(mark in text for mark in "*+^=( ")
     ):
         return "file"
     return "equation"
-
-

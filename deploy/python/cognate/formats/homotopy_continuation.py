@@ -13,6 +13,7 @@ Names like `x₁`, which `@var x[1:3]` makes, are read and written as `x1`. A li
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -55,8 +56,11 @@ def _tokens(text: str) -> list[_Token]:
     while at < len(text):
         match = _TOKEN.match(text, at)
         if match is None:
-            raise InputError(f"expected Julia's numbers, names and operators, found {text[at]!r}",
-                             line=line, column=at - begin + 1)
+            raise InputError(
+                f"expected Julia's numbers, names and operators, found {text[at]!r}",
+                line=line,
+                column=at - begin + 1,
+            )
         kind = match.lastgroup or ""
         if kind != "space":
             found.append(_Token(kind, match[0], line, at - begin + 1, touches))
@@ -217,9 +221,7 @@ class _Reader:
         else:
             # Without a list HomotopyContinuation.jl takes all that occur, sorted by name.
             variables = sorted(self.occurring(equations) - set(parameters))
-        return System(
-            equations, variables, parameters=parameters, groups=groups, definitions=self.needed(equations)
-        )
+        return System(equations, variables, parameters=parameters, groups=groups, definitions=self.needed(equations))
 
     def occurring(self, equations: list[str]) -> set[str]:
         from .. import expressions
@@ -436,9 +438,7 @@ def _ordered(system: System) -> Iterator[tuple[str, str]]:
     waiting = dict(system.definitions)
     while waiting:
         ready = [
-            name
-            for name, text in waiting.items()
-            if not any(other in waiting for other in expressions.names(text))
+            name for name, text in waiting.items() if not any(other in waiting for other in expressions.names(text))
         ]
         if not ready:
             raise InputError("these definitions use one another in a circle", field="definitions")
@@ -446,7 +446,9 @@ def _ordered(system: System) -> Iterator[tuple[str, str]]:
             yield name, waiting.pop(name)
 
 
-_PIECE = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<symbol>\*\*|.))\s*")
+_PIECE = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<symbol>\*\*|.))\s*"
+)
 
 
 def _julia(text: str, field: str) -> str:
@@ -478,7 +480,7 @@ def _julia(text: str, field: str) -> str:
 
 def _behind_numbers(pieces: list[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     """What stands between a number or a bracket and what follows it, and every quotient."""
-    for before, piece in zip(pieces, pieces[1:]):
+    for before, piece in itertools.pairwise(pieces):
         if piece[1] == "/" or before[0] == "number" or before[1] == ")":
             yield piece
 

@@ -88,7 +88,7 @@ def write_solution(solution: PhcSolution) -> str:
         f"t :  {_double(solution.t)}",
         f"m : {solution.multiplicity}",
         "the solution for t :",
-        *(f" {name} :  {_double(z)}" for name, z in zip(solution.names, solution.coordinates)),
+        *(f" {name} :  {_double(z)}" for name, z in zip(solution.names, solution.coordinates, strict=True)),
         f"== err :  {solution.err:.3E} = rco :  {solution.rco:.3E} = res :  {solution.res:.3E} =",
     ]
     return "\n".join(lines)

@@ -46,10 +46,8 @@ def dictionary(solution: Solution | PhcSolution | str) -> dict[str, Any]:
     for name in solution.names:
         if name in OTHER_KEYS:
             raise InputError(f"the variable {name} has the name of another entry of the dictionary", field=name)
-    found: dict[str, Any] = dict(zip(solution.names, solution.coordinates))
-    found.update(
-        t=solution.t, m=solution.multiplicity, err=solution.err, rco=solution.rco, res=solution.res
-    )
+    found: dict[str, Any] = dict(zip(solution.names, solution.coordinates, strict=True))
+    found.update(t=solution.t, m=solution.multiplicity, err=solution.err, rco=solution.rco, res=solution.res)
     return found
 
 
