@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy
 import pytest
-from conftest import EXAMPLES
 
 import cognate as cg
 from cognate.formats import bertini, homotopy_continuation, phcpack, phcpy
+from conftest import EXAMPLES
 
 SYSTEMS = sorted(EXAMPLES.glob("*.bertini"))
 

@@ -10,9 +10,9 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from conftest import REPOSITORY
 
 from cognate import program
+from conftest import REPOSITORY
 
 SOURCE = REPOSITORY / "deploy" / "python"
 

@@ -16,10 +16,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from conftest import EXAMPLES, katsura, processes_with, until
 
 import cognate as cg
 from cognate import program
+from conftest import EXAMPLES, katsura, processes_with, until
 
 # Some seconds on two cores: enough to do something meanwhile.
 LONG = katsura(12)

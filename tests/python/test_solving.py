@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy
 import pytest
 import sympy
-from conftest import EXAMPLES, katsura, processes_with, until
 
 import cognate as cg
+from conftest import EXAMPLES, katsura, processes_with, until
 
 X, Y = sympy.symbols("x y")
 CIRCLE_JSON = {"variables": ["x", "y"], "equations": ["x^2 + y^2 - 4", "x*y - 1"]}

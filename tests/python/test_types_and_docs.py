@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import REPOSITORY
 
 import cognate
+from conftest import REPOSITORY
 
 PACKAGE = Path(cognate.__file__).parent
 MODULES = sorted(m.name for m in pkgutil.walk_packages([str(PACKAGE)], "cognate.") if not m.name.endswith("_keeper"))
