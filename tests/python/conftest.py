@@ -49,7 +49,7 @@ def katsura(n: int) -> cg.System:
 
 def processes_with(word: str) -> list[str]:
     """Processes that have a word among their arguments, the test's own apart."""
-    listed = subprocess.run(["ps", "-eo", "pid,stat,args"], capture_output=True, text=True, check=True)
+    listed = subprocess.run(["ps", "-ww", "-eo", "pid,stat,args"], capture_output=True, text=True, check=True)
     lines = (line for line in listed.stdout.splitlines() if word in line)
     return [
         line

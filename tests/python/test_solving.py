@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import os
+import pickle
+import signal
+import subprocess
+import sys
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -80,6 +84,37 @@ def test_sympy_numbers_keep_every_bit() -> None:
     found = cg.solve(roots, certify=True)
     assert len(found.certified) == 2
     assert abs(found.solutions[0]["y"] - (1j * numpy.pi - 3**-0.5)) < 1e-14
+
+
+def test_two_symbols_of_one_name_are_refused() -> None:
+    real = sympy.Symbol("x", real=True)
+    for equations, more in (([X - 1, real - 2], {}), ([X - 1], {"parameters": [real]}), ([X * real - 1], {})):
+        with pytest.raises(cg.InputError, match="differ") as raised:
+            cg.System(equations, **more)
+        assert raised.value.field == "x"
+    system = cg.System((X**n - 1 for n in (2, 3)), (s for s in (Y, X)))
+    assert system.variables == ("y", "x") and len(system.equations) == 2
+
+
+def test_answers_and_errors_can_be_pickled() -> None:
+    found = cg.solve(["x^2 - 2"], certify=True)
+    assert pickle.loads(pickle.dumps(found)) == found
+    unsettled = pickle.loads(pickle.dumps(cg.Unsettled("not settled", found)))
+    assert unsettled.result == found and str(unsettled) == "not settled"
+    error = pickle.loads(pickle.dumps(cg.InputError("wrong", file="f", line=2, field="g")))
+    assert (error.file, error.line, error.field, error.reason) == ("f", 2, "g", "wrong")
+
+
+def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
+    name = f"interrupted-{os.getpid()}.bertini"
+    katsura(14).write(tmp_path / name, "bertini")
+    script = f"import cognate as cg; print('up', flush=True); cg.solve({str(tmp_path / name)!r})"
+    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert child.stdout is not None and child.stdout.readline() == "up\n"
+    assert until(lambda: any("cognate solve" in line for line in processes_with(name)))
+    child.send_signal(signal.SIGINT)
+    _, error = child.communicate(timeout=20)
+    assert "KeyboardInterrupt" in error and not processes_with(name)
 
 
 def test_the_same_seed_gives_the_same_bits() -> None:

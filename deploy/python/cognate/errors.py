@@ -79,6 +79,9 @@ class Unsettled(CognateError):
         super().__init__(message)
         self.result = result
 
+    def __reduce__(self) -> tuple[type[Unsettled], tuple[str, Result]]:
+        return type(self), (str(self), self.result)
+
 
 class CognateWarning(UserWarning):
     """What a person should know about an answer."""

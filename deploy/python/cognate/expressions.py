@@ -105,6 +105,20 @@ def _without_equals_sign(text: str, field: str) -> str:
     return left if right == "0" else f"({left})-({right})"
 
 
+def check_symbols(values: Iterable[object]) -> None:
+    """Refuses two symbols of sympy that have one name and are not equal, of which text would make one."""
+    found: dict[str, Any] = {}
+    for value in values:
+        if not is_sympy(value):
+            continue
+        for symbol in getattr(value, "free_symbols", ()):
+            other = found.setdefault(str(symbol), symbol)
+            if other != symbol:
+                raise InputError(
+                    "two symbols of this name differ, by their assumptions for instance", field=str(symbol)
+                )
+
+
 def from_sympy(value: Any, field: str) -> str:
     """An expression, equation or polynomial of sympy as text; rational numbers stay exact."""
     import sympy

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import sys
 from types import TracebackType
@@ -42,11 +43,7 @@ class _Tqdm:
 
     def __init__(self, notebook: bool) -> None:
         widgets = notebook and importlib.util.find_spec("ipywidgets") is not None
-        bars: Any
-        if widgets:
-            from tqdm import notebook as bars
-        else:
-            from tqdm import std as bars
+        bars: Any = importlib.import_module("tqdm.notebook" if widgets else "tqdm.std")
         self._bar: Any = bars.tqdm(total=0, leave=False, unit="path", file=None if widgets else sys.stderr)
 
     def show(self, now: Progress) -> None:

@@ -75,6 +75,13 @@ class System:
     ) -> None:
         given = expressions.listed(equations, "equations")
         texts = tuple(expressions.equation(e, f"equations[{i}]") for i, e in enumerate(given))
+        # A generator is read once; "x, y" is taken apart later.
+        if variables is not None and not isinstance(variables, str):
+            variables = expressions.listed(variables, "variables")
+        if not isinstance(parameters, str):
+            parameters = expressions.listed(parameters, "parameters")
+        defined = [part for pair in (definitions or {}).items() for part in pair]
+        expressions.check_symbols([*given, *defined, *(variables or ()), *parameters])
         if not texts:
             raise InputError("expected at least one equation", field="equations")
         named = {
