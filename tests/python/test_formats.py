@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 
@@ -167,6 +168,51 @@ def test_phcpy_there_and_back(solved: cg.Result) -> None:
     assert raised.value.field == "[0]"
     with pytest.raises(cg.InputError):
         phcpy.from_string("nothing")
+
+
+@pytest.mark.parametrize("what", ["bertini", "phcpack", "phcpy", "julia", "json"])
+def test_broken_texts_are_refused_or_read(what: str, solved: cg.Result) -> None:
+    """Texts with cuts, copies and other characters: nothing but `InputError` comes out of them."""
+    readers: dict[str, tuple[str, Callable[[str], object]]] = {
+        "bertini": (bertini.write_points([s.coordinates for s in solved.solutions]), bertini.read_points),
+        "phcpack": (phcpack.write_solutions(solved.solutions), phcpack.read_solutions),
+        "phcpy": (phcpy.string(solved.solutions[0]), phcpy.from_string),
+        "julia": (JULIA, homotopy_continuation.read),
+        "json": (cg.System(["x^2 - p", "y - x"], parameters="p").to_json(), cg.System.from_json),
+    }
+    text, read = readers[what]
+    chance = random.Random(5)
+    refused = 0
+    for _ in range(1500):
+        at, size = chance.randrange(len(text)), chance.choice([1, 1, 2, 8, 60])
+        put = chance.choice(["", "x", "9" * 5000, "-", "(", "[", "]", "\n", "é", "₁", "e", ".", "//", "0", text[:size]])
+        try:
+            read(text[:at] + put + text[at + size :])
+        except cg.InputError:
+            refused += 1
+    assert refused > 100
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("groups", 5),
+        ("definitions", []),
+        ("conjugates", [5]),
+        ("conjugates", [["x"]]),
+        ("degenerate", 1),
+        ("symmetry", 1),
+        ("homogeneous", "yes"),
+        ("variables", 5),
+        ("variables", ["x", "x"]),
+        ("equations", [10**5000]),
+        ("parameters", [1]),
+    ],
+)
+def test_wrong_fields_of_json(field: str, value: object) -> None:
+    with pytest.raises(cg.InputError) as raised:
+        cg.System.from_json({"variables": ["x"], "equations": ["x - 1"], field: value})
+    assert raised.value.field is not None and raised.value.field.startswith(field)
 
 
 JULIA = """

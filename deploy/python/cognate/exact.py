@@ -27,9 +27,9 @@ def text(value: object, field: str | None = None) -> str:
             raise InputError(f"expected a finite number, found {value}", field=field)
         return format(value, "f")
     if isinstance(value, Integral):
-        return str(int(value))
+        return _digits(int(value), field)
     if isinstance(value, Rational):
-        return f"{int(value.numerator)}/{int(value.denominator)}"
+        return f"{_digits(int(value.numerator), field)}/{_digits(int(value.denominator), field)}"
     if isinstance(value, Real):
         number = float(value)
         if not math.isfinite(number):
@@ -41,6 +41,13 @@ def text(value: object, field: str | None = None) -> str:
         sign = "-" if math.copysign(1.0, number_.imag) < 0 else "+"
         return f"({re}{sign}{im}*I)"
     raise InputError(f"expected a number, found {value!r}", field=field)
+
+
+def _digits(value: int, field: str | None) -> str:
+    try:
+        return str(value)
+    except ValueError as e:
+        raise InputError(f"expected a number of fewer digits: {e}", field=field) from e
 
 
 def double(value: object, field: str | None = None) -> complex:

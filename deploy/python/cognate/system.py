@@ -27,6 +27,17 @@ FIELDS = (
 """The fields of a problem in our JSON."""
 
 
+_KINDS: dict[str, Any] = {
+    "groups": (list, tuple),
+    "homogeneous": (bool, list, tuple),
+    "definitions": Mapping,
+    "conjugates": (list, tuple),
+    "degenerate": Mapping,
+    "symmetry": (list, tuple),
+}
+"""What the fields of a problem are that are neither names nor expressions."""
+
+
 @dataclass(frozen=True, init=False)
 class System:
     """A system of polynomial equations.
@@ -121,11 +132,17 @@ class System:
                 problem = json.loads(problem)
             except json.JSONDecodeError as e:
                 raise InputError(e.msg, line=e.lineno, column=e.colno) from e
+            except (ValueError, RecursionError) as e:
+                raise InputError(f"expected a JSON object with a problem: {e}") from e
         if not isinstance(problem, Mapping):
             raise InputError(f"expected a JSON object with a problem, found {problem!r}")
         for name in problem:
             if name not in FIELDS:
                 raise InputError(f"expected one of the fields {', '.join(FIELDS)}", field=str(name))
+        for name, kind in _KINDS.items():
+            if name in problem and not isinstance(problem[name], kind):
+                what = "an object" if kind is Mapping else "a list"
+                raise InputError(f"expected {what}, found {problem[name]!r}", field=name)
         if "equations" not in problem:
             raise InputError("expected the field equations")
         return cls(**problem)
@@ -274,7 +291,7 @@ def _occurring(
 
 def _pair(pair: Sequence[object], index: int) -> tuple[str, str]:
     found = f"conjugates[{index}]"
-    if isinstance(pair, str) or len(pair) != 2:
+    if not isinstance(pair, (list, tuple)) or len(pair) != 2:
         raise InputError(f"expected two variables, found {pair!r}", field=found)
     return expressions.name(pair[0], found), expressions.name(pair[1], found)
 

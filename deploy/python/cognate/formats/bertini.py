@@ -6,9 +6,13 @@ HomotopyContinuation.jl's `write_solutions` and `write_parameters` have the same
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 
 from ..errors import InputError
+
+MOST_DIGITS = 12
+"""Digits of a number of points."""
 
 Point = tuple[complex, ...]
 """One point, in the order of the variables."""
@@ -87,7 +91,7 @@ def _numbered(text: str) -> Iterator[tuple[int, str]]:
 
 def _count(lines: Iterator[tuple[int, str]], file: str | None) -> tuple[int, int]:
     number, content = next(lines, (1, ""))
-    if not content.isdecimal():
+    if not content.isdecimal() or len(content) > MOST_DIGITS:
         raise InputError(f"expected the number of points, found {content[:40]!r}", file=file, line=number)
     return int(content), number
 
@@ -96,6 +100,8 @@ def _coordinate(content: str, number: int, file: str | None) -> complex:
     words = content.split()
     try:
         re, im = (float(word) for word in words)
+        if not (math.isfinite(re) and math.isfinite(im)):
+            raise ValueError(content)
     except ValueError as e:
         reason = f"expected a real and an imaginary part, found {content[:40]!r}"
         raise InputError(reason, file=file, line=number) from e

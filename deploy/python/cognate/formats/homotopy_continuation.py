@@ -179,7 +179,7 @@ class _Reader:
             self.take(",")
 
     def integer(self) -> int:
-        if self.token.kind != "number" or not self.token.text.isdecimal():
+        if self.token.kind != "number" or not self.token.text.isdecimal() or len(self.token.text) > 9:
             raise self.wrong("a whole number")
         self.at += 1
         return int(self.tokens[self.at - 1].text)

@@ -46,7 +46,7 @@ class PhcSolution:
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _T = re.compile(rf"t :\s+({_NUMBER})\s+({_NUMBER})")
-_M = re.compile(r"m :\s+(\d+)")
+_M = re.compile(r"m :\s+(\d{1,12})(?!\d)")
 _VALUE = re.compile(rf"(\S+) :\s+({_NUMBER})\s+({_NUMBER})")
 _END = re.compile(rf"== err :\s+({_NUMBER}) = rco :\s+({_NUMBER}) = res :\s+({_NUMBER}) =(.*)")
 
@@ -107,7 +107,7 @@ def write_solutions(solutions: Iterable[PhcSolution | Solution]) -> str:
 def _expected(lines: list[str], begin: int) -> int | None:
     """The number of solutions, which stands below the title."""
     words = next((line.split() for line in lines[begin:] if line.strip()), [])
-    return int(words[0]) if words and words[0].isdecimal() else None
+    return int(words[0]) if words and re.fullmatch(r"\d{1,12}", words[0]) else None
 
 
 def _one(lines: list[str], begin: int, file: str | None) -> tuple[PhcSolution, int]:
