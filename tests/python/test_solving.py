@@ -161,6 +161,16 @@ def test_errors_name_the_place(problem: object, attributes: dict[str, object]) -
     assert "/tmp" not in str(raised.value)
 
 
+def test_warnings_name_what_the_user_knows(service: cg.Service) -> None:
+    text = "1\nx^2 - 1;\nand more\n"
+    with pytest.warns(cg.CognateWarning, match="^text:3: what follows") as issued:
+        found = cg.solve(text)
+    assert issued[0].filename == __file__
+    with pytest.warns(cg.CognateWarning, match="^text:3: what follows"):
+        again = service.submit(text).results()
+    assert found.warnings == again.warnings and len(found.warnings) == 1
+
+
 def test_errors_of_files_and_options(tmp_path: Path) -> None:
     file = tmp_path / "bad.bertini"
     file.write_text("INPUT\nvariable_group x;\nfunction f;\nf = x^2 - z;\nEND;\n")

@@ -137,7 +137,9 @@ def input_error(message: str, *, own: dict[str, str | None] | None = None) -> In
         if unreadable is not None:
             return InputError(message[unreadable.end() :], file=unreadable["file"])
         option = _OPTION.search(message.splitlines()[0]) if message else None
-        return InputError(_without(message, own), field=option["option"].replace("-", "_") if option else None)
+        return InputError(
+            in_the_users_words(message, own), field=option["option"].replace("-", "_") if option else None
+        )
     file: str | None = placed["file"]
     line: int | None = int(placed["line"])
     column = int(placed["within"] or placed["column"])
@@ -151,7 +153,8 @@ def input_error(message: str, *, own: dict[str, str | None] | None = None) -> In
     return InputError(placed["reason"], file=file, line=line, column=column, field=placed["field"])
 
 
-def _without(message: str, own: dict[str, str | None]) -> str:
+def in_the_users_words(message: str, own: dict[str, str | None]) -> str:
+    """A message that names files of ours by what the user knows."""
     for file, name in own.items():
         message = message.replace(file, name or "input")
     return message

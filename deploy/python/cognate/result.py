@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .display import html_table, text_table, verdict
-from .errors import CognateError, CognateWarning, NotKnown, UnsettledWarning, warn
+from .errors import CognateError, CognateWarning, NotKnown, UnsettledWarning, in_the_users_words, warn
 from .solution import Solution, check_names
 
 if TYPE_CHECKING:
@@ -287,9 +287,13 @@ def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
     return found
 
 
-def read(folder: Path, *, output: Path | None) -> Result:
-    """The answer in a folder that the program has written: `summary.json` and `solutions.jsonl`."""
+def read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Result:
+    """The answer in a folder that the program has written: `summary.json` and `solutions.jsonl`.
+
+    `own`: files that were written for the user's objects, which warnings may name.
+    """
     summary: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary["warnings"] = [in_the_users_words(w, own) for w in summary.get("warnings") or []]
     with (folder / "solutions.jsonl").open(encoding="utf-8") as lines:
         listed = [Solution.from_json(json.loads(line)) for line in lines]
     return from_summary(summary, listed, output=output)

@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from . import program, result
-from .errors import CognateWarning, ServiceError, Unreachable, warn
+from .errors import CognateWarning, ServiceError, Unreachable, in_the_users_words, warn
 from .options import Options
 from .program import Finished, Own, Progress
 from .progress import Bar, Wanted
@@ -125,8 +125,8 @@ class Service:
             finished = self._call([*request, *self._where, *arguments], own=own)
         answer = json.loads(finished.output)
         for warning in answer.get("warnings", []):
-            warn(warning, CognateWarning)
-        return Job(self, str(answer["job"]))
+            warn(in_the_users_words(warning, own), CognateWarning)
+        return Job(self, str(answer["job"]), own)
 
     async def submit_async(self, problem: object, **options: Unpack[Options]) -> Job:
         """As `submit`, for `await`."""
@@ -171,9 +171,10 @@ class Service:
 class Job:
     """A job of a service; `id` names it, also after a restart and from elsewhere."""
 
-    def __init__(self, service: Service, job: str) -> None:
+    def __init__(self, service: Service, job: str, own: Own | None = None) -> None:
         self.service = service
         self.id = job
+        self._own = own or {}
 
     def __repr__(self) -> str:
         return f"Job({self.id!r}, {self.service.url!r})"
@@ -279,7 +280,7 @@ class Job:
         with program.Folder() as folder:
             to = kept or folder.path / "answer"
             self.service._call(["results", "--format", "json", "--output", str(to), *self._where])
-            return result.read(to, output=kept)
+            return result.read(to, output=kept, own=self._own)
 
     @property
     def _watching(self) -> list[str]:

@@ -49,7 +49,7 @@ def solve(
     with program.Folder() as folder, Bar(progress) as bar:
         arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
         finished = program.run(arguments, own=own, watcher=bar.watcher)
-        found = result.read(kept or folder.path / "answer", output=kept)
+        found = result.read(kept or folder.path / "answer", output=kept, own=own)
     return _checked(found, finished, strict)
 
 
@@ -72,7 +72,7 @@ async def solve_async(
     with program.Folder() as folder, Bar(progress) as bar:
         arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
         finished = await program.run_async(arguments, own=own, watcher=bar.watcher)
-        found = result.read(kept or folder.path / "answer", output=kept)
+        found = result.read(kept or folder.path / "answer", output=kept, own=own)
     return _checked(found, finished, strict)
 
 
