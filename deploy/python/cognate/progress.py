@@ -41,14 +41,22 @@ class _Plain:
 class _Tqdm:
     """tqdm's bar, as a widget in notebooks that have them."""
 
-    def __init__(self, notebook: bool) -> None:
+    def __init__(self, notebook: bool, first: Progress) -> None:
         widgets = notebook and importlib.util.find_spec("ipywidgets") is not None
         bars: Any = importlib.import_module("tqdm.notebook" if widgets else "tqdm.std")
-        self._bar: Any = bars.tqdm(total=0, leave=False, unit="path", file=None if widgets else sys.stderr)
+        self._bar: Any = bars.tqdm(
+            desc=first.phase,
+            initial=first.done,
+            total=first.total,
+            unit=first.unit,
+            leave=False,
+            file=None if widgets else sys.stderr,
+        )
 
     def show(self, now: Progress) -> None:
         self._bar.total = now.total
         self._bar.n = now.done
+        self._bar.unit = now.unit
         self._bar.set_description_str(now.phase, refresh=False)
         if now.failed:
             self._bar.set_postfix_str(f"{now.failed:,} failed", refresh=False)
@@ -96,7 +104,7 @@ class Bar:
             if now.seconds < self.DELAY_SECONDS:
                 return
             has_tqdm = importlib.util.find_spec("tqdm") is not None
-            self._display = _Tqdm(self._notebook) if has_tqdm else _Plain()
+            self._display = _Tqdm(self._notebook, now) if has_tqdm else _Plain()
         self._display.show(now)
 
     def __enter__(self) -> Bar:
