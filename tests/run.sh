@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fresh machine to green: installs what the tests need and runs them all.
-#   tests/run.sh         everything: format, lints, mathematics, service, processes, a stranger's client
+#   tests/run.sh         everything: format, lints, mathematics, service, processes, Python, a stranger's client
 #   tests/run.sh fast    the mathematics only, under a minute once built
 # What cannot be run on this machine is counted at the end; with CI=true it is a failure.
 # On Debian and Ubuntu missing packages are installed; elsewhere they are named. Rust must be there.

@@ -131,7 +131,10 @@ def test_an_interpreter_that_is_killed_leaves_nothing(tmp_path: Path) -> None:
     script = (
         f"import cognate as cg, time; s = cg.Service(folder={str(folder)!r}); print('up', flush=True); time.sleep(60)"
     )
-    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    temporary = tmp_path / "t"
+    temporary.mkdir()
+    environment = {**os.environ, "TMPDIR": str(temporary)}
+    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment)
     assert child.stdout is not None and child.stdout.readline() == "up\n"
     assert until(lambda: len(list(folder.glob("*.pid"))) == 3)
     pids = [int(p.read_text()) for p in folder.glob("*.pid")]
@@ -139,6 +142,7 @@ def test_an_interpreter_that_is_killed_leaves_nothing(tmp_path: Path) -> None:
     child.wait()
     child.stdout.close()
     assert until(lambda: not any(_runs(pid) for pid in pids))
+    assert until(lambda: not list(temporary.iterdir()))
 
 
 def test_a_keeper_that_is_killed_leaves_nothing(tmp_path: Path) -> None:

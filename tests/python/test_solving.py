@@ -130,6 +130,13 @@ def test_singular_solutions_and_multiplicity() -> None:
     assert found.counts.with_multiplicity == 2
 
 
+def test_classes_of_a_symmetry() -> None:
+    symmetry = [{"permutation": {"x": "y", "y": "x"}}]
+    found = cg.solve(["x^2 + y^2 - 4", "x*y - 1"], symmetry=symmetry)
+    assert found.classes["count"] == 2 and found.classes["group_order"] == 2
+    assert {s.symmetry_class for s in found.solutions} == {0, 1}
+
+
 def test_what_is_real_is_said_or_refused() -> None:
     found = cg.solve(["x^2 - I"])
     assert found.counts.real is None

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import os
 import select
+import shutil
 import signal
 import subprocess
 import sys
@@ -118,6 +119,10 @@ def main() -> int:
     until = time.monotonic() + STOP_SECONDS
     for k in reversed(kept):
         k.wait(until)
+    if exit_code == 0:
+        # The folder of the socket is a temporary one, whose maker may have been killed. After a failure its logs
+        # are still to be read.
+        shutil.rmtree(Path(socket).parent, ignore_errors=True)
     return exit_code
 
 

@@ -251,6 +251,12 @@ class Result(_Answer):
             found.append("a count is not settled")
         return found
 
+    @property
+    def classes(self) -> Mapping[str, Any]:
+        """With a symmetry: `count` and completeness of the classes of solutions, as the summary has them."""
+        found: Mapping[str, Any] = self.summary["classes"]
+        return found
+
     def report(self) -> str:
         """The counts and the first solutions as a table of text."""
         return text_table(self)
