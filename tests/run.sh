@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fresh machine to green: installs what the tests need and runs them all.
-#   tests/run.sh         everything: format, lints, mathematics, service, processes, a stranger's client
+#   tests/run.sh         everything: format, lints, mathematics, service, processes, Python, a stranger's client
 #   tests/run.sh fast    the mathematics only, under a minute once built
 # What cannot be run on this machine is counted at the end; with CI=true it is a failure.
 # On Debian and Ubuntu missing packages are installed; elsewhere they are named. Rust must be there.
@@ -82,6 +82,20 @@ if ! cmp -s tests/stranger/requirements.txt "$stranger/requirements.txt"; then
 fi
 export COGNATE_STRANGER_PYTHON=$PWD/$stranger/bin/python
 
+step "the Python package: what its tests use, into target/python"
+python=target/python
+if ! cmp -s tests/python/requirements.txt "$python/requirements.txt"; then
+  rm -rf "$python"
+  python3 -m venv "$python"
+  "$python/bin/python" -m pip install --quiet --disable-pip-version-check \
+    --requirement tests/python/requirements.txt
+  cp tests/python/requirements.txt "$python/"
+fi
+# For its tests beside phcpy, which is PHCpack.
+if ! command -v phc >/dev/null && command -v apt-get >/dev/null; then
+  install phcpack || true
+fi
+
 step "a PostgreSQL server for tests"
 postgres=${TMPDIR:-/tmp}/cognate-pg-$$
 COGNATE_SKIPS=$(mktemp)
@@ -108,6 +122,12 @@ export COGNATE_PROGRAM=$built/cognate
 
 step "everything"
 cargo test --release --workspace
+
+step "the Python package, with the program that is built"
+# Afresh: a wheel of the same version would be taken for installed.
+"$python/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation \
+  --force-reinstall ./deploy/python
+"$python/bin/python" -m pytest -q tests/python
 
 step "chaos: two minutes of random kills, on either ledger and with two coordinators"
 # Built above with everything else; `cargo run` of one package would build half of it once more.

@@ -51,6 +51,8 @@ pub enum Command {
     Solve(Solve),
     /// What a file holds and what each start would cost; solves nothing
     Info(Info),
+    /// A system in another notation
+    Convert(Convert),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths
@@ -60,7 +62,7 @@ pub enum Command {
     /// Hand a system to a coordinator; prints the job's id
     Submit(Submit),
     /// Follow a job until it ends
-    Watch(OneJob),
+    Watch(Watch),
     /// The results of a job
     Results(Results),
     /// How a job's numbers came about: stages, retries, reasons of failure
@@ -87,6 +89,18 @@ pub enum Format {
     Table,
     /// One JSON object on standard output, nothing else there
     Json,
+}
+
+/// How progress is shown, on standard error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ProgressForm {
+    /// A bar on a terminal, else a line every few seconds, or nothing with --format json
+    #[default]
+    Auto,
+    /// A JSON object on a line whenever something has changed
+    Json,
+    /// Nothing
+    None,
 }
 
 /// Where the paths begin, as typed.
@@ -239,6 +253,15 @@ pub struct OutputArguments {
     pub output: Option<PathBuf>,
 }
 
+/// What is seen while a job runs.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Output")]
+pub struct ProgressArguments {
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t)]
+    pub progress: ProgressForm,
+}
+
 /// Which coordinator is asked.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Service")]
@@ -280,6 +303,9 @@ pub struct Solve {
     /// Where the answer goes.
     #[command(flatten)]
     pub output: OutputArguments,
+    /// What is seen meanwhile.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
 }
 
 /// `cognate synthesize`.
@@ -468,6 +494,34 @@ pub struct Info {
     pub format: Format,
 }
 
+/// The notations that `cognate convert` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Notation {
+    /// Bertini-classic input
+    Bertini,
+    /// PHCpack's format
+    Phcpack,
+    /// Our own JSON
+    Json,
+}
+
+/// `cognate convert`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate convert system.bertini --to json
+  cognate convert system.phc --to bertini > system.bertini
+
+What a notation has no words for is refused, or named in a warning where it is only left out.
+Numbers are written as exact fractions.")]
+pub struct Convert {
+    /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
+    pub file: PathBuf,
+    /// The notation that is written to standard output
+    #[arg(long, value_enum, value_name = "NOTATION")]
+    pub to: Notation,
+}
+
 /// `cognate path`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
@@ -627,6 +681,17 @@ pub struct Submit {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
+}
+
+/// `cognate watch`.
+#[derive(Clone, Debug, Args)]
+pub struct Watch {
+    /// Which job.
+    #[command(flatten)]
+    pub job: OneJob,
+    /// What is seen meanwhile.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
 }
 
 /// `cognate watch`, `explain`, `cancel`.

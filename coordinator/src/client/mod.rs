@@ -30,6 +30,7 @@ pub fn main() -> ExitCode {
         Ok(()) => match command {
             Command::Worker(a) => return commands::worker::run(a),
             Command::Info(a) => commands::info::run(&a),
+            Command::Convert(a) => commands::convert::run(&a),
             Command::Path(a) => commands::path::run(&a),
             other => in_runtime(other),
         },
@@ -79,6 +80,7 @@ async fn one_shot(command: Command) -> Result<Exit, ClientError> {
         Command::Fleet(a) => fleet::run(&a).await,
         Command::Solve(_)
         | Command::Info(_)
+        | Command::Convert(_)
         | Command::Path(_)
         | Command::Coordinator(_)
         | Command::Worker(_)

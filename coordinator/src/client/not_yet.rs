@@ -20,7 +20,8 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         | Command::Workers(_)
         | Command::Worker(_)
         | Command::Fleet(_)
-        | Command::Info(_) => None,
+        | Command::Info(_)
+        | Command::Convert(_) => None,
         Command::Synthesize(c) => precision(c.common().precision),
     };
     match missing {

@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub mod cancel;
+pub mod convert;
 pub mod coordinator;
 pub mod explain;
 pub mod fleet;

@@ -25,7 +25,8 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
 }
 
 async fn solve(a: &Solve, prepared: Prepared, target: &Target) -> Result<Exit, ClientError> {
-    let mut progress = Progress::new(a.output.format == Format::Json, Instant::now());
+    let quiet = a.output.format == Format::Json;
+    let mut progress = Progress::of(a.progress.progress, quiet, Instant::now());
     let mut connection = Connection::open(target).await?;
     let request_id = uuid::Uuid::new_v4().to_string();
     let (job, warnings) = submit::send(&mut connection, &request_id, prepared).await?;

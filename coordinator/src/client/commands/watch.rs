@@ -1,6 +1,6 @@
 //! `cognate watch`: follows a job until it ends.
 
-use crate::client::arguments::{Format, OneJob};
+use crate::client::arguments::{Format, OneJob, Watch};
 use crate::client::connection::{Connection, Target};
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::json;
@@ -16,9 +16,10 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const RETRY: Duration = Duration::from_millis(500);
 
 /// Follows a job; the exit code is the job's.
-pub async fn run(a: &OneJob) -> Result<Exit, ClientError> {
+pub async fn run(watch: &Watch) -> Result<Exit, ClientError> {
+    let a: &OneJob = &watch.job;
     let quiet = a.format == Format::Json;
-    let mut progress = Progress::new(quiet, Instant::now());
+    let mut progress = Progress::of(watch.progress.progress, quiet, Instant::now());
     let target = a.service.target()?;
     let followed = follow(&target, &a.job, &mut progress).await;
     progress.finish();

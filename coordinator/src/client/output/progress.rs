@@ -1,7 +1,10 @@
 //! Progress while a job runs: a bar on a terminal, a line every few seconds elsewhere, nothing when asked for JSON.
+//! For programs that show a display of their own: JSON lines.
 
 use super::text::{count, counted, rate, seconds};
+use crate::client::arguments::ProgressForm;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::Write as _;
 use std::time::{Duration, Instant};
 
 /// Between two plain lines: long enough for a log file, short enough to see life.
@@ -29,6 +32,9 @@ enum Display {
         last: Option<Instant>,
         shown: Option<Standing>,
     },
+    Lines {
+        shown: Option<Standing>,
+    },
     Silent,
 }
 
@@ -44,6 +50,18 @@ impl Progress {
         Self {
             display: Display::Silent,
             began: Instant::now(),
+        }
+    }
+
+    /// The display that was asked for; `quiet`: see `new`.
+    pub fn of(form: ProgressForm, quiet: bool, now: Instant) -> Self {
+        match form {
+            ProgressForm::Auto => Self::new(quiet, now),
+            ProgressForm::Json => Self {
+                display: Display::Lines { shown: None },
+                began: now,
+            },
+            ProgressForm::None => Self::silent(),
         }
     }
 
@@ -91,6 +109,12 @@ impl Progress {
                     *shown = Some(standing.clone());
                 }
             }
+            Display::Lines { shown } => {
+                if shown.as_ref() != Some(standing) {
+                    write_line(&json_line(standing, now.duration_since(began)));
+                    *shown = Some(standing.clone());
+                }
+            }
             Display::Silent => {}
         }
     }
@@ -100,6 +124,7 @@ impl Progress {
         match &self.display {
             Display::Bar(bar) => bar.suspend(|| eprintln!("{line}")),
             Display::Plain { .. } => eprintln!("{line}"),
+            Display::Lines { .. } => write_line(&serde_json::json!({ "message": line })),
             Display::Silent => {}
         }
     }
@@ -146,6 +171,23 @@ fn plain_line(standing: &Standing, elapsed: Duration) -> String {
     line
 }
 
+/// A standing as programs read it; `seconds` since the display began.
+fn json_line(standing: &Standing, elapsed: Duration) -> serde_json::Value {
+    serde_json::json!({
+        "phase": standing.phase,
+        "done": standing.done,
+        "total": standing.total,
+        "failed": standing.failed,
+        "unit": standing.unit,
+        "seconds": elapsed.as_secs_f64(),
+    })
+}
+
+/// Writes a line to standard error. That nobody reads there any more is no reason to stop solving.
+fn write_line(value: &serde_json::Value) {
+    let _ = writeln!(std::io::stderr(), "{value}");
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,6 +215,22 @@ mod tests {
         assert_eq!(
             plain_line(&counting, Duration::from_secs(12)),
             "counting mixed cells, 7 cells so far: 12 of 1,024 parts, 1.0 parts/s, 12.0 s"
+        );
+    }
+
+    #[test]
+    fn a_json_line_says_the_same_to_programs() {
+        let standing = Standing {
+            phase: "tracking".into(),
+            done: 12,
+            total: 40,
+            failed: 3,
+            unit: "path",
+        };
+        let line = json_line(&standing, Duration::from_millis(1500));
+        assert_eq!(
+            line.to_string(),
+            r#"{"done":12,"failed":3,"phase":"tracking","seconds":1.5,"total":40,"unit":"path"}"#
         );
     }
 

@@ -1,0 +1,167 @@
+"""Expressions of sympy and of plain text, as text of our formats."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from . import exact
+from .errors import InputError
+
+RESERVED = frozenset({"I", "Pi", "sqrt", "exp", "log", "sin", "cos", "tan"})
+"""Names that mean something by themselves."""
+
+_NAME = re.compile(r"[^\W\d]\w*")
+# Numbers come first: the e of 1e-5 is no name.
+_NUMBER_OR_NAME = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|(?P<name>[^\W\d]\w*)")
+
+
+def names(text: str) -> Iterator[str]:
+    """The names in an expression, in order, as often as they occur.
+
+    >>> list(names("2e3*x_1^2 - I*sin(y)"))
+    ['x_1', 'y']
+    """
+    for match in _NUMBER_OR_NAME.finditer(text):
+        name = match["name"]
+        if name is not None and name not in RESERVED:
+            yield name
+
+
+def is_sympy(value: object) -> bool:
+    """Whether something is an expression, an equation or a polynomial of sympy."""
+    sympy = sys.modules.get("sympy")
+    if sympy is None:
+        return False
+    return isinstance(value, (sympy.Basic, sympy.MatrixBase))
+
+
+def listed(value: object, field: str) -> list[Any]:
+    """A list of what may be one thing, a sequence or a matrix of sympy."""
+    if is_sympy(value):
+        import sympy
+
+        return list(value) if isinstance(value, (sympy.MatrixBase, sympy.Tuple)) else [value]
+    if isinstance(value, str):
+        return [value]
+    if not isinstance(value, Iterable):
+        raise InputError(f"expected one or several, found {value!r}", field=field)
+    return list(value)
+
+
+def equation(value: object, field: str) -> str:
+    """An equation as the expression that is to vanish.
+
+    >>> equation("x^2 = 2*y", "equations[0]")
+    '(x^2)-(2*y)'
+    """
+    if isinstance(value, str):
+        return _without_equals_sign(value, field)
+    if is_sympy(value):
+        return from_sympy(value, field)
+    return exact.text(value, field)
+
+
+def expression(value: object, field: str) -> str:
+    """An expression as text."""
+    if isinstance(value, str):
+        return value
+    if is_sympy(value):
+        return from_sympy(value, field)
+    return exact.text(value, field)
+
+
+def name(value: object, field: str) -> str:
+    """The name of a variable or parameter: a word, or a symbol of sympy."""
+    if is_sympy(value):
+        value = getattr(value, "name", None) or str(value)
+    if not isinstance(value, str) or not _NAME.fullmatch(value):
+        raise InputError(f"expected a name of letters, digits and _, found {value!r}", field=field)
+    if value in RESERVED:
+        raise InputError(f"the name {value} means something by itself", field=field)
+    return value
+
+
+def name_list(values: object, field: str) -> tuple[str, ...]:
+    """Names from "x, y z" or from a sequence of words or symbols; no name twice."""
+    if isinstance(values, str):
+        values = values.replace(",", " ").split()
+    found = tuple(name(value, f"{field}[{i}]") for i, value in enumerate(listed(values, field)))
+    for i, one in enumerate(found):
+        if one in found[:i]:
+            raise InputError(f"the name {one} stands there twice", field=f"{field}[{i}]")
+    return found
+
+
+def _without_equals_sign(text: str, field: str) -> str:
+    sides = re.split("==?", text)
+    if len(sides) == 1:
+        return text
+    if len(sides) > 2 or not all(side.strip() for side in sides):
+        raise InputError(f"expected at most one = between two expressions, found {text!r}", field=field)
+    left, right = (side.strip() for side in sides)
+    return left if right == "0" else f"({left})-({right})"
+
+
+def check_symbols(values: Iterable[object]) -> None:
+    """Refuses two symbols of sympy that have one name and are not equal, of which text would make one."""
+    found: dict[str, Any] = {}
+    for value in values:
+        if not is_sympy(value):
+            continue
+        for symbol in getattr(value, "free_symbols", ()):
+            other = found.setdefault(str(symbol), symbol)
+            if other != symbol:
+                raise InputError(
+                    "two symbols of this name differ, by their assumptions for instance", field=str(symbol)
+                )
+
+
+def from_sympy(value: Any, field: str) -> str:
+    """An expression, equation or polynomial of sympy as text; rational numbers stay exact."""
+    import sympy
+
+    if isinstance(value, sympy.Equality):
+        return from_sympy(value.lhs - value.rhs, field)
+    if isinstance(value, sympy.Poly):
+        return from_sympy(value.as_expr(), field)
+    if not isinstance(value, sympy.Expr):
+        raise InputError(f"expected an expression, found {value}", field=field)
+    for symbol in sorted(value.free_symbols, key=str):
+        name(symbol, field)
+    return str(_printer(field).doprint(value))
+
+
+def _printer(field: str) -> Any:
+    import sympy
+    from sympy.printing.str import StrPrinter
+
+    class Printer(StrPrinter):  # type: ignore[misc]
+        """sympy's own text, where our formats write otherwise."""
+
+        def _print_Pi(self, _expression: Any) -> str:
+            return "Pi"
+
+        def _print_Exp1(self, _expression: Any) -> str:
+            return "exp(1)"
+
+        def _print_Float(self, number: Any) -> str:
+            # As the double is shown where it is one; every bit where it has more.
+            shown = float(number)
+            if number._prec <= 53 and number == shown:
+                return exact.text(shown, field)
+            fraction = sympy.Rational(number)
+            return f"({fraction.p}/{fraction.q})"
+
+        def _print_Pow(self, power: Any, rational: bool = False) -> str:
+            exponent = power.exp
+            if not exponent.is_Integer and abs(exponent) != sympy.Rational(1, 2):
+                raise InputError(f"expected an integer exponent, found {exponent}", field=field)
+            return str(super()._print_Pow(power, rational=rational))
+
+        def emptyPrinter(self, expr: Any) -> str:
+            raise InputError(f"expected polynomials, found {type(expr).__name__}", field=field)
+
+    return Printer()

@@ -1,0 +1,241 @@
+"""Options: what may be said of how a problem is solved, and the arguments of the program for it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict, TypeGuard, Union
+
+from . import exact, expressions
+from .errors import InputError
+from .program import Folder
+from .result import Result
+from .solution import Solution
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    Array = ArrayLike
+else:
+    Array = Any
+
+Parameters = Union[Mapping[Any, Any], Sequence[Any], "Array"]
+"""Values of parameters: by name, or in the order of the system's parameters."""
+
+
+class Options(TypedDict, total=False):
+    """The options of `solve` and `submit`; those of the command line, by the same names.
+
+    `start`: `auto`, `total-degree`, `multihomogeneous`, `linear-product`, `polyhedral`, `regeneration`,
+    `monodromy` or `given`; or a `Result`, whose solutions and parameters are then where paths begin.
+    `start_solutions`: points to start from: solutions, arrays of shape (n, variables) in the order of the
+    variables, mappings by name, or a file. `start_parameters`: the parameters that they belong to.
+    `targets`: the parameters wanted, by name or in order; a list or an array of shape (n, parameters) for many;
+    a mapping from names to arrays of length n; or a file.
+    `groups`: lists of variables for this solve. `sets`: sets of variables for `linear-product`.
+    `conjugates`, `degenerate`, `symmetry`: as of a `System`.
+    `seed`: the same seed gives the same bits. `preset`: `careful`, `default`, `fast`, `reckless`.
+    `precision`: `adaptive`, `double` or a number of bits.
+    `idle_loops`, `confidence`, `expect`, `trace_test`: when loops of `monodromy` end.
+    `certify`: proofs. `digits`: decimal digits of the solutions. `deflate`: also of singular ones.
+    `exact`: long decimals are exact, not rounded.
+    """
+
+    start: str | Result
+    start_solutions: object
+    start_parameters: Parameters | str | os.PathLike[str]
+    targets: object
+    groups: Iterable[Any] | str
+    sets: Any
+    conjugates: Iterable[Sequence[Any]] | str
+    degenerate: Any
+    symmetry: Any
+    seed: int
+    preset: str
+    precision: str | int
+    idle_loops: int
+    confidence: float
+    expect: int
+    trace_test: bool
+    certify: bool
+    digits: int
+    deflate: bool
+    exact: bool
+
+
+class _Names:
+    """Names of variables and parameters, asked for only where values are given without names."""
+
+    def __init__(self, names: Callable[[], tuple[tuple[str, ...], tuple[str, ...]]]) -> None:
+        self._names = names
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        return self._names()[0]
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        return self._names()[1]
+
+
+def arguments(
+    options: Options, folder: Folder, names: Callable[[], tuple[tuple[str, ...], tuple[str, ...]]]
+) -> tuple[list[str], dict[str, str | None]]:
+    """The program's arguments, and the files that were written for them with what the user calls them.
+
+    `names`: gives the variables and the parameters of the problem.
+    """
+    for name in options:
+        if name not in Options.__annotations__:
+            raise TypeError(f"unknown option {name!r}; expected one of {', '.join(Options.__annotations__)}")
+    found: list[str] = []
+    own: dict[str, str | None] = {}
+
+    def file(option: str, content: str, called: str) -> None:
+        path = folder.write(called, content)
+        own[str(path)] = called
+        found.extend([f"--{option}", str(path)])
+
+    known = _Names(names)
+    start = options.get("start")
+    solutions, begin = options.get("start_solutions"), options.get("start_parameters")
+    if isinstance(start, Result):
+        if solutions is not None or begin is not None:
+            raise InputError("a result to start from has its own solutions and parameters", field="start")
+        solutions, begin, start = start.solutions, start.parameters, None
+        if not begin:
+            raise InputError(
+                "expected a result of monodromy, which has parameters; with start_solutions give start_parameters",
+                field="start",
+            )
+    if start is not None:
+        found.extend(["--start", str(start)])
+    if solutions is not None:
+        given = _path(solutions)
+        if given is not None:
+            found.extend(["--start-solutions", given])
+        else:
+            file("start-solutions", _points(solutions, known), "start_solutions")
+    for option, values in (("start-parameters", begin), ("target-parameters", options.get("targets"))):
+        if values is None:
+            continue
+        given = _path(values)
+        called = "targets" if option == "target-parameters" else "start_parameters"
+        if given is not None:
+            found.extend([f"--{option}", given])
+        elif called == "targets":
+            file(option, json.dumps(_targets(values, known)), called)
+        else:
+            file(option, json.dumps(_values(values, known, called)), called)
+    groups = options.get("groups")
+    if groups is not None:
+        if not isinstance(groups, str):
+            lists = (expressions.name_list(g, f"groups[{i}]") for i, g in enumerate(groups))
+            groups = ";".join(",".join(g) for g in lists)
+        found.extend(["--groups", groups])
+    conjugates = options.get("conjugates")
+    if conjugates is not None:
+        if not isinstance(conjugates, str):
+            pairs = (expressions.name_list(p, f"conjugates[{i}]") for i, p in enumerate(conjugates))
+            conjugates = ",".join("~".join(p) for p in pairs)
+        found.extend(["--conjugates", conjugates])
+    for name, content in (
+        ("sets", options.get("sets")),
+        ("degenerate", options.get("degenerate")),
+        ("symmetry", options.get("symmetry")),
+    ):
+        if content is None:
+            continue
+        given = _path(content)
+        if given is not None:
+            found.extend([f"--{name}", given])
+        else:
+            file(name, json.dumps(content), name)
+    for name in ("seed", "preset", "precision", "idle_loops", "confidence", "expect", "digits"):
+        value = options.get(name)
+        if value is not None:
+            # In one word, so that a negative number is no option.
+            found.append(f"--{name.replace('_', '-')}={value}")
+    for name in ("certify", "deflate", "exact", "trace_test"):
+        if options.get(name):
+            found.append(f"--{name.replace('_', '-')}")
+    return found, own
+
+
+def _path(value: object) -> str | None:
+    """The file that is named, if one is."""
+    return os.fspath(value) if isinstance(value, (str, Path, os.PathLike)) else None
+
+
+def _pair(value: object, field: str) -> list[float]:
+    number = exact.double(value, field)
+    return [number.real, number.imag]
+
+
+def _values(values: object, names: _Names, field: str) -> dict[str, list[float]]:
+    """One set of parameters, by name."""
+    if isinstance(values, Mapping):
+        return {expressions.name(key, field): _pair(value, f"{field}.{key}") for key, value in values.items()}
+    return _in_order(values, names.parameters, field)
+
+
+def _in_order(values: object, names: tuple[str, ...], field: str) -> dict[str, list[float]]:
+    listed = list(values) if isinstance(values, Iterable) and not isinstance(values, str) else [values]
+    if len(listed) != len(names):
+        raise InputError(f"expected {len(names)} values ({', '.join(names)}), found {len(listed)}", field=field)
+    return {name: _pair(value, f"{field}.{name}") for name, value in zip(names, listed, strict=True)}
+
+
+def _is_list(value: object) -> TypeGuard[Iterable[Any]]:
+    return isinstance(value, Iterable) and not isinstance(value, (str, Mapping)) and getattr(value, "ndim", 1) > 0
+
+
+def _targets(values: object, names: _Names) -> list[dict[str, list[float]]]:
+    """One or many sets of parameters."""
+    if isinstance(values, Mapping):
+        columns = {key: list(column) for key, column in values.items() if _is_list(column)}
+        if not columns:
+            return [_values(values, names, "targets")]
+        lengths = {len(column) for column in columns.values()}
+        if len(lengths) > 1:
+            raise InputError(f"expected arrays of one length, found {sorted(lengths)}", field="targets")
+        return [
+            _values(
+                {key: columns[key][i] if key in columns else value for key, value in values.items()},
+                names,
+                f"targets[{i}]",
+            )
+            for i in range(lengths.pop())
+        ]
+    if not _is_list(values):
+        return [_in_order(values, names.parameters, "targets")]
+    rows = list(values)
+    if rows and not any(isinstance(row, Mapping) or _is_list(row) for row in rows):
+        return [_in_order(rows, names.parameters, "targets")]
+    found = [_values(row, names, f"targets[{i}]") for i, row in enumerate(rows)]
+    if not found:
+        raise InputError("expected at least one set of parameters", field="targets")
+    return found
+
+
+def _points(solutions: object, names: _Names) -> str:
+    """Points to start from, as lines of our solutions.jsonl; singular and undecided ones are no starts."""
+    if not _is_list(solutions):
+        raise InputError(f"expected a list or an array of points, found {solutions!r}", field="start_solutions")
+    lines = []
+    for i, point in enumerate(solutions):
+        field = f"start_solutions[{i}]"
+        if isinstance(point, Solution):
+            if point.singular or point.undecided:
+                raise InputError("a singular solution is no start of a path", field=field)
+            values = {name: [z.real, z.imag] for name, z in zip(point.names, point.coordinates, strict=True)}
+        elif isinstance(point, Mapping):
+            values = {expressions.name(key, field): _pair(value, f"{field}.{key}") for key, value in point.items()}
+        else:
+            values = _in_order(point, names.variables, field)
+        lines.append(json.dumps({"variables": values}))
+    if not lines:
+        raise InputError("expected at least one point", field="start_solutions")
+    return "\n".join(lines) + "\n"

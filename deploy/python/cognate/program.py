@@ -1,0 +1,307 @@
+"""The `cognate` program: where it is, and how it is run.
+
+Everything that this package does is done by the program; it is run with arguments and files, and answers with
+JSON. Progress comes as lines on its standard error.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+from collections import deque
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+
+from .errors import CognateWarning, ProgramNotFound, error_of, warn
+
+SOLVED, UNSETTLED = 0, 1
+"""Exit codes of an answer; the others are errors."""
+
+INTERRUPTED = 130
+"""The exit code after Ctrl-C."""
+
+Own = dict[str, str | None]
+"""Files that were written for the user's objects (see `errors.input_error`)."""
+
+STOP_SECONDS = 10.0
+"""How long the program may take to end after it was interrupted."""
+
+LONGEST_LINE = 1 << 24
+"""Bytes of a line of standard error; a system in one line may be shown whole."""
+
+LINES_KEPT = 200
+"""Lines of standard error that are kept for a message."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a job stands. `done` and `total` count `unit`s, paths as a rule; `seconds` since it was asked for."""
+
+    phase: str
+    done: int
+    total: int
+    failed: int
+    unit: str
+    seconds: float
+
+
+Watcher = Callable[[Progress], None]
+"""What is told of progress."""
+
+
+@dataclass
+class Finished:
+    """A run of the program that gave an answer."""
+
+    exit_code: int
+    output: str
+    warnings: list[str] = field(default_factory=list)
+
+
+class Folder:
+    """A temporary folder that goes with the block."""
+
+    def __init__(self) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="cognate-", ignore_cleanup_errors=True)
+        self.path = Path(self._folder.name)
+
+    def __enter__(self) -> Folder:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._folder.cleanup()
+
+    def write(self, name: str, text: str) -> Path:
+        """Writes a file of this name, and gives its path."""
+        path = self.path / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+
+def find(*, search_path: bool = True) -> str:
+    """Where the program is: COGNATE_PROGRAM, in this package, or on the PATH."""
+    given = os.environ.get("COGNATE_PROGRAM")
+    if given:
+        if not os.access(given, os.X_OK):
+            raise ProgramNotFound(f"COGNATE_PROGRAM={given}: no program is there")
+        return given
+    inside = Path(__file__).with_name("bin") / "cognate"
+    if os.access(inside, os.X_OK):
+        return str(inside)
+    found = shutil.which("cognate") if search_path else None
+    if found is None:
+        raise ProgramNotFound(
+            "the program `cognate` is not in this package and not on the PATH; "
+            "install the package by `pip install ./deploy/python`, or set COGNATE_PROGRAM"
+        )
+    return found
+
+
+class Listener:
+    """Takes the program's standard error apart: progress, warnings, and what else it says."""
+
+    def __init__(self) -> None:
+        self.warnings: list[str] = []
+        self.rest: deque[str] = deque(maxlen=LINES_KEPT)
+
+    def line(self, line: str) -> Progress | None:
+        """One line; gives where the job stands, if it says so."""
+        if line.startswith("{"):
+            return self._standing(line)
+        if line.startswith("warning: "):
+            self.warnings.append(line[len("warning: ") :].rstrip("\n"))
+        else:
+            self.rest.append(line)
+        return None
+
+    def _standing(self, line: str) -> Progress | None:
+        try:
+            now = json.loads(line)
+        except json.JSONDecodeError:
+            self.rest.append(line)
+            return None
+        if "message" in now:
+            message = str(now["message"])
+            if message.startswith("warning: "):
+                self.warnings.append(message[len("warning: ") :])
+            return None
+        return Progress(
+            phase=str(now["phase"]),
+            done=int(now["done"]),
+            total=int(now["total"]),
+            failed=int(now["failed"]),
+            unit=str(now["unit"]),
+            seconds=float(now["seconds"]),
+        )
+
+    def message(self) -> str:
+        """What went wrong, in the program's words."""
+        text = "".join(self.rest)
+        _, mark, after = text.rpartition("error: ")
+        return (after if mark else text).strip("\n")
+
+
+class Run:
+    """One run of the program: iterate over its progress, then ask for what it `finished` with.
+
+    Leaving the block before the end interrupts the program.
+    """
+
+    def __init__(self, arguments: Sequence[str]) -> None:
+        self._listener = Listener()
+        # The answer goes to a file, so that neither stream waits for the other.
+        self._output = tempfile.TemporaryFile(mode="w+", encoding="utf-8")
+        try:
+            self._process = subprocess.Popen(
+                [find(), *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=self._output,
+                stderr=subprocess.PIPE,
+                encoding="utf-8",
+                errors="replace",
+            )
+        except BaseException:
+            self._output.close()
+            raise
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        _stop(self._process)
+        assert self._process.stderr is not None, "a pipe was asked for"
+        self._process.stderr.close()
+        self._output.close()
+
+    def __iter__(self) -> Iterator[Progress]:
+        assert self._process.stderr is not None, "a pipe was asked for"
+        for line in self._process.stderr:
+            now = self._listener.line(line)
+            if now is not None:
+                yield now
+
+    def finished(self, answers: Sequence[int] = (SOLVED, UNSETTLED), own: Own | None = None) -> Finished:
+        """Waits for the end, and gives the answer; raises what any other exit code stands for."""
+        for _ in self:
+            pass
+        exit_code = self._process.wait()
+        self._output.seek(0)
+        return _finished(exit_code, self._output.read(), self._listener, answers, own)
+
+
+class AsyncRun:
+    """As `Run`, for `async with` and `async for`."""
+
+    def __init__(self, arguments: Sequence[str]) -> None:
+        self._arguments = arguments
+        self._listener = Listener()
+        self._output = tempfile.TemporaryFile(mode="w+", encoding="utf-8")
+
+    async def __aenter__(self) -> AsyncRun:
+        try:
+            self._process = await asyncio.create_subprocess_exec(
+                find(),
+                *self._arguments,
+                stdin=asyncio.subprocess.DEVNULL,
+                stdout=self._output,
+                stderr=asyncio.subprocess.PIPE,
+                limit=LONGEST_LINE,
+            )
+        except BaseException:
+            self._output.close()
+            raise
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        process = self._process
+        if process.returncode is None:
+            process.send_signal(signal.SIGINT)
+            try:
+                await asyncio.wait_for(process.wait(), STOP_SECONDS)
+            except asyncio.TimeoutError:
+                process.kill()
+                await process.wait()
+        self._output.close()
+
+    async def __aiter__(self) -> AsyncIterator[Progress]:
+        assert self._process.stderr is not None, "a pipe was asked for"
+        async for line in self._process.stderr:
+            now = self._listener.line(line.decode("utf-8", errors="replace"))
+            if now is not None:
+                yield now
+
+    async def finished(self, answers: Sequence[int] = (SOLVED, UNSETTLED), own: Own | None = None) -> Finished:
+        """As of `Run`."""
+        async for _ in self:
+            pass
+        exit_code = await self._process.wait()
+        self._output.seek(0)
+        return _finished(exit_code, self._output.read(), self._listener, answers, own)
+
+
+def run(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | None = None) -> Finished:
+    """Runs the program to its end; raises what the exit code stands for, unless it is that of an answer."""
+    with Run(arguments) as running:
+        for now in running:
+            if watcher is not None:
+                watcher(now)
+        return running.finished(own=own)
+
+
+async def run_async(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | None = None) -> Finished:
+    """As `run`, for `await`; where the task is cancelled, so is the run."""
+    async with AsyncRun(arguments) as running:
+        async for now in running:
+            if watcher is not None:
+                watcher(now)
+        return await running.finished(own=own)
+
+
+def _finished(exit_code: int, output: str, listener: Listener, answers: Sequence[int], own: Own | None) -> Finished:
+    if exit_code == INTERRUPTED:
+        raise KeyboardInterrupt
+    # An exit code of an answer without one is the error that it stands for elsewhere.
+    if exit_code not in answers or (exit_code not in (SOLVED, UNSETTLED) and not output):
+        raise error_of(exit_code, listener.message(), own=own)
+    return Finished(exit_code, output, listener.warnings)
+
+
+def issue_warnings(finished: Finished) -> Finished:
+    """The program's warnings as warnings of Python."""
+    for warning in finished.warnings:
+        warn(warning, CognateWarning)
+    return finished
+
+
+def _stop(process: subprocess.Popen[str]) -> None:
+    """Interrupts the program, and waits until it has stopped what it had started."""
+    if process.poll() is not None:
+        return
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(STOP_SECONDS)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

@@ -1,0 +1,369 @@
+"""Result: the answer of a solve, with its counts, and what is not settled in it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .display import html_table, text_table, verdict
+from .errors import CognateError, CognateWarning, NotKnown, UnsettledWarning, in_the_users_words, warn
+from .solution import Solution, check_names
+
+if TYPE_CHECKING:
+    import numpy
+    import pandas
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class PathCounts:
+    """Every path, counted once, in the first class that holds; the classes add up to `total`.
+
+    `failed`; `at_infinity`; `excess`: no solution before randomisation; `positive_dimensional`: on such a set;
+    `undecided`: at a singular point of which it is not known whether it is isolated; `within_data_accuracy`:
+    another verdict within the accuracy of the decimals; `singular`; `finite`. None: not decided.
+    """
+
+    total: int
+    failed: int
+    at_infinity: int
+    excess: int | None
+    positive_dimensional: int | None
+    undecided: int
+    within_data_accuracy: int
+    singular: int
+    finite: int
+    retracked: int = 0
+    crossings_found: int = 0
+    crossings_resolved: int = 0
+    decided_by_precision_limit: int = 0
+    images: int = 0
+    highest_precision_bits: int = 53
+    degenerate: Mapping[str, int] = field(default_factory=dict)
+    by_precision: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def classes(self) -> dict[str, int | None]:
+        """The classes of paths, which add up to `total`."""
+        names = (
+            "failed",
+            "at_infinity",
+            "excess",
+            "positive_dimensional",
+            "undecided",
+            "within_data_accuracy",
+            "singular",
+            "finite",
+        )
+        return {name: getattr(self, name) for name in names}
+
+    @property
+    def adds_up(self) -> bool:
+        """Whether every path is in exactly one class."""
+        return sum(count or 0 for count in self.classes.values()) == self.total
+
+
+@dataclass(frozen=True)
+class SolutionCounts:
+    """Isolated finite points after merging: `distinct` = `nonsingular` + `singular`; `undecided` ones apart.
+
+    `complete`: `yes`, `no` or `not known`, and `complete_reason`. None: not asked, or not decided.
+    """
+
+    distinct: int
+    nonsingular: int
+    singular: int
+    real: int | None
+    real_reason: str | None
+    with_multiplicity: int
+    undecided: int = 0
+    doubtful_multiplicity: int = 0
+    certified: int | None = None
+    certified_real: int | None = None
+    positive_dimensional: bool | None = None
+    complete: str = "not known"
+    complete_reason: str | None = None
+    degenerate: Mapping[str, int] = field(default_factory=dict)
+    sharpened: Mapping[str, int] | None = None
+
+    @property
+    def adds_up(self) -> bool:
+        """Whether the kinds of solutions add up."""
+        return self.nonsingular + self.singular == self.distinct
+
+
+def _block(kind: type[Any], found: Mapping[str, Any]) -> Any:
+    """A dataclass from the fields of a JSON object that it knows; newer programs may say more."""
+    known = kind.__dataclass_fields__
+    return kind(**{name: value for name, value in found.items() if name in known})
+
+
+class _Answer:
+    """What a result and each of its targets have in common: points, as lists and arrays."""
+
+    solutions: tuple[Solution, ...]
+    undecided: tuple[Solution, ...]
+    counts: SolutionCounts
+    paths: PathCounts
+
+    if TYPE_CHECKING:
+
+        @property
+        def settled(self) -> bool:
+            """Whether every path is accounted for and every count is settled."""
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of the variables, in the order of arrays' columns; empty where there is no solution."""
+        return check_names(self.solutions + self.undecided)
+
+    @property
+    def real(self) -> list[Solution]:
+        """The real solutions. Raises `NotKnown` where what is real is not decided."""
+        if self.counts.real is None or any(s.real is None for s in self.solutions):
+            raise NotKnown(self.counts.real_reason or "which solutions are real is not decided")
+        return [s for s in self.solutions if s.real]
+
+    @property
+    def nonsingular(self) -> list[Solution]:
+        """The solutions with a regular Jacobian."""
+        return [s for s in self.solutions if not s.singular]
+
+    @property
+    def singular(self) -> list[Solution]:
+        """The isolated singular solutions."""
+        return [s for s in self.solutions if s.singular]
+
+    @property
+    def certified(self) -> list[Solution]:
+        """The solutions that are proved. Raises `NotKnown` where no proofs were asked for."""
+        if self.counts.certified is None:
+            raise NotKnown("no certificates were asked for; solve(..., certify=True) has them")
+        return [s for s in self.solutions if s.certificate is not None and s.certificate.certified]
+
+    @property
+    def complete(self) -> bool | None:
+        """Whether these are all isolated solutions; None where that is not known (see `counts.complete_reason`)."""
+        return {"yes": True, "no": False}.get(self.counts.complete)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {verdict(self)}{'' if self.settled else ', not settled'}>"
+
+    def array(self) -> NDArray[numpy.complex128]:
+        """The solutions as an array of shape (solutions, variables), in doubles."""
+        import numpy
+
+        shape = (len(self.solutions), len(self.variables))
+        return numpy.array([s.coordinates for s in self.solutions], dtype=numpy.complex128).reshape(shape)
+
+    def real_array(self) -> NDArray[numpy.float64]:
+        """The real solutions as an array of shape (real solutions, variables), their imaginary parts left out.
+
+        With pairs of conjugate variables a real solution has complex coordinates: these are then refused.
+        """
+        import numpy
+
+        real = self.real
+        if any(s[name].imag != 0 and _is_complex(s, name) for s in real for name in s):
+            raise NotKnown("real solutions of conjugate variables have complex coordinates; array() has them")
+        rows = [[z.real for z in s.coordinates] for s in real]
+        return numpy.array(rows, dtype=numpy.float64).reshape(len(real), len(self.variables))
+
+    def frame(self) -> pandas.DataFrame:
+        """The solutions as a table of pandas: a column for each variable, then what is known of each."""
+        import pandas
+
+        columns: dict[str, list[Any]] = {name: [s[name] for s in self.solutions] for name in self.variables}
+        for name in ("real", "singular", "multiplicity", "residual", "condition", "accuracy", "precision_bits"):
+            # A variable may be called so, too.
+            columns[name if name not in columns else f"{name}_"] = [getattr(s, name) for s in self.solutions]
+        return pandas.DataFrame(columns)
+
+
+def _is_complex(solution: Solution, name: str) -> bool:
+    """Whether a coordinate is further from the real axis than its rounding."""
+    z = solution[name]
+    size = max(1.0, *(abs(w) for w in solution.coordinates))
+    accuracy = max(solution.accuracy or 0.0, 1e-12)
+    return abs(z.imag) > 1e3 * accuracy * size
+
+
+@dataclass(frozen=True, repr=False)
+class TargetResult(_Answer):
+    """The answer at one of several targets."""
+
+    index: int
+    paths: PathCounts
+    counts: SolutionCounts
+    solutions: tuple[Solution, ...]
+    undecided: tuple[Solution, ...]
+
+    @property
+    def open_questions(self) -> list[str]:
+        """What is not settled at this target."""
+        return _open_questions(self.paths, self.counts)
+
+    @property
+    def settled(self) -> bool:
+        """Whether every path is accounted for and every count is settled."""
+        return not self.open_questions
+
+
+@dataclass(frozen=True, repr=False)
+class Result(_Answer):
+    """The answer of a solve.
+
+    `solutions`: the isolated solutions; `undecided`: finite singular points of which it is not known whether they
+    are isolated, in no count. `paths`, `counts`: numbers of paths and of solutions. `settled`: every path is
+    accounted for and every count is settled. `complete`: whether these are all isolated solutions.
+    `targets`: the answer at each target, where there are several; the fields of the result then hold all of them.
+    `parameters`: of a monodromy solve, the values at which the solutions are. `failures`: reasons of failed paths
+    with their numbers. `warnings`: what a person should know. `seconds`: wall time. `summary`: the program's own
+    summary, with everything. `output`: the folder with all files, where one was asked for.
+    """
+
+    job: str
+    start: str
+    seed: int
+    settled: bool
+    paths: PathCounts
+    counts: SolutionCounts
+    solutions: tuple[Solution, ...]
+    undecided: tuple[Solution, ...]
+    targets: tuple[TargetResult, ...]
+    parameters: Mapping[str, complex]
+    failures: Mapping[str, int]
+    warnings: tuple[str, ...]
+    seconds: float
+    summary: Mapping[str, Any]
+    output: Path | None
+
+    @property
+    def open_questions(self) -> list[str]:
+        """What keeps the answer from being settled, a phrase for each; empty where it is."""
+        found = _open_questions(self.paths, self.counts)
+        for target in self.targets:
+            found.extend(f"target {target.index}: {q}" for q in target.open_questions)
+        if not self.settled and not found:
+            found.append("a count is not settled")
+        return found
+
+    @property
+    def classes(self) -> Mapping[str, Any]:
+        """With a symmetry: `count` and completeness of the classes of solutions, as the summary has them."""
+        found: Mapping[str, Any] = self.summary["classes"]
+        return found
+
+    def report(self) -> str:
+        """The counts and the first solutions as a table of text."""
+        return text_table(self)
+
+    def __str__(self) -> str:
+        return self.report()
+
+    def _repr_html_(self) -> str:
+        """The same for notebooks."""
+        return html_table(self)
+
+
+def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
+    found = []
+
+    def unless_zero(number: int, what: str) -> None:
+        if number:
+            found.append(f"{number} {what}")
+
+    unless_zero(paths.failed, "paths failed")
+    unless_zero(paths.crossings_found - paths.crossings_resolved, "path crossings are not resolved")
+    unless_zero(paths.decided_by_precision_limit, "paths are finite or at infinity only by the limit of the precision")
+    unless_zero(
+        max(paths.undecided, counts.undecided),
+        "ends at singular points of which it is not known whether they are isolated",
+    )
+    unless_zero(paths.within_data_accuracy, "ends have another verdict within the accuracy of the decimals")
+    unless_zero(counts.doubtful_multiplicity, "singular points have another multiplicity than paths that end there")
+    if not paths.adds_up:
+        listed = sum(count or 0 for count in paths.classes.values())
+        found.append(f"the classes of paths add up to {listed} of {paths.total}")
+    if not counts.adds_up:
+        found.append(f"{counts.nonsingular} + {counts.singular} solutions are not {counts.distinct}")
+    return found
+
+
+def read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Result:
+    """The answer in a folder that the program has written: `summary.json` and `solutions.jsonl`.
+
+    `own`: files that were written for the user's objects, which warnings may name.
+    """
+    summary: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary["warnings"] = [in_the_users_words(w, own) for w in summary.get("warnings") or []]
+    with (folder / "solutions.jsonl").open(encoding="utf-8") as lines:
+        listed = [Solution.from_json(json.loads(line)) for line in lines]
+    return from_summary(summary, listed, output=output)
+
+
+def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: Path | None) -> Result:
+    """The answer from a summary and all points, undecided ones among them, target after target."""
+    paths: PathCounts = _block(PathCounts, summary["paths"])
+    counts: SolutionCounts = _block(SolutionCounts, summary["solutions"])
+    if counts.distinct + counts.undecided != len(listed):
+        raise CognateError(
+            f"the answer does not add up: {counts.distinct} solutions and {counts.undecided} undecided points "
+            f"are counted, {len(listed)} are listed"
+        )
+    parameters = (summary.get("monodromy") or {}).get("parameters") or {}
+    return Result(
+        job=str(summary["job"]),
+        start=str(summary["problem"]["start"]),
+        seed=int(summary["problem"]["seed"]),
+        settled=bool(summary["settled"]) and paths.adds_up and counts.adds_up,
+        paths=paths,
+        counts=counts,
+        solutions=tuple(s for s in listed if not s.undecided),
+        undecided=tuple(s for s in listed if s.undecided),
+        targets=_targets(summary.get("targets") or [], listed),
+        parameters={name: complex(re, im) for name, (re, im) in parameters.items()},
+        failures=dict(summary.get("failures") or {}),
+        warnings=tuple(summary.get("warnings") or ()),
+        seconds=float(summary["time"]["wall_seconds"]),
+        summary=summary,
+        output=output,
+    )
+
+
+def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[TargetResult, ...]:
+    """The points of each target: they are listed target after target, as many as its counts say."""
+    found = []
+    begin = 0
+    first_path = 0
+    for index, block in enumerate(blocks):
+        paths: PathCounts = _block(PathCounts, block["paths"])
+        counts: SolutionCounts = _block(SolutionCounts, block["solutions"])
+        end = begin + counts.distinct + counts.undecided
+        own = listed[begin:end]
+        # A path's number is that of its start plus the targets before it: a point at the wrong target shows.
+        if any(not first_path <= p < first_path + paths.total for s in own for p in s.paths) or len(own) != end - begin:
+            raise CognateError(f"the answer does not add up: solutions of target {index} are of paths to another one")
+        found.append(
+            TargetResult(
+                index=index,
+                paths=paths,
+                counts=counts,
+                solutions=tuple(s for s in own if not s.undecided),
+                undecided=tuple(s for s in own if s.undecided),
+            )
+        )
+        begin, first_path = end, first_path + paths.total
+    return tuple(found)
+
+
+def issue_warnings(result: Result) -> None:
+    """What a person should know, as warnings of Python."""
+    for warning in result.warnings:
+        warn(warning, CognateWarning)
+    questions = result.open_questions
+    if questions:
+        warn("not settled: " + "; ".join(questions), UnsettledWarning)

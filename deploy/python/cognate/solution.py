@@ -1,0 +1,157 @@
+"""Solution: one isolated point, what is known of it, and its certificate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+from . import exact
+from .errors import CognateError
+
+
+@dataclass(frozen=True)
+class Box:
+    """One coordinate of a certificate, exactly: a square around `re` + i `im` of half width `radius`.
+
+    `error` bounds how far the solution is from its middle.
+    """
+
+    variable: str
+    re: Fraction
+    im: Fraction
+    radius: Fraction
+    error: Fraction
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """A proof that there is exactly one solution in a box (Krawczyk's test), or why there is none.
+
+    `distinct`: the box meets no other. `real`: the solution is proved to be real; None where that is not asked.
+    `contraction`: the norm that the test shows to be below 1. `precision_bits`: of its interval arithmetic.
+    """
+
+    certified: bool
+    reason: str | None
+    distinct: bool | None
+    real: bool | None
+    precision_bits: int
+    contraction: float | None
+    coordinates: tuple[Box, ...]
+
+    @classmethod
+    def from_json(cls, found: Mapping[str, Any]) -> Certificate:
+        """A certificate as `solutions.jsonl` has it."""
+        return cls(
+            certified=bool(found["certified"]),
+            reason=found.get("reason"),
+            distinct=found.get("distinct"),
+            real=found.get("real"),
+            precision_bits=int(found["precision_bits"]),
+            contraction=found.get("contraction"),
+            coordinates=tuple(
+                Box(
+                    variable=str(c["variable"]),
+                    re=exact.dyadic(c["re"]),
+                    im=exact.dyadic(c["im"]),
+                    radius=exact.dyadic(c["radius"]),
+                    error=exact.dyadic(c["error"]),
+                )
+                for c in found.get("coordinates") or ()
+            ),
+        )
+
+
+@dataclass(frozen=True)
+class Solution(Mapping[str, complex]):
+    """One isolated solution: a mapping from the names of the variables to complex numbers.
+
+    `digits`: real and imaginary parts as decimal text where they have more digits than doubles, else None.
+    `real`: None where that is not decided. `multiplicity` and `cycles` (winding numbers) tell singular points.
+    `residual`, `condition` and `accuracy` are relative, of the point in doubles; `precision_bits` of its path.
+    `symmetry_class`: the number of its class under the symmetry group. `paths`: the paths that end here.
+    `undecided`: a finite singular point of which it is not known whether it is isolated.
+    """
+
+    names: tuple[str, ...]
+    coordinates: tuple[complex, ...]
+    digits: tuple[tuple[str, str], ...] | None
+    real: bool | None
+    singular: bool
+    undecided: bool
+    multiplicity: int | None
+    cycles: tuple[int, ...]
+    residual: float | None
+    condition: float | None
+    accuracy: float | None
+    precision_bits: int
+    symmetry_class: int | None
+    paths: tuple[int, ...]
+    certificate: Certificate | None
+    deflations: int | None
+
+    def __getitem__(self, name: str) -> complex:
+        try:
+            return self.coordinates[self.names.index(name)]
+        except ValueError:
+            raise KeyError(name) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def decimal(self, name: str) -> tuple[Decimal, Decimal]:
+        """Real and imaginary part with every digit that is known; of a double, the digits that tell it apart."""
+        if name not in self.names:
+            raise KeyError(name)
+        at = self.names.index(name)
+        if self.digits is not None:
+            re, im = self.digits[at]
+            return Decimal(re), Decimal(im)
+        z = self.coordinates[at]
+        return Decimal(repr(z.real)), Decimal(repr(z.imag))
+
+    @classmethod
+    def from_json(cls, line: Mapping[str, Any]) -> Solution:
+        """A solution from a line of `solutions.jsonl`."""
+        variables: Mapping[str, Any] = line["variables"]
+        long = any(isinstance(part, str) for pair in variables.values() for part in pair)
+        certificate = line.get("certificate")
+        return cls(
+            names=tuple(variables),
+            coordinates=tuple(complex(float(re), float(im)) for re, im in variables.values()),
+            digits=tuple((str(re), str(im)) for re, im in variables.values()) if long else None,
+            real=line["real"],
+            singular=bool(line["singular"]),
+            undecided=bool(line.get("undecided", False)),
+            multiplicity=line["multiplicity"],
+            cycles=tuple(line.get("cycles") or ()),
+            residual=line["residual"],
+            condition=line["condition"],
+            accuracy=line["accuracy"],
+            precision_bits=int(line["precision_bits"]),
+            symmetry_class=line.get("class"),
+            paths=tuple(line["paths"]),
+            certificate=None if certificate is None else Certificate.from_json(certificate),
+            deflations=line.get("deflations"),
+        )
+
+
+def points(solutions: list[Solution] | tuple[Solution, ...]) -> list[tuple[complex, ...]]:
+    """The points alone."""
+    return [solution.coordinates for solution in solutions]
+
+
+def check_names(solutions: tuple[Solution, ...]) -> tuple[str, ...]:
+    """The names of the variables, which all solutions of one answer share."""
+    if not solutions:
+        return ()
+    names = solutions[0].names
+    if any(solution.names != names for solution in solutions):
+        raise CognateError("the solutions of one answer have other variables than one another")
+    return names

@@ -1,0 +1,126 @@
+"""Solve: a problem here and now, by the program with workers of its own."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from . import options as options_
+from . import program, result
+from .errors import CognateError, Unsettled
+from .options import Options
+from .progress import Bar, Wanted
+from .result import Result
+from .system import System, problem_file
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+def solve(
+    problem: object,
+    *,
+    workers: int = 2,
+    threads: int | None = None,
+    progress: Wanted = None,
+    strict: bool = False,
+    output: str | os.PathLike[str] | None = None,
+    **options: Unpack[Options],
+) -> Result:
+    """All isolated solutions of a system of polynomial equations.
+
+    `problem`: a `System`; equations, as strings or of sympy, one or a list; our JSON as a mapping; a file
+    (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of such a file.
+    `workers`: processes that track, with `threads` each. `progress`: see `cognate.progress.Wanted`. `strict`: an
+    answer that is not settled is raised as `Unsettled` instead of a warning. `output`: a folder for all files,
+    paths.parquet and Bertini's among them. `options`: see `Options`.
+
+    Warns with `UnsettledWarning` where paths failed, ends are undecided or counts do not add up. Raises
+    `InputError` where the problem or an option is wrong, `ServiceError` where the program gives up.
+
+    >>> import cognate as cg
+    >>> found = cg.solve(["x^2 + y^2 - 4", "x*y - 1"])
+    >>> found.counts.distinct, found.counts.real, found.settled, found.complete
+    (4, 4, True, True)
+    >>> all(abs(s["x"] * s["y"] - 1) < 1e-12 for s in found.solutions)
+    True
+    """
+    with program.Folder() as folder, Bar(progress) as bar:
+        arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
+        finished = program.run(arguments, own=own, watcher=bar.watcher)
+        found = result.read(kept or folder.path / "answer", output=kept, own=own)
+    return _checked(found, finished, strict)
+
+
+async def solve_async(
+    problem: object,
+    *,
+    workers: int = 2,
+    threads: int | None = None,
+    progress: Wanted = None,
+    strict: bool = False,
+    output: str | os.PathLike[str] | None = None,
+    **options: Unpack[Options],
+) -> Result:
+    """As `solve`, for `await`; where the task is cancelled, the solve ends.
+
+    >>> import asyncio, cognate as cg
+    >>> asyncio.run(cg.solve_async(["x^2 - 2"])).counts.real
+    2
+    """
+    with program.Folder() as folder, Bar(progress) as bar:
+        arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
+        finished = await program.run_async(arguments, own=own, watcher=bar.watcher)
+        found = result.read(kept or folder.path / "answer", output=kept, own=own)
+    return _checked(found, finished, strict)
+
+
+def problem_arguments(
+    problem: object, options: Options, folder: program.Folder
+) -> tuple[list[str], dict[str, str | None]]:
+    """What the program is told of a problem and its options; and the files that were written for it."""
+    file = problem_file(problem, folder)
+
+    def names() -> tuple[tuple[str, ...], tuple[str, ...]]:
+        system = file.system or System.read(file.path)
+        return system.variables, system.parameters
+
+    found, own = options_.arguments(options, folder, names)
+    # A path that begins with a hyphen is no option.
+    return [*found, "--", str(file.path)], {**own, **file.own}
+
+
+def _arguments(
+    problem: object,
+    options: Options,
+    folder: program.Folder,
+    workers: int,
+    threads: int | None,
+    output: str | os.PathLike[str] | None,
+    bar: Bar,
+) -> tuple[list[str], dict[str, str | None], Path | None]:
+    found, own = problem_arguments(problem, options, folder)
+    kept = None if output is None else Path(output)
+    arguments = ["solve", "--format", "json", "--output", str(kept or folder.path / "answer")]
+    arguments += ["--workers", str(workers)]
+    if threads is not None:
+        arguments += ["--threads", str(threads)]
+    # A program that shows nothing by itself is not asked for lines that nobody reads.
+    if bar.watcher is not None:
+        arguments += ["--progress", "json"]
+    return [*arguments, *found], own, kept
+
+
+def _checked(found: Result, finished: program.Finished, strict: bool) -> Result:
+    if (finished.exit_code == program.SOLVED) != bool(found.summary["settled"]):
+        raise CognateError("the program's exit code and its summary do not agree on whether the answer is settled")
+    return checked(found, strict)
+
+
+def checked(found: Result, strict: bool) -> Result:
+    """An answer; with warnings, or raised, where it is not settled."""
+    if strict and found.open_questions:
+        raise Unsettled("not settled: " + "; ".join(found.open_questions), found)
+    result.issue_warnings(found)
+    return found
