@@ -89,3 +89,28 @@ fn wilkinson_12_has_its_roots() {
         assert!((root - f64::from(expected)).abs() < 1e-4, "{roots:?}");
     }
 }
+
+/// A line that all but touches the circle, bent so that no elimination is linear: x = +-sqrt(2) 1e-8, to 24 digits,
+/// are two points that doubles take for one; dual spaces do not confirm it, and more digits tell them apart.
+#[test]
+fn points_that_doubles_do_not_tell_apart_are_two() {
+    let system = written(
+        "variable_group x, y; function f, g; f = x^2 + y^2 - 1; \
+         g = y - 1 + 1/10000000000000000 + x/3*(y - 1)^2;",
+    );
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let counts = &sets[0].counts;
+        assert!(sets[0].settled(), "seed {seed}: {:?}", sets[0].warnings);
+        assert_eq!((counts.nonsingular, counts.singular), (6, 0), "seed {seed}");
+        let near = sets[0].solutions.iter().filter(|solution| {
+            let x = solution.variables.values().next().expect("two variables");
+            (x.norm_sqr().sqrt() / 1.414_213_562_4e-8 - 1.0).abs() < 1e-8
+        });
+        assert_eq!(near.count(), 2, "seed {seed}");
+    }
+}

@@ -509,14 +509,6 @@ impl Cauchy {
 
     fn inward(&self, ratio: f64, settings: &Settings) -> Next {
         let radius = self.radius * ratio;
-        // So near to the end the homotopy's equations are those that are asked, within the accuracy of their
-        // coefficients: what has not settled farther out depends on digits that are not known.
-        if !settings.exact_data && radius < settings.data_accuracy {
-            return match !self.fine && self.may_be_finer {
-                true => Next::Finer,
-                false => self.diverging(Some(radius)),
-            };
-        }
         if radius < settings.endgame_min_radius {
             return Next::Unsettled;
         }
