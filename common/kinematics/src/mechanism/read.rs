@@ -1,0 +1,382 @@
+//! From the text of a mechanism's file to a checked mechanism: JSON, TOML, DH table, URDF, told apart by content.
+
+use super::document::{Document, Entry, Fields, MechanismError};
+use super::exact::{Angle, Number};
+use super::pose::{Pose, ROTATION_ERROR, nearest_rotation};
+use super::read_bodies::{chain, framework, linkage, platform};
+use super::{Body, Limits, MOST_PARTS, Mechanism, Output, Snapped, Space, Vector};
+use crate::import::urdf::ChainEnds;
+use crate::import::{dh, urdf};
+use num_complex::Complex64;
+use std::collections::HashSet;
+
+/// How a file is read.
+#[derive(Clone, Debug, Default)]
+pub struct ReadOptions {
+    /// Rounded right angles are taken as they are written.
+    pub no_snap: bool,
+    /// Which chain of a URDF is meant.
+    pub ends: ChainEnds,
+}
+
+/// Reads a mechanism from a file's bytes; `file` is its name.
+pub fn read(
+    file: &str,
+    content: &[u8],
+    options: &ReadOptions,
+) -> Result<Mechanism, MechanismError> {
+    let document = Document::new(file, content)?;
+    let start = document.text.trim_start_matches('\u{feff}').trim_start();
+    if start.starts_with('<') {
+        return urdf::read(&document, options);
+    }
+    let first = start.lines().next().unwrap_or_default();
+    if dh::is_header(first) {
+        return dh::read(&document, options);
+    }
+    let tree = document.tree()?;
+    let root = Entry {
+        document,
+        tree: &tree,
+        path: String::new(),
+    };
+    mechanism(&root, options)
+}
+
+fn mechanism(root: &Entry<'_>, options: &ReadOptions) -> Result<Mechanism, MechanismError> {
+    let fields = root.fields("an object with a mechanism")?;
+    let file = root.document.file;
+    let name = match fields.optional("name") {
+        Some(entry) => entry.text("the mechanism's name")?.to_owned(),
+        None => file.to_owned(),
+    };
+    let space = match fields.optional("space") {
+        None => Space::Spatial,
+        Some(entry) => match entry.text("spatial, planar or spherical")? {
+            "spatial" => Space::Spatial,
+            "planar" => Space::Planar,
+            "spherical" => Space::Spherical,
+            other => {
+                let message = format!("expected spatial, planar or spherical, found \"{other}\"");
+                return Err(entry.error(message));
+            }
+        },
+    };
+    let degrees = match fields.optional("angles") {
+        None => true,
+        Some(entry) => match entry.text("deg or rad")? {
+            "deg" => true,
+            "rad" => false,
+            other => return Err(entry.error(format!("expected deg or rad, found \"{other}\""))),
+        },
+    };
+    if let Some(length) = fields.optional("length") {
+        length.text("the unit of lengths, a word")?;
+    }
+    let mut context = Context {
+        space,
+        degrees,
+        snap: !options.no_snap,
+        snapped: Vec::new(),
+    };
+    let bodies = ["serial", "loop", "platform", "framework", "joints"];
+    let present: Vec<&str> = bodies
+        .into_iter()
+        .filter(|n| fields.optional(n).is_some())
+        .collect();
+    let body = match present[..] {
+        ["serial"] => Body::Chain(chain(&fields, "serial", &mut context)?),
+        ["loop"] => Body::Chain(chain(&fields, "loop", &mut context)?),
+        ["platform"] => Body::Platform(platform(&fields, &mut context)?),
+        ["framework"] => Body::Framework(framework(&fields, &mut context)?),
+        ["joints"] => Body::Linkage(linkage(&fields, &mut context)?),
+        [] => {
+            return Err(fields.error(
+                "the mechanism has no body: expected links with joints, serial, loop, platform or framework",
+            ));
+        }
+        _ => {
+            let message = format!("expected one body, found {}", present.join(" and "));
+            return Err(fields.error(message));
+        }
+    };
+    let mut mechanism = Mechanism {
+        file: file.to_owned(),
+        name,
+        space,
+        degrees,
+        body,
+        inputs: Vec::new(),
+        output: None,
+        limits: Vec::new(),
+        snapped: context.snapped,
+        warnings: Vec::new(),
+    };
+    let leg_limits = legs_limits(&fields, &mechanism)?;
+    mechanism.limits.extend(leg_limits);
+    inputs_and_limits(&fields, &mut mechanism)?;
+    fields.finish()?;
+    Ok(mechanism)
+}
+
+/// What readers of bodies need to know of the file, and what they note.
+pub(super) struct Context {
+    pub space: Space,
+    pub degrees: bool,
+    pub snap: bool,
+    pub snapped: Vec<Snapped>,
+}
+
+impl Context {
+    /// An angle, its snapping noted.
+    pub fn angle(&mut self, entry: &Entry<'_>) -> Result<Angle, MechanismError> {
+        let read = entry.angle(self.degrees, self.snap)?;
+        Ok(super::noted(read, &entry.path, &mut self.snapped))
+    }
+
+    /// A point or direction: three numbers, in the plane two.
+    pub fn vector(&self, entry: &Entry<'_>, what: &str) -> Result<Vector, MechanismError> {
+        if self.space == Space::Planar {
+            let [x, y] = entry.numbers::<2>(&format!("{what}: two numbers"))?;
+            return Ok([x, y, Number::integer(0)]);
+        }
+        entry.numbers::<3>(&format!("{what}: three numbers"))
+    }
+
+    /// A direction, which is not 0.
+    pub fn direction(&self, entry: &Entry<'_>, what: &str) -> Result<Vector, MechanismError> {
+        let vector = self.vector(entry, what)?;
+        if vector.iter().all(|c| c.value.is_zero()) {
+            return Err(entry.error(format!("{what} has length 0; expected a direction")));
+        }
+        Ok(vector)
+    }
+}
+
+/// Names of inputs, the output and the limits of joints.
+fn inputs_and_limits(fields: &Fields<'_>, mechanism: &mut Mechanism) -> Result<(), MechanismError> {
+    let values = mechanism.values();
+    let known = |name: &str| values.iter().find(|(n, _)| n == name);
+    let names = || {
+        let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
+        names.join(", ")
+    };
+    if let Some(entry) = fields.optional("inputs") {
+        let mut seen = HashSet::new();
+        for item in entry.items("a list of names of joints")? {
+            let name = item.text("the name of a joint")?;
+            if known(name).is_none() {
+                let message = format!(
+                    "no joint \"{name}\" that can be driven; there are {}",
+                    names()
+                );
+                return Err(item.error(message));
+            }
+            if !seen.insert(name) {
+                return Err(item.error(format!("\"{name}\" is an input already")));
+            }
+            mechanism.inputs.push(name.to_owned());
+        }
+    } else if let Body::Platform(_) = mechanism.body {
+        mechanism.inputs = values.iter().map(|(n, _)| n.clone()).collect();
+    }
+    if let Some(entry) = fields.optional("output") {
+        mechanism.output = Some(output(&entry, mechanism)?);
+    }
+    if let Some(entry) = fields.optional("limits") {
+        for (name, range) in entry.fields("an object of [low, high]")?.all() {
+            let Some((_, is_angle)) = known(name) else {
+                let message = format!(
+                    "no joint \"{name}\" that can have limits; there are {}",
+                    names()
+                );
+                return Err(range.error(message));
+            };
+            let range = limits(&range, *is_angle, mechanism.degrees)?;
+            mechanism.limits.push(Limits {
+                joint: name.to_owned(),
+                range,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Limits that stand in the legs of a platform themselves.
+fn legs_limits(fields: &Fields<'_>, mechanism: &Mechanism) -> Result<Vec<Limits>, MechanismError> {
+    let Body::Platform(platform) = &mechanism.body else {
+        return Ok(Vec::new());
+    };
+    let mut found = Vec::new();
+    let Some(body) = fields.optional("platform") else {
+        return Ok(found);
+    };
+    let legs = body.fields("a platform")?.required("legs", "its legs")?;
+    for (item, leg) in legs.items("a list of legs")?.iter().zip(&platform.legs) {
+        if let Some(entry) = item.fields("a leg")?.optional("limits") {
+            found.push(Limits {
+                joint: leg.name.clone(),
+                range: limits(&entry, leg.is_angle(), mechanism.degrees)?,
+            });
+        }
+    }
+    Ok(found)
+}
+
+/// `[low, high]` in radians or lengths.
+fn limits(entry: &Entry<'_>, is_angle: bool, degrees: bool) -> Result<[f64; 2], MechanismError> {
+    let items = entry.items("[low, high]")?;
+    let [low, high] = &items[..] else {
+        return Err(entry.error(format!(
+            "expected [low, high], found {} values",
+            items.len()
+        )));
+    };
+    let value = |entry: &Entry<'_>| -> Result<f64, MechanismError> {
+        if is_angle {
+            Ok(entry.angle(degrees, true)?.angle.radians)
+        } else {
+            entry.double()
+        }
+    };
+    let range = [value(low)?, value(high)?];
+    if range[0] > range[1] {
+        let message = format!("limits are reversed: {} is above {}", range[0], range[1]);
+        return Err(entry.error(message));
+    }
+    Ok(range)
+}
+
+fn output(entry: &Entry<'_>, mechanism: &Mechanism) -> Result<Output, MechanismError> {
+    let mut output = Output {
+        link: String::new(),
+        point: None,
+    };
+    if entry.is_object() {
+        let fields = entry.fields("a link and a point")?;
+        let link = fields.required("link", "the name of a link")?;
+        output.link = link.text("the name of a link")?.to_owned();
+        if let Some(point) = fields.optional("point") {
+            let context = Context {
+                space: mechanism.space,
+                degrees: mechanism.degrees,
+                snap: false,
+                snapped: Vec::new(),
+            };
+            output.point = Some(context.vector(&point, "a point")?);
+        }
+        fields.finish()?;
+    } else {
+        output.link = entry
+            .text("the name of a link, or {\"link\", \"point\"}")?
+            .to_owned();
+    }
+    if let Body::Linkage(linkage) = &mechanism.body
+        && !linkage.links.contains(&output.link)
+    {
+        let message = format!(
+            "no link \"{}\"; there are {}",
+            output.link,
+            linkage.links.join(", ")
+        );
+        return Err(entry.error(message));
+    }
+    Ok(output)
+}
+
+/// A pose: position with rotation, quaternion or rpy; in the plane position (or x, y) with angle.
+pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pose, MechanismError> {
+    let fields = entry.fields("a pose: an object with position and rotation, quaternion or rpy")?;
+    if space == Space::Planar {
+        let position = fields
+            .required("position", "two coordinates")?
+            .doubles::<2>("two numbers")?;
+        let angle = match fields.optional("angle") {
+            Some(angle) => angle.angle(degrees, true)?.angle,
+            None => Angle::ZERO,
+        };
+        fields.finish()?;
+        let [c, s] = angle.direction.map(Complex64::from);
+        return Ok(Pose {
+            position: [position[0].into(), position[1].into(), Complex64::default()],
+            ..Pose::about_z(c, s)
+        });
+    }
+    let position = match fields.optional("position") {
+        Some(position) => position.doubles::<3>("three numbers")?,
+        None => [0.0; 3],
+    };
+    let position = position.map(Complex64::from);
+    let ways: Vec<Entry<'_>> = ["rotation", "quaternion", "rpy"]
+        .iter()
+        .filter_map(|n| fields.optional(n))
+        .collect();
+    if ways.len() > 1 {
+        return Err(fields.error("expected one of rotation, quaternion and rpy"));
+    }
+    let pose = match ways.first() {
+        None => Pose {
+            position,
+            ..Pose::IDENTITY
+        },
+        Some(way) if way.path.ends_with("rotation") => {
+            let rows = way.items("three rows")?;
+            let rows: Result<Vec<[f64; 3]>, _> = rows
+                .iter()
+                .map(|r| r.doubles::<3>("three numbers"))
+                .collect();
+            let rows: [[f64; 3]; 3] = rows?
+                .try_into()
+                .map_err(|_| way.error("expected three rows of three numbers"))?;
+            let (error, rotation) = nearest_rotation(rows);
+            if error > ROTATION_ERROR {
+                return Err(way.error(format!(
+                    "this is no rotation: rows are off from orthogonal unit vectors by {error:.1e}; at most {ROTATION_ERROR:.0e} is rounded away"
+                )));
+            }
+            Pose {
+                position,
+                ..Pose::real(rotation, [0.0; 3])
+            }
+        }
+        Some(way) if way.path.ends_with("quaternion") => {
+            let q = way.doubles::<4>("four numbers [w, x, y, z]")?;
+            let square: f64 = q.iter().map(|c| c * c).sum();
+            if (square - 1.0).abs() > ROTATION_ERROR {
+                return Err(way.error(format!(
+                    "expected a quaternion of length 1, its square is {square}"
+                )));
+            }
+            Pose::of_quaternion(q.map(Complex64::from), position)
+                .ok_or_else(|| way.error("expected a quaternion of length 1"))?
+        }
+        Some(way) => {
+            let items = way.items("three angles")?;
+            let angles: Result<Vec<Angle>, _> = items
+                .iter()
+                .map(|a| Ok(a.angle(degrees, true)?.angle))
+                .collect();
+            let angles: [Angle; 3] = angles?
+                .try_into()
+                .map_err(|_| way.error("expected roll, pitch and yaw"))?;
+            Pose {
+                position,
+                ..Pose::of_roll_pitch_yaw(angles)
+            }
+        }
+    };
+    fields.finish()?;
+    Ok(pose)
+}
+
+/// The items of a list, as many as a mechanism may have.
+pub(super) fn parts<'a>(entry: &Entry<'a>, what: &str) -> Result<Vec<Entry<'a>>, MechanismError> {
+    let items = entry.items(what)?;
+    if items.len() > MOST_PARTS {
+        return Err(entry.error(format!(
+            "{} parts; at most {MOST_PARTS} are read",
+            items.len()
+        )));
+    }
+    Ok(items)
+}
