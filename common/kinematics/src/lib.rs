@@ -23,6 +23,7 @@
 
 pub mod assessment;
 pub mod body_guidance;
+pub mod compile;
 pub mod coupler_curve;
 pub mod design;
 pub mod drive;

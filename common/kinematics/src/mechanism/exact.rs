@@ -5,6 +5,7 @@
 
 use crate::plane;
 use cognate_numeric::rational::Rational;
+use cognate_numeric::scalar::Real;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -61,7 +62,7 @@ impl Number {
 
     /// The nearest double.
     pub fn to_f64(&self) -> f64 {
-        self.value.to_f64()
+        nearest(&self.value)
     }
 
     /// The number in an expression: `0`, `3`, `(-3/5)`.
@@ -78,6 +79,11 @@ impl Number {
             _ => format!("\"{}\"", self.value),
         }
     }
+}
+
+/// The double nearest to a rational.
+fn nearest(value: &Rational) -> f64 {
+    f64::from_rational(value)
 }
 
 /// A rational in an expression.
@@ -198,7 +204,7 @@ pub fn read_angle(text: &str, degrees: bool, snap: bool) -> Option<ReadAngle> {
         return Some(plain(Angle::of_radians(value.to_f64())));
     }
     if degrees {
-        return Some(plain(Angle::of_degrees(value.plain.to_f64())));
+        return Some(plain(Angle::of_degrees(nearest(&value.plain))));
     }
     if snap && let Some(quarters) = rounded_quarters(body.trim(), &value.plain) {
         return Some(ReadAngle {
@@ -206,7 +212,7 @@ pub fn read_angle(text: &str, degrees: bool, snap: bool) -> Option<ReadAngle> {
             snapped: Some(body.trim().to_owned()),
         });
     }
-    Some(plain(Angle::of_radians(value.plain.to_f64())))
+    Some(plain(Angle::of_radians(nearest(&value.plain))))
 }
 
 /// The multiple of pi/2 that a decimal is, rounded to the digits that it has; at least three of them.
@@ -260,7 +266,7 @@ struct Value {
 
 impl Value {
     fn to_f64(&self) -> f64 {
-        self.plain.to_f64() + self.turns.to_f64() * PI
+        nearest(&self.plain) + nearest(&self.turns) * PI
     }
 
     fn rounded(x: f64) -> Option<Self> {

@@ -303,7 +303,7 @@ mod tests {
             let pose = sample(k);
             let q = pose.quaternion().map(Complex64::from);
             let back = Pose::of_quaternion(q, pose.position).unwrap();
-            assert!(pose.distance(&back, 1.0) < 1e-15);
+            assert!(pose.distance(&back, 1.0) < 1e-14);
             let rpy = pose.roll_pitch_yaw().map(Angle::of_radians);
             let turned = Pose {
                 position: pose.position,
@@ -311,7 +311,7 @@ mod tests {
             };
             assert!(pose.distance(&turned, 1.0) < 1e-14);
             let identity = pose.then(&pose.inverse());
-            assert!(identity.distance(&Pose::IDENTITY, 1.0) < 1e-15);
+            assert!(identity.distance(&Pose::IDENTITY, 1.0) < 1e-14);
         }
     }
 
