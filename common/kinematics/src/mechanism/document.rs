@@ -141,19 +141,20 @@ impl<'a> Document<'a> {
     pub fn tree(&self) -> Result<Tree, MechanismError> {
         match self.text.trim_start().chars().next() {
             // A table's name in brackets is no JSON.
-            Some('{') => self.json(),
+            Some('{') => self.json_tree(),
             Some('[')
                 if !self.text.trim_start()[1..]
                     .trim_start()
                     .starts_with(is_bare) =>
             {
-                self.json()
+                self.json_tree()
             }
             _ => self.toml(),
         }
     }
 
-    fn json(&self) -> Result<Tree, MechanismError> {
+    /// The value of a file in JSON.
+    pub fn json_tree(&self) -> Result<Tree, MechanismError> {
         let value = json_value::parse(self.text, 0, self.text.len()).map_err(|fault| {
             let source = Source {
                 name: self.file,

@@ -83,7 +83,7 @@ impl Number {
 
 /// The double nearest to a rational.
 fn nearest(value: &Rational) -> f64 {
-    f64::from_rational(value)
+    f64::from_rational((), value)
 }
 
 /// A rational in an expression.

@@ -8,6 +8,7 @@ pub mod graph;
 pub mod pose;
 pub mod read;
 mod read_bodies;
+pub mod targets;
 pub mod write;
 
 pub use document::MechanismError;
