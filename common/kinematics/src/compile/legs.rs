@@ -252,7 +252,7 @@ impl Formulation for Inverse {
     fn direct(&self, target: &Target) -> Vec<Configuration> {
         match self.lift(Some(target), &[], &[]) {
             Lifted::Position(position) => vec![*position],
-            Lifted::Degenerate(_) => Vec::new(),
+            Lifted::Degenerate(_) | Lifted::Moving(_) => Vec::new(),
         }
     }
 }

@@ -93,6 +93,8 @@ pub enum Lifted {
     Position(Box<Configuration>),
     /// No position, by this name.
     Degenerate(&'static str),
+    /// A point of a curve of positions, along which this moves.
+    Moving(&'static str),
 }
 
 /// A mechanism's equations for one kind of question.
@@ -226,7 +228,7 @@ fn unbalanced(
 /// An error where more is driven than can move.
 fn overdriven(mechanism: &Mechanism, inputs: &[String]) -> Result<(), MechanismError> {
     match mechanism.expected_mobility() {
-        Some(mobility) if mobility >= 0 && (inputs.len() as i64) > mobility => {
+        Some(mobility) if (inputs.len() as i64) > mobility.max(0) => {
             Err(mechanism.error(format!(
                 "too many inputs: {} given ({}), and it has {mobility} freedoms (Gruebler's count without idle ones)",
                 inputs.len(),

@@ -80,7 +80,7 @@ fn refuse(
 ) -> Result<(), MechanismError> {
     let count = chain.joints.len();
     if free > 6 && !chain.closed {
-        let example = &chain.joints[count / 2].name;
+        let example = &chain.joints[(count - 1) / 3].name;
         return Err(mechanism.error(format!(
             "{count} joints for a pose of 6 freedoms: the arm is redundant, {} too many, its postures for a pose form curves; \
              lock {} (--lock {example}=0.3)",
@@ -303,7 +303,7 @@ impl Formulation for SixRevolute {
         let member = Member::of(parameters);
         match member.third_turn(&turns) {
             Some(third) => turns[2] = third,
-            None => return Lifted::Degenerate("joint 3 turns freely"),
+            None => return Lifted::Moving("joint 3"),
         }
         let (gap, growth) = member.gap(&turns);
         let Some(target) = target else {

@@ -403,3 +403,121 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         warnings,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::chain::JointValue;
+    use crate::mechanism::read;
+
+    /// Two links that turn, a fixed tool; `{}` stands in the second joint.
+    const ARM: &str = r#"<robot name="arm">
+<link name="base"/><link name="one"/><link name="two"/><link name="tool"/>
+<joint name="j1" type="revolute"><parent link="base"/><child link="one"/>
+<origin xyz="0 0 0.5"/><axis xyz="0 0 1"/><limit lower="-1" upper="2"/></joint>
+<joint name="j2" type="TYPE"><parent link="PARENT"/><child link="two"/>
+<origin xyz="0.3 0 0" rpy="ANGLE 0 0"/>AXIS</joint>
+<joint name="end" type="fixed"><parent link="two"/><child link="tool"/><origin xyz="0 0 0.2"/></joint>
+</robot>"#;
+
+    fn arm(changes: &[(&str, &str)]) -> Result<Mechanism, String> {
+        let mut text = ARM.to_owned();
+        let usual = [
+            ("TYPE", "continuous"),
+            ("PARENT", "one"),
+            ("ANGLE", "1.5708"),
+            ("AXIS", "<axis xyz=\"0 0 2\"/>"),
+        ];
+        for (from, to) in changes.iter().chain(&usual) {
+            text = text.replacen(from, to, 1);
+        }
+        read("arm.urdf", text.as_bytes(), &ReadOptions::default()).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn the_chain_moves_as_the_file_says() {
+        let arm = arm(&[]).unwrap();
+        let Body::Chain(chain) = &arm.body else {
+            unreachable!("URDF is a chain")
+        };
+        // j1 by 90 degrees: j2 at (0, 0.3, 0.5), its axis, -y of link one, along +x; the tool 0.2 along it.
+        let values = [
+            JointValue::of_real(std::f64::consts::FRAC_PI_2, true),
+            JointValue::of_real(0.7, true),
+        ];
+        let tool = chain.tool_pose(&values).position.map(|c| c.re);
+        for (x, wanted) in tool.into_iter().zip([0.2, 0.3, 0.5]) {
+            assert!((x - wanted).abs() < 1e-15, "{tool:?}");
+        }
+        assert_eq!(arm.limits_of("j1"), Some([-1.0, 2.0]));
+        assert_eq!(arm.limits_of("j2"), None);
+        assert_eq!(
+            arm.snapping_warnings(),
+            ["j2 rpy: 1.5708 is read as 90 deg; --no-snap takes it as written"]
+        );
+    }
+
+    #[test]
+    fn what_is_no_chain_is_refused_by_name_and_line() {
+        let message = |changes: &[(&str, &str)]| arm(changes).unwrap_err();
+        assert_eq!(
+            message(&[("TYPE", "floating")]),
+            "arm.urdf:5: joint j2 is floating; expected revolute, continuous, prismatic or fixed on the chain"
+        );
+        assert_eq!(
+            message(&[("AXIS", "<axis xyz=\"0 0 1\"/><mimic joint=\"j1\"/>")]),
+            "arm.urdf:5: joint j2 mimics another one, which is no freedom of its own"
+        );
+        assert_eq!(
+            message(&[("AXIS", "<axis xyz=\"0 0 0\"/>")]),
+            "arm.urdf:6: joint j2: its axis has length 0"
+        );
+        assert_eq!(
+            message(&[("AXIS", "<axis xyz=\"0 0\"/>")]),
+            "arm.urdf:6: joint j2: xyz is \"0 0\"; expected three numbers"
+        );
+        assert_eq!(
+            message(&[("ANGLE", "x")]),
+            "arm.urdf:6: joint j2: expected an angle, found \"x\""
+        );
+        assert_eq!(
+            message(&[("PARENT", "nobody")]),
+            "arm.urdf:5: joint j2 names link \"nobody\", which is not there"
+        );
+        assert_eq!(
+            message(&[("lower=\"-1\"", "lower=\"3\"")]),
+            "arm.urdf:4: joint j1: limits are reversed: 3 is above 2"
+        );
+        assert!(
+            message(&[(
+                "<parent link=\"two\"/><child link=\"tool\"/>",
+                "<parent link=\"base\"/><child link=\"two\"/>"
+            )])
+            .starts_with(
+                "arm.urdf:7: link \"two\" has two parents, by j2 and end: URDF cannot say a loop"
+            )
+        );
+        assert!(
+            message(&[
+                (
+                    "<link name=\"tool\"/>",
+                    "<link name=\"tool\"/><link name=\"a\"/>"
+                ),
+                ("PARENT", "one")
+            ])
+            .contains("several tips: tool, a; choose one with --tip")
+        );
+        assert_eq!(
+            message(&[("<robot name", "<robot xmlns:xacro=\"x\" name")]),
+            "arm.urdf:1: this is a xacro file: run xacro first"
+        );
+        assert!(message(&[("</robot>", "")]).starts_with("arm.urdf:"));
+        assert!(message(&[("<robot name", "<!DOCTYPE x><robot name")]).starts_with("arm.urdf:"));
+    }
+
+    #[test]
+    fn a_missing_axis_is_said() {
+        let arm = arm(&[("AXIS", "")]).unwrap();
+        assert_eq!(arm.warnings, ["j2: no <axis>; URDF means 1 0 0 by that"]);
+    }
+}

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// pi to 40 digits, for the comparison with rounded multiples.
 const PI_DIGITS: &str = "3.141592653589793238462643383279502884197";
 /// Most characters of one number.
-const MOST_CHARACTERS: usize = 200;
+const MOST_CHARACTERS: usize = 2000;
 /// Most nested brackets of one number.
 const MOST_NESTING: usize = 20;
 /// Largest power of ten in a number.

@@ -234,7 +234,7 @@ fn limits(entry: &Entry<'_>, is_angle: bool, degrees: bool) -> Result<[f64; 2], 
     };
     let value = |entry: &Entry<'_>| -> Result<f64, MechanismError> {
         if is_angle {
-            Ok(entry.angle(degrees, true)?.angle.radians)
+            Ok(entry.angle(degrees, false)?.angle.radians)
         } else {
             entry.double()
         }
@@ -292,7 +292,7 @@ pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pos
             .required("position", "two coordinates")?
             .doubles::<2>("two numbers")?;
         let angle = match fields.optional("angle") {
-            Some(angle) => angle.angle(degrees, true)?.angle,
+            Some(angle) => angle.angle(degrees, false)?.angle,
             None => Angle::ZERO,
         };
         fields.finish()?;
@@ -354,7 +354,7 @@ pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pos
             let items = way.items("three angles")?;
             let angles: Result<Vec<Angle>, _> = items
                 .iter()
-                .map(|a| Ok(a.angle(degrees, true)?.angle))
+                .map(|a| Ok(a.angle(degrees, false)?.angle))
                 .collect();
             let angles: [Angle; 3] = angles?
                 .try_into()
@@ -379,4 +379,116 @@ pub(super) fn parts<'a>(entry: &Entry<'a>, what: &str) -> Result<Vec<Entry<'a>>,
         )));
     }
     Ok(items)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(text: &str) -> String {
+        match read("m", text.as_bytes(), &ReadOptions::default()) {
+            Ok(_) => "read".into(),
+            Err(e) => e.to_string(),
+        }
+    }
+
+    #[test]
+    fn errors_name_file_line_and_field() {
+        for (text, wanted) in [
+            (
+                "{\n\"serial\": {\"joints\": [\n{\"name\": \"a\", \"alfa\": 1}]}}",
+                "m:3: serial.joints[0]: unknown field \"alfa\"",
+            ),
+            (
+                "{\"serial\": {\"joints\": [{\"name\": \"a\", \"d\": true}]}}",
+                "m:1: serial.joints[0].d: expected a number",
+            ),
+            (
+                "{\"serial\": {\"joints\": [{\"name\": \"a\"}, {\"name\": \"a\"}]}}",
+                "m:1: serial.joints[1].name: the name \"a\" stands for two things",
+            ),
+            (
+                "{\"links\": [\"g\", \"k\"], \"joints\": [\n{\"name\": \"a\", \"type\": \"R\", \"links\": [\"g\", \"x\"]}]}",
+                "m:2: joints[0].links[1]: there is no link \"x\"; there are g, k",
+            ),
+            ("{\"name\": \"a\"}", "m:1: the mechanism has no body"),
+            (
+                "{\"serial\": {\"joints\": [{\"name\": \"a\"}]}, \"limits\": {\"a\": [3, 2]}}",
+                "m:1: limits.a: limits are reversed",
+            ),
+            (
+                "{\"serial\": {\"joints\": [{\"name\": \"a\"}]}, \"inputs\": [\"b\"]}",
+                "m:1: inputs[0]: no joint \"b\" that can be driven; there are a",
+            ),
+            ("{\"serial\"", "m:1: expected `:`"),
+            (
+                "space = \"planar\"\n[framework]\npoints = [1]\n",
+                "m:3: framework.points[0]: expected a name, found the number 1",
+            ),
+            ("space = \"planar\"\nspace = \"planar\"\n", "m:2:"),
+            (
+                "type,theta,d,a,alpha\nR,0,0,0,x\n",
+                "m:2: alpha: expected an angle, found \"x\"",
+            ),
+        ] {
+            let found = message(text);
+            assert!(found.starts_with(wanted), "{found}\n  instead of\n{wanted}");
+        }
+    }
+
+    #[test]
+    fn toml_says_what_json_says() {
+        let toml = "space = \"spatial\"\n[platform]\nbase = { A = [1, 0, 0] }\nmoving = { P = [\"3/5\", 0, 0.5] }\n\
+                    legs = [{ name = \"L1\", from = \"A\", to = \"P\", type = \"SPS\", limits = [0.8, 1.6] }]\n";
+        let json = "{\"space\": \"spatial\", \"platform\": {\"base\": {\"A\": [1, 0, 0]}, \"moving\": {\"P\": [\"3/5\", 0, 0.5]}, \
+                    \"legs\": [{\"name\": \"L1\", \"from\": \"A\", \"to\": \"P\", \"type\": \"SPS\", \"limits\": [0.8, 1.6]}]}}";
+        let options = ReadOptions::default();
+        let of = |text: &str| read("m", text.as_bytes(), &options).unwrap();
+        assert_eq!(of(toml), of(json));
+        let again = crate::mechanism::write::json(&of(toml), toml.as_bytes()).unwrap();
+        assert_eq!(of(&again), of(json));
+    }
+
+    #[test]
+    fn modified_rows_move_as_they_should() {
+        use crate::mechanism::Body;
+        use crate::mechanism::chain::JointValue;
+        let row = |k: u32| {
+            format!(
+                "{{\"name\": \"q{k}\", \"a\": 0.{k}, \"d\": 0.2, \"alpha\": {}, \"theta\": 10}}",
+                30 * k
+            )
+        };
+        let text = format!(
+            "{{\"serial\": {{\"convention\": \"modified\", \"joints\": [{}, {}, {}]}}}}",
+            row(1),
+            row(2),
+            row(3)
+        );
+        let read = read("m", text.as_bytes(), &ReadOptions::default()).unwrap();
+        let Body::Chain(chain) = &read.body else {
+            unreachable!("a chain was written")
+        };
+        let values = [0.4, -0.9, 1.3];
+        let turns: Vec<JointValue> = values
+            .iter()
+            .map(|x| JointValue::of_real(*x, true))
+            .collect();
+        // J. Craig: Rx(alpha) Tx(a) Rz(q + theta) Tz(d), row by row.
+        let mut wanted = Pose::IDENTITY;
+        for (k, q) in (1..).zip(values) {
+            let [c, s] = Angle::of_degrees(30.0 * f64::from(k))
+                .direction
+                .map(Complex64::from);
+            let [cq, sq] = Angle::of_radians(q + 10f64.to_radians())
+                .direction
+                .map(Complex64::from);
+            wanted = wanted
+                .then(&Pose::about_x(c, s))
+                .then(&Pose::shift(0.1 * f64::from(k), 0.0, 0.0))
+                .then(&Pose::about_z(cq, sq))
+                .then(&Pose::shift(0.0, 0.0, 0.2));
+        }
+        assert!(chain.tool_pose(&turns).distance(&wanted, 1.0) < 1e-14);
+    }
 }

@@ -193,7 +193,12 @@ pub(super) fn linkage(
     let mut joints = Vec::new();
     let mut homes = Vec::new();
     for item in parts(&list, "a list of joints")? {
-        let (joint, at_home) = joint(&item, &names, &links, &mut joint_names, context)?;
+        let (mut joint, at_home) = joint(&item, &names, &links, &mut joint_names, context)?;
+        // Values are those of the moving link against the ground, in whatever order the two are named.
+        if joint.links[1] == ground {
+            joint.links.swap(0, 1);
+            joint.sides.swap(0, 1);
+        }
         joints.push(joint);
         homes.push(at_home);
     }

@@ -64,7 +64,7 @@ pub fn inputs(
         for (name, is_angle) in names {
             let value = fields.required(name, "the value of this input")?;
             values.push(if *is_angle {
-                value.angle(degrees, true)?.angle.radians
+                value.angle(degrees, false)?.angle.radians
             } else {
                 value.double()?
             });
@@ -78,7 +78,7 @@ pub fn inputs(
 /// One value of a joint, as typed.
 pub fn value(text: &str, is_angle: bool, degrees: bool) -> Option<f64> {
     let value = if is_angle {
-        read_angle(text, degrees, true)?.angle.radians
+        read_angle(text, degrees, false)?.angle.radians
     } else {
         Number::read(text)?.to_f64()
     };
@@ -213,7 +213,7 @@ impl Row {
         degrees: bool,
     ) -> Result<Angle, MechanismError> {
         let text = self.cell(document, name)?;
-        let read = read_angle(text, degrees, true);
+        let read = read_angle(text, degrees, false);
         let read = read.ok_or_else(|| {
             document.error(
                 self.at,

@@ -336,6 +336,10 @@ fn of_set(
                 counts.degenerate += u64::from(!solution.singular);
                 continue;
             }
+            Lifted::Moving(_) => {
+                counts.positive_dimensional += u64::from(!solution.singular);
+                continue;
+            }
         };
         if configuration.residual.is_nan() || configuration.residual > CLOSES {
             // What does not close is no position, and nobody knows why it was found.

@@ -83,13 +83,41 @@ fn positions(
     points
 }
 
-/// Prepares a formulation with parameters.
+/// Prepares a formulation with parameters. A number that is not the family's is believed when two general
+/// members have it.
 pub fn prepare(
     formulation: &dyn Formulation,
     system: &System,
     seed: u64,
 ) -> Result<Prepared, String> {
-    let mut random = RandomStream::new(seed, Purpose::Probe, 0x6d65_6368);
+    let mut first = prepare_once(formulation, system, seed, 0)?;
+    if Some(first.count) == formulation.family().expected {
+        return Ok(first);
+    }
+    let second = prepare_once(formulation, system, seed, 1)?;
+    if second.count == first.count {
+        return Ok(first);
+    }
+    let counts = [first.count, second.count];
+    if second.count > first.count {
+        first = second;
+    }
+    first.settled = false;
+    first.warnings.push(format!(
+        "preparing: two general targets of this mechanism have {} and {} positions; the number is not settled",
+        counts[0], counts[1]
+    ));
+    Ok(first)
+}
+
+/// Prepares by the general member of this number.
+fn prepare_once(
+    formulation: &dyn Formulation,
+    system: &System,
+    seed: u64,
+    member: u64,
+) -> Result<Prepared, String> {
+    let mut random = RandomStream::new(seed, Purpose::Probe, 0x6d65_6368 + member);
     // Moduli near 1, and no number near 0: lengths and half-tangents of a general member.
     let mut draw = || {
         let z = random.unit();
@@ -100,8 +128,12 @@ pub fn prepare(
     let dimension = system.variables.len();
     let options = PlanOptions {
         seed,
-        settings: Preset::Careful.settings(),
         ..PlanOptions::default()
+    };
+    // A known member's paths are few and nothing else says how many there are: cautiously.
+    let careful = PlanOptions {
+        settings: Preset::Careful.settings(),
+        ..options.clone()
     };
     let (sets, parameters) = match (known, member) {
         (Some(known), None) => {
@@ -122,7 +154,7 @@ pub fn prepare(
             let options = PlanOptions {
                 start_parameters: Some(known.parameters),
                 target_parameters: vec![member.clone()],
-                ..options
+                ..careful
             };
             (solve(system, &options, Some(&points))?, member)
         }
