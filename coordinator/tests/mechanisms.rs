@@ -395,12 +395,13 @@ fn dice(seed: u64) -> impl FnMut() -> f64 {
     move || 2.0 * stream.uniform() - 1.0
 }
 
-fn random_arm(draw: &mut impl FnMut() -> f64) -> Mechanism {
+fn random_arm(draw: &mut impl FnMut() -> f64, shifts: &[usize]) -> Mechanism {
     let rows: Vec<String> = (1..=6)
         .map(|i| {
+            let kind = if shifts.contains(&i) { "P" } else { "R" };
             let [a, d] = [draw(), draw()].map(|x| (x * 500.0).round() / 1000.0);
             let [alpha, theta] = [draw(), draw()].map(|x| (x * 3000.0).round() / 1000.0);
-            format!("{{\"name\": \"q{i}\", \"a\": {a}, \"d\": {d}, \"alpha\": {alpha}, \"theta\": {theta}}}")
+            format!("{{\"name\": \"q{i}\", \"type\": \"{kind}\", \"a\": {a}, \"d\": {d}, \"alpha\": {alpha}, \"theta\": {theta}}}")
         })
         .collect();
     let text = format!(
@@ -415,7 +416,7 @@ fn random_arm(draw: &mut impl FnMut() -> f64) -> Mechanism {
 fn inverse_of_forward_contains_the_start() {
     for seed in 0..12 {
         let mut draw = dice(seed);
-        let arm = random_arm(&mut draw);
+        let arm = random_arm(&mut draw, &[]);
         let starts: Vec<Vec<f64>> = (0..3)
             .map(|_| (0..6).map(|_| 3.0 * draw()).collect())
             .collect();
@@ -529,5 +530,61 @@ fn two_rules_give_the_same_positions() {
             .map(|(x, y)| (x - y).abs())
             .fold(0.0, f64::max);
         assert!(apart < 1e-8, "{a:?} and {b:?}");
+    }
+}
+
+/// One shift leaves sixteen postures, two eight, wherever they are in the chain; the start is among them.
+#[test]
+fn chains_with_shifts_reach_their_poses() {
+    for (seed, shifts, expected) in [
+        (1, &[3][..], 16),
+        (2, &[1], 16),
+        (3, &[6], 16),
+        (4, &[2, 3], 8),
+        (5, &[1, 3], 8),
+        (6, &[2, 4, 6], 2),
+    ] {
+        let mut draw = dice(100 + seed);
+        let arm = random_arm(&mut draw, shifts);
+        let start: Vec<f64> = (0..6).map(|_| draw()).collect();
+        let Body::Chain(chain) = &arm.body else {
+            unreachable!("a chain was written")
+        };
+        let joints = start.iter().zip(&chain.joints);
+        let values: Vec<JointValue> = joints
+            .map(|(x, j)| JointValue::of_real(*x, j.is_angle))
+            .collect();
+        let targets = [Target::Pose(chain.tool_pose(&values))];
+        let options = AnswerOptions {
+            seed,
+            certify: false,
+        };
+        let asked = answer(&arm, &question(Problem::Inverse), &targets, &options);
+        let found = match asked {
+            Ok(found) => found,
+            Err(e) => {
+                assert!(
+                    shifts.len() == 3 && e.to_string().contains("three apart"),
+                    "{e}"
+                );
+                continue;
+            }
+        };
+        assert_eq!(
+            (found.here, found.settled),
+            (Some(expected), true),
+            "{shifts:?}: {:?}",
+            found.warnings
+        );
+        let positions = found.targets[0].positions.iter().filter(|p| p.is_real);
+        let nearest = positions
+            .map(|p| {
+                let pairs = p.configuration.values.iter().zip(&start);
+                pairs
+                    .map(|((_, v), x)| (v.real() - x).abs())
+                    .fold(0.0, f64::max)
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-6, "{shifts:?}: {nearest}");
     }
 }

@@ -4,6 +4,7 @@
 //! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
 
 mod framework;
+mod invariants;
 mod legs;
 pub mod linkage_pose;
 mod loops;

@@ -6,7 +6,7 @@ use super::text::Equations;
 use super::{
     Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target, turn_of,
 };
-use crate::compile::six_revolute;
+use crate::compile::{invariants, six_revolute};
 use crate::mechanism::chain::{Chain, ChainJoint, JointValue};
 use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Mechanism, MechanismError};
@@ -55,6 +55,9 @@ pub fn compile(
         .filter(|i| locked[*i].is_none() && !driven.contains(i))
         .all(|i| chain.joints[i].is_angle);
     refuse(mechanism, chain, free, turns)?;
+    if !turns {
+        return invariants::compile(mechanism, chain, locked);
+    }
     let name = if chain.closed { "6R loop" } else { "6R" };
     Ok(Box::new(SixRevolute {
         chain: chain.clone(),
@@ -105,9 +108,9 @@ fn refuse(
             "a loop with {free} free joints closes only for special dimensions; where it does it moves, which is asked by motion"
         )));
     }
-    if !turns {
+    if !turns && chain.closed {
         return Err(mechanism.error(
-            "not in this version: inverse kinematics of chains with P joints; lock them (--lock JOINT=VALUE)",
+            "not in this version: loops of rows with P joints; say it by links and joints",
         ));
     }
     Ok(())
@@ -174,7 +177,7 @@ impl Formulation for Open {
 }
 
 /// A position of a chain, with its frames.
-fn position(chain: &Chain, values: Vec<JointValue>, residual: f64) -> Configuration {
+pub fn position(chain: &Chain, values: Vec<JointValue>, residual: f64) -> Configuration {
     let frames = chain.frames(&values);
     let named = (1..)
         .map(|i| format!("link{i}"))
@@ -446,33 +449,7 @@ impl Member {
             .then(&turn(4))
             .then(&self.links[4]);
         let (i, h) = (last.column(2), last.position);
-        // c, s with R (i, h) = (y, w) in the first two coordinates.
-        let (mut cc, mut ss, mut over) = (
-            Complex64::default(),
-            Complex64::default(),
-            Complex64::default(),
-        );
-        let mut size = 0.0;
-        for (from, to) in [(i, y), (h, w)] {
-            cc += from[0] * to[0] + from[1] * to[1];
-            ss += from[0] * to[1] - from[1] * to[0];
-            over += from[0] * from[0] + from[1] * from[1];
-            size += from[0].norm_sqr() + from[1].norm_sqr();
-        }
-        if size < 1e-20 {
-            return None;
-        }
-        // Isotropic: the sum of squares vanishes; then the determinant of the two pairs decides.
-        if over.norm_sqr() < 1e-16 * size * size {
-            let determinant = i[0] * h[1] - i[1] * h[0];
-            if determinant.norm_sqr() < 1e-16 * size * size {
-                return None;
-            }
-            let c = (y[0] * h[1] - i[1] * w[0]) / determinant;
-            let s = (i[0] * w[0] - h[0] * y[0]) / -determinant;
-            return Some((c, s));
-        }
-        Some((cc / over, ss / over))
+        turn_between((i, h), (y, w))
     }
 
     /// The gap of axis 6 and of the circles, and how large numbers grow along the chain.
@@ -495,4 +472,39 @@ impl Member {
         }
         (gap, growth)
     }
+}
+
+/// Cosine and sine of the turn about z that takes two vectors to two others, by least squares of their first two
+/// coordinates. `None` where both are along z.
+pub fn turn_between(
+    (i, h): (Vector3, Vector3),
+    (y, w): (Vector3, Vector3),
+) -> Option<(Complex64, Complex64)> {
+    // c, s with R (i, h) = (y, w) in the first two coordinates.
+    let (mut cc, mut ss, mut over) = (
+        Complex64::default(),
+        Complex64::default(),
+        Complex64::default(),
+    );
+    let mut size = 0.0;
+    for (from, to) in [(i, y), (h, w)] {
+        cc += from[0] * to[0] + from[1] * to[1];
+        ss += from[0] * to[1] - from[1] * to[0];
+        over += from[0] * from[0] + from[1] * from[1];
+        size += from[0].norm_sqr() + from[1].norm_sqr();
+    }
+    if size < 1e-20 {
+        return None;
+    }
+    // Isotropic: the sum of squares vanishes; then the determinant of the two pairs decides.
+    if over.norm_sqr() < 1e-16 * size * size {
+        let determinant = i[0] * h[1] - i[1] * h[0];
+        if determinant.norm_sqr() < 1e-16 * size * size {
+            return None;
+        }
+        let c = (y[0] * h[1] - i[1] * w[0]) / determinant;
+        let s = (i[0] * w[0] - h[0] * y[0]) / -determinant;
+        return Some((c, s));
+    }
+    Some((cc / over, ss / over))
 }

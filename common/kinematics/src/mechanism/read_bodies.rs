@@ -409,6 +409,58 @@ fn place(
     }
 }
 
+/// A length above 0.
+fn length(fields: &Fields<'_>, name: &str, what: &str) -> Result<Number, MechanismError> {
+    let entry = fields.required(name, what)?;
+    let number = entry.number()?;
+    if number.value <= 0 {
+        return Err(entry.error(format!("expected a length above 0, found {}", number.value)));
+    }
+    Ok(number)
+}
+
+/// A leg's crank, and the name of its centre where it has one.
+fn crank(
+    fields: &Fields<'_>,
+    base: &Points,
+    rod: Number,
+    context: &Context,
+) -> Result<(LegKind, Option<String>), MechanismError> {
+    let crank = fields.required("crank", "center, axis, zero and length")?;
+    let inside = crank.fields("a crank: center, axis, zero, length")?;
+    let (center, name) = place(
+        &inside.required("center", "the crank's centre")?,
+        base,
+        context,
+    )?;
+    let axis = match context.space {
+        Space::Planar => z_axis(),
+        _ => context.direction(&inside.required("axis", "its direction")?, "the axis")?,
+    };
+    let zero_entry = inside.required("zero", "the crank's direction at angle 0")?;
+    let zero = context.direction(&zero_entry, "the zero direction")?;
+    let along: f64 = (0..3).map(|i| axis[i].to_f64() * zero[i].to_f64()).sum();
+    let size = |v: &Vector| {
+        v.iter()
+            .map(|c| c.to_f64() * c.to_f64())
+            .sum::<f64>()
+            .sqrt()
+    };
+    if along.abs() > 1e-5 * size(&axis) * size(&zero) {
+        return Err(zero_entry.error("the zero direction is not at a right angle to the axis"));
+    }
+    let length = length(&inside, "length", "the crank's length")?;
+    inside.finish()?;
+    let kind = LegKind::Crank {
+        center,
+        axis,
+        zero,
+        length,
+        rod,
+    };
+    Ok((kind, name))
+}
+
 fn leg(
     item: &Entry<'_>,
     base: &Points,
@@ -427,17 +479,9 @@ fn leg(
     let type_entry = fields.required("type", "the leg's type")?;
     let word = type_entry.text("the leg's type")?.to_owned();
     let planar = context.space == Space::Planar;
-    let length = |fields: &Fields<'_>, name: &str, what: &str| {
-        let entry = fields.required(name, what)?;
-        let number = entry.number()?;
-        if number.value <= 0 {
-            return Err(entry.error(format!("expected a length above 0, found {}", number.value)));
-        }
-        Ok(number)
-    };
     let from_name;
     let kind = match (word.as_str(), planar) {
-        ("SPS" | "UPS" | "SPU" | "UPU" | "SS", false) | ("RPR" | "RR", true) => {
+        ("SPS" | "UPS" | "SPU" | "SS", false) | ("RPR" | "RR", true) => {
             let (from, name) = place(
                 &fields.required("from", "a point of the base")?,
                 base,
@@ -456,45 +500,10 @@ fn leg(
             }
         }
         ("RSS", false) | ("RRR", true) => {
-            let crank = fields.required("crank", "center, axis, zero and length")?;
-            let inside = crank.fields("a crank: center, axis, zero, length")?;
-            let (center, name) = place(
-                &inside.required("center", "the crank's centre")?,
-                base,
-                context,
-            )?;
+            let rod = length(&fields, "rod", "the rod's length")?;
+            let (kind, name) = crank(&fields, base, rod, context)?;
             from_name = name;
-            let axis = match planar {
-                true => z_axis(),
-                false => {
-                    context.direction(&inside.required("axis", "its direction")?, "the axis")?
-                }
-            };
-            let zero_entry = inside.required("zero", "the crank's direction at angle 0")?;
-            let zero = context.direction(&zero_entry, "the zero direction")?;
-            let along = (0..3)
-                .map(|i| axis[i].to_f64() * zero[i].to_f64())
-                .sum::<f64>();
-            let size = |v: &Vector| {
-                v.iter()
-                    .map(|c| c.to_f64() * c.to_f64())
-                    .sum::<f64>()
-                    .sqrt()
-            };
-            if along.abs() > 1e-5 * size(&axis) * size(&zero) {
-                return Err(
-                    zero_entry.error("the zero direction is not at a right angle to the axis")
-                );
-            }
-            let crank_length = length(&inside, "length", "the crank's length")?;
-            inside.finish()?;
-            LegKind::Crank {
-                center,
-                axis,
-                zero,
-                length: crank_length,
-                rod: length(&fields, "rod", "the rod's length")?,
-            }
+            kind
         }
         ("PSS", false) | ("PRR", true) => {
             let slider = fields.required("slider", "origin and direction")?;
