@@ -175,11 +175,12 @@ impl Line {
 
 impl Shifted {
     fn write(&mut self) {
-        let mut equations = Equations::default();
-        equations.parameters = (0..4).map(|k| format!("q{k}")).collect();
-        equations
-            .parameters
-            .extend(["px", "py", "pz"].map(String::from));
+        let mut parameters: Vec<String> = (0..4).map(|k| format!("q{k}")).collect();
+        parameters.extend(["px", "py", "pz"].map(String::from));
+        let mut equations = Equations {
+            parameters,
+            ..Equations::default()
+        };
         let constants: Vec<TextPose> = (0..6)
             .map(|k| self.constant_text(k, &mut equations))
             .collect();

@@ -233,7 +233,7 @@ fn rounded_quarters(text: &str, value: &Rational) -> Option<i64> {
     if quarters == 0 {
         return None;
     }
-    let error = Rational::from(value - quarter * quarters).abs();
+    let error = (value - quarter * quarters).abs();
     // Half a unit of the last digit; a hair more where a double was printed.
     let unit = power_of_ten(-decimals)?;
     let slack = if significant >= 15 {

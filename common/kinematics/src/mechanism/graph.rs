@@ -298,7 +298,7 @@ fn of_framework(framework: &Framework) -> Graph {
     let mut bars: Vec<&super::Bar> = framework.bars.iter().collect();
     let [a, b] = framework.fixed;
     let is_fixed = |bar: &&super::Bar| bar.between == [a, b] || bar.between == [b, a];
-    if let Some(place) = bars.iter().position(|bar| is_fixed(bar)) {
+    if let Some(place) = bars.iter().position(is_fixed) {
         bars.swap(0, place);
     }
     let mut graph = Graph::default();

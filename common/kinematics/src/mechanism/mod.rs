@@ -234,7 +234,7 @@ pub enum Body {
     /// Links and joints.
     Linkage(Linkage),
     /// A chain of joints, open or closed.
-    Chain(Chain),
+    Chain(Box<Chain>),
     /// A platform on legs.
     Platform(Platform),
     /// A framework of bars.

@@ -85,8 +85,8 @@ fn mechanism(root: &Entry<'_>, options: &ReadOptions) -> Result<Mechanism, Mecha
         .filter(|n| fields.optional(n).is_some())
         .collect();
     let body = match present[..] {
-        ["serial"] => Body::Chain(chain(&fields, "serial", &mut context)?),
-        ["loop"] => Body::Chain(chain(&fields, "loop", &mut context)?),
+        ["serial"] => Body::Chain(Box::new(chain(&fields, "serial", &mut context)?)),
+        ["loop"] => Body::Chain(Box::new(chain(&fields, "loop", &mut context)?)),
         ["platform"] => Body::Platform(platform(&fields, &mut context)?),
         ["framework"] => Body::Framework(framework(&fields, &mut context)?),
         ["joints"] => Body::Linkage(linkage(&fields, &mut context)?),
