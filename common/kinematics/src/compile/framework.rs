@@ -1,7 +1,7 @@
 //! A framework of bars in the plane: points in isotropic coordinates, an equation a bar, two groups.
 
+use super::formulation::{Configuration, Family, Formulation, Lifted, Problem, Target, unbalanced};
 use super::text::{self, Equations};
-use super::{Configuration, Family, Formulation, Lifted, Problem, Target, unbalanced};
 use crate::mechanism::pose::Pose;
 use crate::mechanism::{Framework, Mechanism, MechanismError};
 use crate::plane::modulus;

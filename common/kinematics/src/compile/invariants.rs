@@ -5,9 +5,9 @@
 //! circles that is as many equations as joints 1, 2, 4, 5 have unknowns. For six turns these are the eight quadrics of
 //! `six_revolute`.
 
-use super::serial::{position, turn_between};
+use super::formulation::{Configuration, Family, Formulation, Lifted, Target};
+use super::postures::{position, turn_between};
 use super::text::{self, Equations, TextPose, dot, sum, times};
-use super::{Configuration, Family, Formulation, Lifted, Target};
 use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Mechanism, MechanismError};

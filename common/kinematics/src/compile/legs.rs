@@ -1,8 +1,8 @@
 //! A platform on legs, inverse: every leg by itself, a length, or a circle and a sphere.
 
+use super::formulation::{Configuration, Family, Formulation, Lifted, Target};
 use super::platform::{crank_frame, crank_tip, size, slide_direction};
 use super::text::{self, Equations};
-use super::{Configuration, Family, Formulation, Lifted, Target};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::{Pose, Vector3};

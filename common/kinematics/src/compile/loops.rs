@@ -2,12 +2,12 @@
 //!
 //! In space and about a point. Turns are cosine and sine; a body about a point that only rods hold is a quaternion.
 
-use super::linkage_pose::{Branch, Elements, elements, real, side_frame, size, spanning_tree};
-use super::text::{self, Equations, TextPose};
-use super::{
+use super::formulation::{
     Configuration, Family, Formulation, Lifted, Problem, Question, Target, half_tangent,
     overdriven, turn_of, unbalanced,
 };
+use super::linkage_pose::{Branch, Elements, elements, real, side_frame, size, spanning_tree};
+use super::text::{self, Equations, TextPose};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::{Number, double_expression};
 use crate::mechanism::graph::is_rod;

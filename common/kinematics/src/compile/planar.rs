@@ -1,13 +1,13 @@
 //! Linkages in the plane: a turn g of every link that is free, its conjugate G, g G = 1, and a pair of equations a
 //! loop; links that a given turn or a shift ties together share one g. Two groups.
 
-use super::linkage_pose::{real, size};
-use super::planar_platform::isotropic_pose;
-use super::text::{self, Equations, complex};
-use super::{
+use super::formulation::{
     Configuration, Family, Formulation, Lifted, Problem, Question, Target, half_tangent,
     overdriven, unbalanced,
 };
+use super::linkage_pose::{real, size};
+use super::planar_platform::isotropic_pose;
+use super::text::{self, Equations, complex};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::Pose;

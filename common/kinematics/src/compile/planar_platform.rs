@@ -1,8 +1,10 @@
 //! A platform on legs in the plane, forward: isotropic coordinates p, P, g, G, two groups.
 
+use super::formulation::{
+    Configuration, Family, Formulation, Lifted, Problem, Target, overdriven, unbalanced,
+};
 use super::platform::{given_values, leg_parameters, legs_residual, size, slide_direction};
 use super::text::{self, Equations, complex};
-use super::{Configuration, Family, Formulation, Lifted, Problem, Target, overdriven, unbalanced};
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::Pose;
 use crate::mechanism::{LegKind, Mechanism, MechanismError, Platform};

@@ -1,11 +1,11 @@
 //! A platform on legs in space, forward: Study coordinates, an equation a leg (M. L. Husty 1996); with a fixed
 //! orientation the place of the platform alone.
 
-use super::text::{self, Equations};
-use super::{
+use super::formulation::{
     Configuration, Family, Formulation, Lifted, Problem, Target, half_tangent, overdriven, turn_of,
     unbalanced,
 };
+use super::text::{self, Equations};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::Number;
 use crate::mechanism::exact::double_expression;

@@ -4,7 +4,7 @@
 //! offset along axis j + 1, (zu, zv, zw) stereographic numbers of the direction of axis 6 up to a factor, (px, py, pz) a
 //! point of it. On these parameters the 16 true solutions are one component and 16 mirrored ones another.
 
-use super::KnownMember;
+use super::formulation::KnownMember;
 use super::text::Equations;
 use cognate_systems::formats::points;
 

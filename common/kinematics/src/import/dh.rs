@@ -4,7 +4,7 @@ use crate::mechanism::chain::{Chain, ChainJoint};
 use crate::mechanism::document::{Document, MechanismError};
 use crate::mechanism::exact::{Angle, Number, read_angle};
 use crate::mechanism::pose::Pose;
-use crate::mechanism::read::ReadOptions;
+use crate::mechanism::read_options::ReadOptions;
 use crate::mechanism::{Body, MOST_PARTS, Mechanism, Space, noted};
 
 const COLUMNS: [&str; 6] = ["type", "theta", "d", "a", "alpha", "name"];

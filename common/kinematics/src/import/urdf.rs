@@ -6,7 +6,7 @@ use crate::mechanism::chain::{Axis, Chain};
 use crate::mechanism::document::{Document, MechanismError};
 use crate::mechanism::exact::{Number, read_angle};
 use crate::mechanism::pose::Pose;
-use crate::mechanism::read::ReadOptions;
+use crate::mechanism::read_options::{ChainEnds, ReadOptions};
 use crate::mechanism::{Body, Limits, MOST_PARTS, Mechanism, Snapped, Space, noted};
 use num_complex::Complex64;
 use roxmltree::{Node, ParsingOptions};
@@ -14,15 +14,6 @@ use std::collections::HashMap;
 
 /// Most elements and attributes of a file.
 const MOST_NODES: u32 = 1_000_000;
-
-/// The links between which the chain is taken; without them the root, and the only leaf or `tool0`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ChainEnds {
-    /// The link that stands still.
-    pub base: Option<String>,
-    /// The link whose pose is meant.
-    pub tip: Option<String>,
-}
 
 /// A joint of the file.
 struct FileJoint<'a, 'input> {

@@ -8,11 +8,14 @@ pub mod graph;
 pub mod pose;
 pub mod read;
 mod read_bodies;
+pub mod read_options;
+mod read_parts;
 pub mod targets;
 pub mod write;
 
 pub use document::MechanismError;
-pub use read::{ReadOptions, read};
+pub use read::read;
+pub use read_options::ReadOptions;
 
 use chain::Chain;
 use exact::{Angle, Number};

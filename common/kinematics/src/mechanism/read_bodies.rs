@@ -4,7 +4,7 @@ use super::chain::{Chain, ChainJoint};
 use super::document::{Entry, Fields, MechanismError};
 use super::exact::{Angle, Number};
 use super::pose::Pose;
-use super::read::{Context, parts, pose};
+use super::read_parts::{Context, parts, pose};
 use super::{
     Bar, Framework, Joint, JointKind, Leg, LegKind, Linkage, Platform, Side, Space, Vector,
 };

@@ -3,7 +3,8 @@
 use super::document::{Document, Entry, MechanismError};
 use super::exact::{Angle, Number, read_angle};
 use super::pose::{Pose, ROTATION_ERROR};
-use super::{Mechanism, Space, read};
+use super::read_parts::pose;
+use super::{Mechanism, Space};
 use num_complex::Complex64;
 
 /// Most targets of one file.
@@ -32,7 +33,7 @@ pub fn poses(
         path: String::new(),
     })?
     .iter()
-    .map(|entry| read::pose(entry, degrees, mechanism.space))
+    .map(|entry| pose(entry, degrees, mechanism.space))
     .collect()
 }
 

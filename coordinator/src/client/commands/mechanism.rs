@@ -1,19 +1,18 @@
 //! `cognate mechanism`: from a mechanism's file to its equations, postures and positions.
 
-use crate::client::arguments::Format;
 use crate::client::error::{ClientError, Exit};
 use crate::client::mechanism::answer::{Answer, AnswerOptions, answer};
 use crate::client::mechanism::arguments::{
     AngleUnit, EquationsFormat, MechanismAnswer, MechanismCommand, MechanismConvert,
-    MechanismEquations, MechanismFile, MechanismForward, MechanismInfo, MechanismInverse, Notation,
-    ProblemName,
+    MechanismEquations, MechanismFile, MechanismFormat, MechanismForward, MechanismInfo,
+    MechanismInverse, Notation, ProblemName,
 };
 use crate::client::output;
 use crate::client::output::mechanisms::{self, Shown};
 use crate::client::output::text::Look;
 use crate::client::problem::read_file;
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
-use cognate_kinematics::import::urdf::ChainEnds;
+use cognate_kinematics::mechanism::read_options::ChainEnds;
 use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets, write};
 use cognate_systems::formats;
 use std::time::Instant;
@@ -138,10 +137,10 @@ fn info(a: &MechanismInfo) -> Result<Exit, ClientError> {
             })
             .collect();
     let text = match a.format {
-        Format::Table => {
+        MechanismFormat::Table => {
             mechanisms::info_table(&read.mechanism, &asked, Look::of_standard_output())
         }
-        Format::Json => mechanisms::info_json(&read.mechanism, &read.content, &asked),
+        MechanismFormat::Json => mechanisms::info_json(&read.mechanism, &read.content, &asked),
     };
     output::print(&text)?;
     Ok(Exit::Solved)
@@ -317,13 +316,13 @@ fn respond(
         complex: a.complex,
     };
     let text = match a.format {
-        Format::Table => {
+        MechanismFormat::Table => {
             for warning in &found.warnings {
                 eprintln!("warning: {warning}");
             }
             mechanisms::answer_table(&shown, Look::of_standard_output())
         }
-        Format::Json => mechanisms::answer_json(&shown),
+        MechanismFormat::Json => mechanisms::answer_json(&shown),
     };
     output::print(&text)?;
     Ok(if found.settled {

@@ -1,6 +1,5 @@
 //! What people type after `cognate mechanism`.
 
-use crate::client::arguments::Format;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -17,6 +16,16 @@ pub enum MechanismCommand {
     Inverse(MechanismInverse),
     /// Every position for given inputs
     Forward(MechanismForward),
+}
+
+/// How answers about mechanisms are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum MechanismFormat {
+    /// A table for people
+    #[default]
+    Table,
+    /// One JSON object on standard output, nothing else there
+    Json,
 }
 
 /// Unit of angles that are typed, in files of targets, and shown.
@@ -68,7 +77,7 @@ pub struct MechanismAnswer {
     pub seed: u64,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: Format,
+    pub format: MechanismFormat,
 }
 
 /// `cognate mechanism info`.
@@ -79,7 +88,7 @@ pub struct MechanismInfo {
     pub mechanism: MechanismFile,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    pub format: MechanismFormat,
 }
 
 /// Which equations are wanted.
