@@ -23,12 +23,15 @@
 
 pub mod assessment;
 pub mod body_guidance;
+pub mod compile;
 pub mod coupler_curve;
 pub mod design;
 pub mod drive;
 mod four_unknowns;
 pub mod function_generation;
+pub mod import;
 pub mod linkage;
+pub mod mechanism;
 pub mod nine_point;
 pub mod path_timing;
 pub mod plane;

@@ -5,6 +5,7 @@
 
 use super::connection::Target;
 use super::error::ClientError;
+use super::mechanism::arguments::MechanismCommand;
 use crate::config::DEFAULT_ADDRESS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
@@ -76,6 +77,9 @@ pub enum Command {
     /// From points to all linkages that pass them
     #[command(subcommand)]
     Synthesize(Synthesize),
+    /// Arms, platforms and linkages: from links and joints to all positions
+    #[command(subcommand)]
+    Mechanism(MechanismCommand),
     /// As many workers in a batch system as the backlog asks for
     #[command(subcommand)]
     Fleet(Fleet),

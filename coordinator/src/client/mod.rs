@@ -10,6 +10,7 @@ pub mod connection;
 pub mod embedded;
 pub mod error;
 pub mod fleet;
+pub mod mechanism;
 pub mod not_yet;
 pub mod output;
 pub mod problem;
@@ -32,6 +33,7 @@ pub fn main() -> ExitCode {
             Command::Info(a) => commands::info::run(&a),
             Command::Convert(a) => commands::convert::run(&a),
             Command::Path(a) => commands::path::run(&a),
+            Command::Mechanism(a) => commands::mechanism::run(&a),
             other => in_runtime(other),
         },
     };
@@ -82,6 +84,7 @@ async fn one_shot(command: Command) -> Result<Exit, ClientError> {
         | Command::Info(_)
         | Command::Convert(_)
         | Command::Path(_)
+        | Command::Mechanism(_)
         | Command::Coordinator(_)
         | Command::Worker(_)
         | Command::Synthesize(_) => unreachable!("these were run before"),

@@ -20,6 +20,7 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         | Command::Workers(_)
         | Command::Worker(_)
         | Command::Fleet(_)
+        | Command::Mechanism(_)
         | Command::Info(_)
         | Command::Convert(_) => None,
         Command::Synthesize(c) => precision(c.common().precision),

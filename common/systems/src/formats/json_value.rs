@@ -14,7 +14,7 @@ use winnow::token::{any, one_of, take, take_while};
 
 /// A string, and how its characters map to the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Text<'a> {
+pub struct Text<'a> {
     /// What it says.
     pub text: Cow<'a, str>,
     /// The first byte within the quotes.
@@ -44,19 +44,27 @@ impl Text<'_> {
 
 /// What a value is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Kind<'a> {
+pub enum Kind<'a> {
+    /// `null`.
     Null,
+    /// `true` or `false`.
     Bool(bool),
+    /// A number as it is written.
     Number(&'a str),
+    /// A string.
     Text(Box<Text<'a>>),
+    /// A list.
     Array(Vec<Value<'a>>),
+    /// Fields in the order of the file; no name occurs twice.
     Object(Vec<(Text<'a>, Value<'a>)>),
 }
 
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Value<'a> {
+pub struct Value<'a> {
+    /// What it is.
     pub kind: Kind<'a>,
+    /// Where it stands.
     pub span: Span,
 }
 
@@ -77,6 +85,7 @@ impl<'a> Value<'a> {
         Fault::expected(self.span, expected, self.describe())
     }
 
+    /// The items of a list; anything else is a fault that says what was expected.
     pub fn array(&self, expected: &str) -> Result<&[Value<'a>], Fault> {
         match &self.kind {
             Kind::Array(items) => Ok(items),
@@ -84,6 +93,7 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// The fields of an object.
     pub fn object(&self, expected: &str) -> Result<&[(Text<'a>, Value<'a>)], Fault> {
         match &self.kind {
             Kind::Object(fields) => Ok(fields),
@@ -91,6 +101,7 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// A string.
     pub fn text(&self, expected: &str) -> Result<&Text<'a>, Fault> {
         match &self.kind {
             Kind::Text(text) => Ok(text),
@@ -98,6 +109,7 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// A truth value.
     pub fn bool(&self, expected: &str) -> Result<bool, Fault> {
         match self.kind {
             Kind::Bool(b) => Ok(b),
@@ -117,7 +129,7 @@ impl<'a> Value<'a> {
 }
 
 /// Reads one value that fills `text[start..end]`.
-pub(crate) fn parse(text: &str, start: usize, end: usize) -> Result<Value<'_>, Fault> {
+pub fn parse(text: &str, start: usize, end: usize) -> Result<Value<'_>, Fault> {
     let mut reader = Reader {
         whole: &text[..end],
         rest: &text[start..end],

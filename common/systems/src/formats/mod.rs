@@ -8,7 +8,7 @@ pub(crate) mod definitions;
 pub mod degenerate;
 pub mod error;
 pub mod json;
-pub(crate) mod json_value;
+pub mod json_value;
 pub mod limits;
 pub mod options;
 pub mod phcpack;

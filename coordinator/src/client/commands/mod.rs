@@ -7,6 +7,7 @@ pub mod explain;
 pub mod fleet;
 pub mod info;
 pub mod jobs;
+pub mod mechanism;
 pub mod path;
 pub mod results;
 pub mod solve;

@@ -5,6 +5,7 @@ pub mod drawing;
 pub mod files;
 pub mod json;
 pub mod linkages;
+pub mod mechanisms;
 pub mod parquet;
 pub mod paths;
 pub mod progress;

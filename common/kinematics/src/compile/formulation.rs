@@ -1,0 +1,179 @@
+//! What every formulation is: equations with the target as parameters, and what their solutions mean.
+
+use super::text::Equations;
+use crate::mechanism::chain::JointValue;
+use crate::mechanism::pose::Pose;
+use crate::mechanism::{Mechanism, MechanismError};
+use num_complex::Complex64;
+
+/// What is given and what is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Problem {
+    /// Inputs are given.
+    Forward,
+    /// The output's pose is given.
+    Inverse,
+    /// Nothing is given: all positions.
+    Motion,
+}
+
+/// A question about a mechanism.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// What is given.
+    pub problem: Problem,
+    /// The joints that drive it, instead of the file's.
+    pub inputs: Option<Vec<String>>,
+    /// Joints that are held at a value, in radians or lengths.
+    pub locks: Vec<(String, f64)>,
+}
+
+/// One pose or one set of inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// A pose of the output.
+    Pose(Pose),
+    /// Values of the inputs, in radians or lengths, in their order.
+    Inputs(Vec<f64>),
+}
+
+/// The family that a mechanism belongs to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Family {
+    /// Its name.
+    pub name: String,
+    /// Solutions of a general member, where that is known.
+    pub expected: Option<u64>,
+    /// Who says so.
+    pub source: &'static str,
+    /// Coordinates of the equations.
+    pub representation: &'static str,
+}
+
+/// Known solutions of a general member.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownMember {
+    /// Its parameters.
+    pub parameters: Vec<Complex64>,
+    /// Its solutions, point after point.
+    pub points: Vec<Complex64>,
+}
+
+/// A position of a mechanism: what a solution means.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Configuration {
+    /// Values of joints, in the file's order.
+    pub values: Vec<(String, JointValue)>,
+    /// The output's pose.
+    pub output: Option<Pose>,
+    /// Poses of bodies or places of points, by name.
+    pub bodies: Vec<(String, Pose)>,
+    /// The largest gap of a loop, in parts of the mechanism's size and the solution's.
+    pub residual: f64,
+}
+
+/// What a solution of the equations is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Lifted {
+    /// A position.
+    Position(Box<Configuration>),
+    /// No position, by this name.
+    Degenerate(&'static str),
+    /// A point of a curve of positions, along which this moves.
+    Moving(&'static str),
+}
+
+/// A mechanism's equations for one kind of question.
+pub trait Formulation: Send + Sync {
+    /// The family.
+    fn family(&self) -> &Family;
+    /// Names of the inputs of a target, in order; empty where it is a pose, or nothing.
+    fn inputs(&self) -> &[String];
+    /// The equations; `None` where an answer needs none.
+    fn equations(&self) -> Option<&Equations>;
+    /// The parameters at a target.
+    fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String>;
+    /// Parameters of this mechanism at a general complex target, by random numbers of modulus about 1;
+    /// `None` where it has no such member but the targets themselves.
+    fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>>;
+    /// Solutions of a general member of the family, where they are known.
+    fn known_member(&self) -> Option<KnownMember> {
+        None
+    }
+    /// What a solution means, at these parameters.
+    fn lift(
+        &self,
+        target: Option<&Target>,
+        parameters: &[Complex64],
+        point: &[Complex64],
+    ) -> Lifted;
+    /// The answer, where no equations are needed.
+    fn direct(&self, _target: &Target) -> Vec<Configuration> {
+        Vec::new()
+    }
+}
+
+/// Solutions are positions where loops close to this.
+pub const CLOSES: f64 = 1e-6;
+
+/// Names of the joints that have a value, in words.
+pub fn joint_names(mechanism: &Mechanism) -> String {
+    let names: Vec<String> = mechanism.values().into_iter().map(|(n, _)| n).collect();
+    match names.len() {
+        0 => "no joint of it has a value".into(),
+        _ => format!("there are {}", names.join(", ")),
+    }
+}
+
+/// An error where inputs and freedoms do not match, by the numbers of unknowns and equations.
+pub fn unbalanced(
+    mechanism: &Mechanism,
+    inputs: &[String],
+    unknowns: usize,
+    equations: usize,
+) -> Result<(), MechanismError> {
+    if unknowns <= equations {
+        return Ok(());
+    }
+    let mobility = mechanism.expected_mobility();
+    let freedoms = mobility.map_or_else(String::new, |m| {
+        format!(" of about {m} freedoms (Gruebler's count without idle ones)")
+    });
+    Err(mechanism.error(format!(
+        "too few inputs{freedoms}: {} given ({}), {} more are needed; name them with --input, {}",
+        inputs.len(),
+        if inputs.is_empty() {
+            "none".into()
+        } else {
+            inputs.join(", ")
+        },
+        unknowns - equations,
+        joint_names(mechanism)
+    )))
+}
+
+/// An error where more is driven than can move.
+pub fn overdriven(mechanism: &Mechanism, inputs: &[String]) -> Result<(), MechanismError> {
+    match mechanism.expected_mobility() {
+        Some(mobility) if (inputs.len() as i64) > mobility.max(0) => {
+            Err(mechanism.error(format!(
+                "too many inputs: {} given ({}), and it has {mobility} freedoms (Gruebler's count without idle ones)",
+                inputs.len(),
+                inputs.join(", ")
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Two numbers on a line through the origin that stand for an angle: tan(angle/2) = t/w.
+pub fn half_tangent(radians: f64) -> [Complex64; 2] {
+    let [w, t] = crate::mechanism::exact::Angle::of_radians(radians).half;
+    [t.into(), w.into()]
+}
+
+/// Cosine and sine of the angle with these two numbers.
+pub fn turn_of(t: Complex64, w: Complex64) -> (Complex64, Complex64) {
+    let over = w * w + t * t;
+    ((w * w - t * t) / over, t * w * 2.0 / over)
+}

@@ -1,0 +1,85 @@
+//! From mechanisms to polynomial systems, and from their solutions back to joint values.
+//!
+//! [`compile`] chooses a formulation by the rules of `kinematics/README.md`. A formulation gives equations with the
+//! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
+
+pub mod formulation;
+mod framework;
+mod invariants;
+mod legs;
+pub mod linkage_pose;
+mod loops;
+mod planar;
+mod planar_platform;
+mod platform;
+mod postures;
+mod serial;
+mod six_revolute;
+pub mod text;
+
+pub use formulation::{
+    CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target,
+};
+
+use crate::mechanism::{Body, Mechanism, MechanismError, Space};
+use formulation::joint_names;
+
+/// The formulation of a question.
+pub fn compile(
+    mechanism: &Mechanism,
+    question: &Question,
+) -> Result<Box<dyn Formulation>, MechanismError> {
+    for (name, _) in &question.locks {
+        if !mechanism.values().iter().any(|(n, _)| n == name) {
+            return Err(mechanism.error(format!(
+                "--lock {name}: there is no such joint; {}",
+                joint_names(mechanism)
+            )));
+        }
+    }
+    let inputs = inputs(mechanism, question)?;
+    match &mechanism.body {
+        Body::Chain(chain) => serial::compile(mechanism, chain, question, inputs),
+        Body::Platform(platform) => {
+            if !question.locks.is_empty() {
+                return Err(mechanism
+                    .error("--lock is for joints of chains; a leg is held by \"at\": length"));
+            }
+            match (mechanism.space, question.problem) {
+                (_, Problem::Inverse) => legs::compile(mechanism, platform),
+                (Space::Planar, _) => {
+                    planar_platform::compile(mechanism, platform, question.problem)
+                }
+                _ => platform::compile(mechanism, platform, question.problem),
+            }
+        }
+        Body::Framework(framework) => framework::compile(mechanism, framework, question.problem),
+        Body::Linkage(linkage) => match mechanism.space {
+            Space::Planar => planar::compile(mechanism, linkage, question, inputs),
+            Space::Spherical | Space::Spatial => {
+                loops::compile(mechanism, linkage, question, inputs)
+            }
+        },
+    }
+}
+
+/// The inputs that are asked for: the question's, else the file's.
+fn inputs(mechanism: &Mechanism, question: &Question) -> Result<Vec<String>, MechanismError> {
+    if question.problem != Problem::Forward {
+        return Ok(Vec::new());
+    }
+    let wanted = question.inputs.as_ref().unwrap_or(&mechanism.inputs);
+    let known = mechanism.values();
+    for (i, name) in wanted.iter().enumerate() {
+        if !known.iter().any(|(n, _)| n == name) {
+            return Err(mechanism.error(format!(
+                "--input {name}: there is no such joint; {}",
+                joint_names(mechanism)
+            )));
+        }
+        if wanted[..i].contains(name) {
+            return Err(mechanism.error(format!("--input {name} is there twice")));
+        }
+    }
+    Ok(wanted.clone())
+}

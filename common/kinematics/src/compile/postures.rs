@@ -1,0 +1,60 @@
+//! Postures of chains: frames for joint values, and the turn that closes a chain.
+
+use super::formulation::Configuration;
+use crate::mechanism::chain::{Chain, JointValue};
+use crate::mechanism::pose::Vector3;
+use num_complex::Complex64;
+
+/// A position of a chain, with its frames.
+pub fn position(chain: &Chain, values: Vec<JointValue>, residual: f64) -> Configuration {
+    let frames = chain.frames(&values);
+    let named = (1..)
+        .map(|i| format!("link{i}"))
+        .zip(frames.iter().copied());
+    Configuration {
+        output: frames.last().copied(),
+        bodies: named.take(values.len()).collect(),
+        values: chain
+            .joints
+            .iter()
+            .map(|j| j.name.clone())
+            .zip(values)
+            .collect(),
+        residual,
+    }
+}
+
+/// Cosine and sine of the turn about z that takes two vectors to two others, by least squares of their first two
+/// coordinates. `None` where both are along z.
+pub fn turn_between(
+    (i, h): (Vector3, Vector3),
+    (y, w): (Vector3, Vector3),
+) -> Option<(Complex64, Complex64)> {
+    // c, s with R (i, h) = (y, w) in the first two coordinates.
+    let (mut cc, mut ss, mut over) = (
+        Complex64::default(),
+        Complex64::default(),
+        Complex64::default(),
+    );
+    let mut size = 0.0;
+    for (from, to) in [(i, y), (h, w)] {
+        cc += from[0] * to[0] + from[1] * to[1];
+        ss += from[0] * to[1] - from[1] * to[0];
+        over += from[0] * from[0] + from[1] * from[1];
+        size += from[0].norm_sqr() + from[1].norm_sqr();
+    }
+    if size < 1e-20 {
+        return None;
+    }
+    // Isotropic: the sum of squares vanishes; then the determinant of the two pairs decides.
+    if over.norm_sqr() < 1e-16 * size * size {
+        let determinant = i[0] * h[1] - i[1] * h[0];
+        if determinant.norm_sqr() < 1e-16 * size * size {
+            return None;
+        }
+        let c = (y[0] * h[1] - i[1] * w[0]) / determinant;
+        let s = (i[0] * w[0] - h[0] * y[0]) / -determinant;
+        return Some((c, s));
+    }
+    Some((cc / over, ss / over))
+}

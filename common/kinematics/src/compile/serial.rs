@@ -1,0 +1,457 @@
+//! Chains: six turns by eight quadrics in the joints 1, 2, 4 and 5; forward by multiplying out.
+//!
+//! Held joints become parts of their links, so that a redundant arm or a loop with driven joints is an arm of six.
+
+use super::formulation::{
+    Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target, turn_of,
+};
+use super::postures::{position, turn_between};
+use super::text::Equations;
+use crate::compile::{invariants, six_revolute};
+use crate::mechanism::chain::{Chain, ChainJoint, JointValue};
+use crate::mechanism::pose::{Pose, Vector3};
+use crate::mechanism::{Mechanism, MechanismError};
+use crate::plane::modulus;
+use num_complex::Complex64;
+
+/// The formulation of a chain's question.
+pub fn compile(
+    mechanism: &Mechanism,
+    chain: &Chain,
+    question: &Question,
+    inputs: Vec<String>,
+) -> Result<Box<dyn Formulation>, MechanismError> {
+    if !chain.closed && question.problem == Problem::Forward {
+        if question.inputs.is_some() || !question.locks.is_empty() {
+            return Err(mechanism.error(
+                "all joints of an open chain are its inputs; --input and --lock say nothing here",
+            ));
+        }
+        return Ok(Box::new(Open::new(chain)));
+    }
+    if chain.closed && question.problem == Problem::Inverse {
+        return Err(mechanism
+            .error("a loop has no free end: ask forward, with as many inputs as it has freedoms"));
+    }
+    if !chain.closed && question.problem == Problem::Motion {
+        return Err(mechanism.error("an open chain moves freely; ask inverse or forward"));
+    }
+    let place = |name: &String| chain.joints.iter().position(|j| j.name == *name);
+    let mut locked = vec![None; chain.joints.len()];
+    for (name, value) in &question.locks {
+        if let Some(i) = place(name) {
+            locked[i] = Some(*value);
+        }
+    }
+    let mut driven = Vec::new();
+    for name in &inputs {
+        match place(name) {
+            Some(i) if locked[i].is_none() => driven.push(i),
+            _ => return Err(mechanism.error(format!("{name} is locked and an input"))),
+        }
+    }
+    let held = locked.iter().flatten().count() + driven.len();
+    let free = chain.joints.len() - held;
+    let turns = (0..chain.joints.len())
+        .filter(|i| locked[*i].is_none() && !driven.contains(i))
+        .all(|i| chain.joints[i].is_angle);
+    refuse(mechanism, chain, free, turns)?;
+    if !turns {
+        return invariants::compile(mechanism, chain, locked);
+    }
+    let name = if chain.closed { "6R loop" } else { "6R" };
+    Ok(Box::new(SixRevolute {
+        chain: chain.clone(),
+        locked,
+        driven,
+        inputs,
+        equations: six_revolute::equations(),
+        family: Family {
+            name: name.into(),
+            expected: Some(16),
+            source: "Raghavan and Roth 1993",
+            representation: "8 quadrics in cosines and sines of joints 1, 2, 4, 5; joints 3 and 6 follow linearly",
+        },
+    }))
+}
+
+/// Errors of chains with more or fewer freedoms than a pose has, or with shifts.
+fn refuse(
+    mechanism: &Mechanism,
+    chain: &Chain,
+    free: usize,
+    turns: bool,
+) -> Result<(), MechanismError> {
+    let count = chain.joints.len();
+    if free > 6 && !chain.closed {
+        let example = &chain.joints[(count - 1) / 3].name;
+        return Err(mechanism.error(format!(
+            "{count} joints for a pose of 6 freedoms: the arm is redundant, {} too many, its postures for a pose form curves; \
+             lock {} (--lock {example}=0.3)",
+            free - 6,
+            if free == 7 { "one joint" } else { "joints" },
+        )));
+    }
+    if free > 6 {
+        return Err(mechanism.error(format!(
+            "a loop of {count} joints needs {} inputs, {} are given; name them with --input",
+            count - 6,
+            count - free
+        )));
+    }
+    if free < 6 && !chain.closed {
+        return Err(mechanism.error(format!(
+            "{free} free joints: their poses form a {free}-dimensional set, and a general pose of 6 freedoms is not in it"
+        )));
+    }
+    if free < 6 {
+        return Err(mechanism.error(format!(
+            "a loop with {free} free joints closes only for special dimensions; where it does it moves, which is asked by motion"
+        )));
+    }
+    if !turns && chain.closed {
+        return Err(mechanism.error(
+            "not in this version: loops of rows with P joints; say it by links and joints",
+        ));
+    }
+    Ok(())
+}
+
+/// An open chain, forward.
+struct Open {
+    chain: Chain,
+    inputs: Vec<String>,
+    family: Family,
+}
+
+impl Open {
+    fn new(chain: &Chain) -> Self {
+        let letters: Vec<&str> = chain
+            .joints
+            .iter()
+            .map(|j| if j.is_angle { "R" } else { "P" })
+            .collect();
+        Self {
+            chain: chain.clone(),
+            inputs: chain.joints.iter().map(|j| j.name.clone()).collect(),
+            family: Family {
+                name: letters.concat(),
+                expected: Some(1),
+                source: "rows multiplied out",
+                representation: "none: closed form",
+            },
+        }
+    }
+}
+
+impl Formulation for Open {
+    fn family(&self) -> &Family {
+        &self.family
+    }
+    fn inputs(&self) -> &[String] {
+        &self.inputs
+    }
+    fn equations(&self) -> Option<&Equations> {
+        None
+    }
+    fn parameters(&self, _: &Target) -> Result<Vec<Complex64>, String> {
+        Ok(Vec::new())
+    }
+    fn generic(&self, _: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
+        None
+    }
+    fn lift(&self, _: Option<&Target>, _: &[Complex64], _: &[Complex64]) -> Lifted {
+        Lifted::Degenerate("no equations")
+    }
+    fn direct(&self, target: &Target) -> Vec<Configuration> {
+        let Target::Inputs(values) = target else {
+            return Vec::new();
+        };
+        let joints = &self.chain.joints;
+        let values: Vec<JointValue> = values
+            .iter()
+            .zip(joints)
+            .map(|(x, j)| JointValue::of_real(*x, j.is_angle))
+            .collect();
+        vec![position(&self.chain, values, 0.0)]
+    }
+}
+
+/// Six free turns for a pose.
+struct SixRevolute {
+    chain: Chain,
+    /// Joints that are held for all targets.
+    locked: Vec<Option<f64>>,
+    /// Joints that a target gives.
+    driven: Vec<usize>,
+    inputs: Vec<String>,
+    equations: Equations,
+    family: Family,
+}
+
+impl SixRevolute {
+    /// The arm of six turns at a target, and the pose of its tool.
+    fn arm(&self, target: &Target) -> Result<(Chain, Pose), String> {
+        let mut held = self.locked.clone();
+        let pose = match target {
+            Target::Pose(pose) => *pose,
+            Target::Inputs(values) => {
+                for (i, value) in self.driven.iter().zip(values) {
+                    held[*i] = Some(*value);
+                }
+                Pose::IDENTITY
+            }
+        };
+        if held.iter().all(Option::is_none) {
+            return Ok((self.chain.clone(), pose));
+        }
+        let arm = self.chain.with_held(&held).ok_or("its axes give no rows")?;
+        Ok((arm, pose))
+    }
+
+    /// Values of the joints that are held at a target.
+    fn held(&self, target: Option<&Target>) -> Vec<Option<f64>> {
+        let mut held = self.locked.clone();
+        if let Some(Target::Inputs(values)) = target {
+            for (i, value) in self.driven.iter().zip(values) {
+                held[*i] = Some(*value);
+            }
+        }
+        held
+    }
+}
+
+impl Formulation for SixRevolute {
+    fn family(&self) -> &Family {
+        &self.family
+    }
+
+    fn inputs(&self) -> &[String] {
+        &self.inputs
+    }
+
+    fn equations(&self) -> Option<&Equations> {
+        Some(&self.equations)
+    }
+
+    fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
+        let (arm, pose) = self.arm(target)?;
+        // R1 A1 ... A5 R6 is the pose without base, first offset, last link and tool.
+        let first = Pose::shift(0.0, 0.0, arm.joints[0].d);
+        let last = link(&arm.joints[5]).then(&arm.tool);
+        let inner = arm
+            .base
+            .then(&first)
+            .inverse()
+            .then(&pose)
+            .then(&last.inverse());
+        let size = arm.size();
+        let scaled = |x: Complex64| x / size;
+        let mut values = arm_parameters(&arm, size);
+        values.extend(stereographic(inner.column(2).map(|c| c.re)));
+        values.extend(inner.position.map(scaled));
+        Ok(values)
+    }
+
+    fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
+        if !self.driven.is_empty() || self.chain.closed {
+            return None;
+        }
+        let (arm, _) = self.arm(&Target::Pose(Pose::IDENTITY)).ok()?;
+        let mut values = arm_parameters(&arm, arm.size());
+        // A direction not far from real ones, and a point within reach.
+        values.extend((0..3).map(|_| draw()));
+        values.extend((0..3).map(|_| draw() * 0.4));
+        Some(values)
+    }
+
+    fn known_member(&self) -> Option<KnownMember> {
+        six_revolute::known_member()
+    }
+
+    fn lift(
+        &self,
+        target: Option<&Target>,
+        parameters: &[Complex64],
+        point: &[Complex64],
+    ) -> Lifted {
+        let at = |name: &str| {
+            let place = six_revolute::VARIABLES.iter().position(|v| *v == name);
+            place.map_or(Complex64::default(), |i| point[i])
+        };
+        let mut turns = [(Complex64::default(), Complex64::default()); 6];
+        for (k, turn) in turns.iter_mut().enumerate() {
+            if k != 2 && k != 5 {
+                *turn = (at(&format!("c{}", k + 1)), at(&format!("s{}", k + 1)));
+            }
+        }
+        let member = Member::of(parameters);
+        match member.third_turn(&turns) {
+            Some(third) => turns[2] = third,
+            None => return Lifted::Moving("joint 3"),
+        }
+        let (gap, growth) = member.gap(&turns);
+        let Some(target) = target else {
+            let position = Configuration {
+                values: Vec::new(),
+                output: None,
+                bodies: Vec::new(),
+                residual: gap / growth,
+            };
+            return Lifted::Position(Box::new(position));
+        };
+        Lifted::Position(Box::new(self.in_the_file(target, turns, growth)))
+    }
+}
+
+impl SixRevolute {
+    /// The position by the file's joints, and how well its own product meets the target.
+    fn in_the_file(
+        &self,
+        target: &Target,
+        mut turns: [(Complex64, Complex64); 6],
+        growth: f64,
+    ) -> Configuration {
+        let Ok((arm, pose)) = self.arm(target) else {
+            return Configuration {
+                values: Vec::new(),
+                output: None,
+                bodies: Vec::new(),
+                residual: f64::INFINITY,
+            };
+        };
+        // Joint 6 is what the first five leave of the pose.
+        let mut first = arm.base;
+        for ((c, s), joint) in turns.iter().zip(&arm.joints).take(5) {
+            first = first
+                .then(&Pose::about_z(*c, *s))
+                .then(&Pose::shift(0.0, 0.0, joint.d))
+                .then(&link(joint));
+        }
+        let last = Pose::shift(0.0, 0.0, arm.joints[5].d)
+            .then(&link(&arm.joints[5]))
+            .then(&arm.tool);
+        let sixth = first.inverse().then(&pose).then(&last.inverse());
+        turns[5] = (sixth.rotation[0][0], sixth.rotation[1][0]);
+        let mut free = turns.iter().zip(&arm.joints).map(|((c, s), joint)| {
+            // q = turn - theta.
+            let [ct, st] = joint.theta.direction;
+            JointValue::Turn(c * ct + s * st, s * ct - c * st)
+        });
+        let held = self.held(Some(target));
+        let values: Vec<JointValue> = held
+            .iter()
+            .zip(&self.chain.joints)
+            .map(|(value, joint)| match value {
+                Some(x) => JointValue::of_real(*x, joint.is_angle),
+                None => free
+                    .next()
+                    .unwrap_or(JointValue::Shift(Complex64::default())),
+            })
+            .collect();
+        let size = self.chain.size();
+        let residual = self.chain.tool_pose(&values).distance(&pose, size) / growth;
+        position(&self.chain, values, residual)
+    }
+}
+
+/// The common normal of a row: Tx(a) Rx(alpha).
+fn link(joint: &ChainJoint) -> Pose {
+    let [c, s] = joint.alpha.direction.map(Complex64::from);
+    Pose::shift(joint.a, 0.0, 0.0).then(&Pose::about_x(c, s))
+}
+
+/// Parameters that belong to the arm, lengths in units of `size`.
+fn arm_parameters(arm: &Chain, size: f64) -> Vec<Complex64> {
+    let rows = &arm.joints[..5];
+    let real = |x: f64| Complex64::new(x, 0.0);
+    let mut values: Vec<Complex64> = rows.iter().map(|j| real(j.alpha.half[1])).collect();
+    values.extend(rows.iter().map(|j| real(j.alpha.half[0])));
+    values.extend(rows.iter().map(|j| real(j.a / size)));
+    // Offsets along the axis after each link.
+    values.extend(arm.joints[1..].iter().take(5).map(|j| real(j.d / size)));
+    values
+}
+
+/// Three numbers (u, v, w), up to a factor, of a direction (2uw, 2vw, w^2-u^2-v^2)/(u^2+v^2+w^2).
+fn stereographic([x, y, z]: [f64; 3]) -> [Complex64; 3] {
+    let w = ((1.0 + z) / 2.0).max(0.0).sqrt();
+    let across = (x * x + y * y).sqrt();
+    let flat = ((1.0 - z) / 2.0).max(0.0).sqrt();
+    let numbers = if across > 0.0 {
+        [flat * x / across, flat * y / across, w]
+    } else {
+        [flat, 0.0, w]
+    };
+    numbers.map(Complex64::from)
+}
+
+/// A member of the family: R1 A1 R2 ... A5 R6 with A = Tx(a) Rx(alpha) Tz(d).
+struct Member {
+    /// A_1 .. A_5.
+    links: [Pose; 5],
+    /// Direction of axis 6 and a point of it.
+    axis: (Vector3, Vector3),
+}
+
+impl Member {
+    fn of(parameters: &[Complex64]) -> Self {
+        let links = std::array::from_fn(|k| {
+            let (c, s) = turn_of(parameters[k], parameters[5 + k]);
+            Pose::shift(parameters[10 + k], 0.0, 0.0)
+                .then(&Pose::about_x(c, s))
+                .then(&Pose::shift(0.0, 0.0, parameters[15 + k]))
+        });
+        let [u, v, w] = [20, 21, 22].map(|i| parameters[i]);
+        let over = u * u + v * v + w * w;
+        let direction = [
+            u * w * 2.0 / over,
+            v * w * 2.0 / over,
+            (w * w - u * u - v * v) / over,
+        ];
+        Self {
+            links,
+            axis: (direction, [23, 24, 25].map(|i| parameters[i])),
+        }
+    }
+
+    /// Joint 3 from the others: it turns what the last joints make to what the first leave, in the plane
+    /// across its axis; by least squares of direction and place. `None` where both are along the axis.
+    fn third_turn(&self, turns: &[(Complex64, Complex64); 6]) -> Option<(Complex64, Complex64)> {
+        let turn = |k: usize| Pose::about_z(turns[k].0, turns[k].1);
+        let first = turn(0)
+            .then(&self.links[0])
+            .then(&turn(1))
+            .then(&self.links[1]);
+        let back = first.inverse();
+        let (y, w) = (back.direction(self.axis.0), back.point(self.axis.1));
+        let last = self.links[2]
+            .then(&turn(3))
+            .then(&self.links[3])
+            .then(&turn(4))
+            .then(&self.links[4]);
+        let (i, h) = (last.column(2), last.position);
+        turn_between((i, h), (y, w))
+    }
+
+    /// The gap of axis 6 and of the circles, and how large numbers grow along the chain.
+    fn gap(&self, turns: &[(Complex64, Complex64); 6]) -> (f64, f64) {
+        let mut product = Pose::IDENTITY;
+        let mut growth = 1.0f64;
+        for k in 0..5 {
+            let (c, s) = turns[k];
+            growth *= (modulus(c) + modulus(s)).max(1.0);
+            product = product.then(&Pose::about_z(c, s)).then(&self.links[k]);
+        }
+        let mut gap = 0.0f64;
+        for k in 0..3 {
+            gap = gap.max(modulus(product.rotation[k][2] - self.axis.0[k]));
+            gap = gap.max(modulus(product.position[k] - self.axis.1[k]));
+        }
+        for k in 0..5 {
+            let (c, s) = turns[k];
+            gap = gap.max(modulus(c * c + s * s - 1.0) / (1.0 + c.norm_sqr() + s.norm_sqr()));
+        }
+        (gap, growth)
+    }
+}

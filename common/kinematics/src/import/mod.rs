@@ -1,0 +1,4 @@
+//! Mechanisms from files of other programs: URDF, tables of Denavit and Hartenberg.
+
+pub mod dh;
+pub mod urdf;

@@ -1,0 +1,524 @@
+//! Numbers and angles of a mechanism as they are written: decimals, fractions, roots and multiples of pi.
+//!
+//! `Number` keeps the exact rational where there is one; `Angle` keeps cosine, sine and half-tangent, exact for
+//! multiples of 90 degrees, also for those that a file rounds.
+
+use crate::plane;
+use cognate_numeric::rational::Rational;
+use cognate_numeric::scalar::Real;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// pi to 40 digits, for the comparison with rounded multiples.
+const PI_DIGITS: &str = "3.141592653589793238462643383279502884197";
+/// Most characters of one number.
+const MOST_CHARACTERS: usize = 2000;
+/// Most nested brackets of one number.
+const MOST_NESTING: usize = 20;
+/// Largest power of ten in a number.
+const MOST_EXPONENT: u32 = 300;
+
+/// A real number: exact where it was written so, else the double that is nearest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// The value that is computed with.
+    pub value: Rational,
+    /// Whether that is the number meant, and not a double near to an irrational one.
+    pub exact: bool,
+}
+
+impl Number {
+    /// An integer.
+    pub fn integer(n: i64) -> Self {
+        Self {
+            value: Rational::from(n),
+            exact: true,
+        }
+    }
+
+    /// The double itself; 0 for what is no number.
+    pub fn of_double(x: f64) -> Self {
+        Self {
+            value: Rational::from_f64(x).unwrap_or_default(),
+            exact: true,
+        }
+    }
+
+    /// A number as written: `0.25`, `1e-3`, `384/145`, `sqrt(3)/2`; `None` for anything else.
+    pub fn read(text: &str) -> Option<Self> {
+        let value = Value::read(text)?;
+        if value.turns.is_zero() {
+            return Some(Self {
+                value: value.plain,
+                exact: value.exact,
+            });
+        }
+        let double = value.to_f64();
+        Some(Self {
+            value: Rational::from_f64(double)?,
+            exact: false,
+        })
+    }
+
+    /// The nearest double.
+    pub fn to_f64(&self) -> f64 {
+        nearest(&self.value)
+    }
+
+    /// The number in an expression: `0`, `3`, `(-3/5)`.
+    pub fn expression(&self) -> String {
+        expression(&self.value)
+    }
+
+    /// The number as JSON: a decimal where that is exact and short, else a string.
+    pub fn json(&self) -> String {
+        let double = self.to_f64();
+        let text = format!("{double:?}");
+        match Number::read(&text) {
+            Some(back) if back.value == self.value || !self.exact => text,
+            _ => format!("\"{}\"", self.value),
+        }
+    }
+}
+
+/// The double nearest to a rational.
+fn nearest(value: &Rational) -> f64 {
+    f64::from_rational((), value)
+}
+
+/// A rational in an expression.
+pub fn expression(value: &Rational) -> String {
+    if *value.denom() == 1 && *value >= 0 {
+        value.to_string()
+    } else {
+        format!("({value})")
+    }
+}
+
+/// A double in an expression, every bit of it.
+pub fn double_expression(x: f64) -> String {
+    expression(&Rational::from_f64(x).unwrap_or_default())
+}
+
+/// An angle: cosine and sine, the direction of half of it, and its value in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angle {
+    /// Cosine and sine.
+    pub direction: [f64; 2],
+    /// A multiple of the cosine and sine of half the angle: (w, t) with tan(angle/2) = t/w; small
+    /// integers at multiples of 90 degrees.
+    pub half: [f64; 2],
+    /// The angle in radians, as given.
+    pub radians: f64,
+}
+
+impl Angle {
+    /// 0.
+    pub const ZERO: Self = Self {
+        direction: [1.0, 0.0],
+        half: [1.0, 0.0],
+        radians: 0.0,
+    };
+
+    /// So many quarter turns, exactly.
+    pub fn quarters(n: i64) -> Self {
+        let k = n.rem_euclid(4) as usize;
+        Self {
+            direction: [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][k],
+            half: [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, -1.0]][k],
+            radians: n as f64 * (PI / 2.0),
+        }
+    }
+
+    /// An angle in radians.
+    pub fn of_radians(radians: f64) -> Self {
+        if radians == 0.0 {
+            return Self::ZERO;
+        }
+        Self {
+            radians,
+            ..Self::of_direction(plane::direction(radians * (180.0 / PI)))
+        }
+    }
+
+    /// An angle in degrees; multiples of 90 are exact.
+    pub fn of_degrees(degrees: f64) -> Self {
+        let quarters = degrees / 90.0;
+        if quarters == quarters.round() && quarters.abs() < 1e6 {
+            return Self::quarters(quarters as i64);
+        }
+        Self {
+            radians: degrees * (PI / 180.0),
+            ..Self::of_direction(plane::direction(degrees))
+        }
+    }
+
+    /// The angle of a vector; 0 for the vector 0.
+    pub fn of_direction(z: Complex64) -> Self {
+        let z = plane::unit(z);
+        let half = plane::half(z);
+        Self {
+            direction: [z.re, z.im],
+            half: [half.re, half.im],
+            radians: radians(z),
+        }
+    }
+}
+
+/// The angle of a vector in radians, in (-pi, pi].
+pub fn radians(z: Complex64) -> f64 {
+    plane::degrees(z) * (PI / 180.0)
+}
+
+/// An angle that was read, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadAngle {
+    /// The angle.
+    pub angle: Angle,
+    /// The digits that were taken for a right angle, where they were rounded.
+    pub snapped: Option<String>,
+}
+
+/// Reads an angle as written in degrees or radians; `"90 deg"`, `"pi/2"` say their unit themselves.
+/// With `snap` a multiple of pi/2 that is rounded to the digits given, at least three, is exact.
+pub fn read_angle(text: &str, degrees: bool, snap: bool) -> Option<ReadAngle> {
+    let trimmed = text.trim();
+    let (body, degrees) = if let Some(body) = trimmed.strip_suffix("deg") {
+        (body, true)
+    } else if let Some(body) = trimmed.strip_suffix("rad") {
+        (body, false)
+    } else {
+        (trimmed, degrees)
+    };
+    let value = Value::read(body)?;
+    let plain = |angle| ReadAngle {
+        angle,
+        snapped: None,
+    };
+    if !value.turns.is_zero() {
+        // A multiple of pi is an angle in radians whatever the unit of the file.
+        let quarters = Rational::from(&value.turns * 2u32);
+        if value.plain.is_zero() && *quarters.denom() == 1 {
+            return Some(plain(Angle::quarters(quarters.numer().to_i64()?)));
+        }
+        return Some(plain(Angle::of_radians(value.to_f64())));
+    }
+    if degrees {
+        return Some(plain(Angle::of_degrees(nearest(&value.plain))));
+    }
+    if snap && let Some(quarters) = rounded_quarters(body.trim(), &value.plain) {
+        return Some(ReadAngle {
+            angle: Angle::quarters(quarters),
+            snapped: Some(body.trim().to_owned()),
+        });
+    }
+    Some(plain(Angle::of_radians(nearest(&value.plain))))
+}
+
+/// The multiple of pi/2 that a decimal is, rounded to the digits that it has; at least three of them.
+fn rounded_quarters(text: &str, value: &Rational) -> Option<i64> {
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    let digits = mantissa.trim_start_matches(['+', '-', '0', '.']);
+    let significant = digits.chars().filter(char::is_ascii_digit).count();
+    if significant < 3 || text.contains(['/', '(', '*']) {
+        return None;
+    }
+    let decimals = mantissa.split_once('.').map_or(0, |(_, d)| d.len()) as i32 - exponent;
+    let quarter = Value::decimal(PI_DIGITS)? / 2u32;
+    let quarters = Rational::from(value / &quarter).round();
+    let quarters = quarters.numer().to_i64()?;
+    if quarters == 0 {
+        return None;
+    }
+    let error = (value - quarter * quarters).abs();
+    // Half a unit of the last digit; a hair more where a double was printed.
+    let unit = power_of_ten(-decimals)?;
+    let slack = if significant >= 15 {
+        Rational::from((3, 1))
+    } else {
+        Rational::from((501, 1000))
+    };
+    (error <= unit * slack).then_some(quarters)
+}
+
+fn power_of_ten(exponent: i32) -> Option<Rational> {
+    if exponent.unsigned_abs() > MOST_EXPONENT {
+        return None;
+    }
+    let mut power = Rational::from(1);
+    for _ in 0..exponent.unsigned_abs() {
+        power *= 10u32;
+    }
+    Some(if exponent < 0 { power.recip() } else { power })
+}
+
+/// What an expression of a file is worth: a rational and a multiple of pi.
+#[derive(Clone, Debug)]
+struct Value {
+    plain: Rational,
+    /// Multiples of pi.
+    turns: Rational,
+    exact: bool,
+}
+
+impl Value {
+    fn to_f64(&self) -> f64 {
+        nearest(&self.plain) + nearest(&self.turns) * PI
+    }
+
+    fn rounded(x: f64) -> Option<Self> {
+        Some(Self {
+            plain: Rational::from_f64(x)?,
+            turns: Rational::new(),
+            exact: false,
+        })
+    }
+
+    fn read(text: &str) -> Option<Self> {
+        let text = text.trim();
+        if text.is_empty() || text.len() > MOST_CHARACTERS {
+            return None;
+        }
+        let mut reader = Reader { rest: text };
+        let value = reader.sum(0)?;
+        reader.rest.trim().is_empty().then_some(value)
+    }
+
+    fn decimal(text: &str) -> Option<Rational> {
+        let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+            Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
+            None => (text, 0),
+        };
+        let (whole, decimals) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+        let digits = format!("{whole}{decimals}");
+        if digits.is_empty() || !digits.bytes().all(|b| b.is_ascii_digit()) {
+            return None;
+        }
+        let number: Rational = digits.parse().ok()?;
+        Some(number * power_of_ten(exponent - decimals.len() as i32)?)
+    }
+}
+
+struct Reader<'a> {
+    rest: &'a str,
+}
+
+impl Reader<'_> {
+    fn takes(&mut self, symbol: char) -> bool {
+        self.rest = self.rest.trim_start();
+        match self.rest.strip_prefix(symbol) {
+            Some(rest) => {
+                self.rest = rest;
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn sum(&mut self, depth: usize) -> Option<Value> {
+        let mut total = self.product(depth)?;
+        loop {
+            let sign = if self.takes('+') {
+                1
+            } else if self.takes('-') {
+                -1
+            } else {
+                return Some(total);
+            };
+            let more = self.product(depth)?;
+            total = Value {
+                plain: total.plain + more.plain * sign,
+                turns: total.turns + more.turns * sign,
+                exact: total.exact && more.exact,
+            };
+        }
+    }
+
+    fn product(&mut self, depth: usize) -> Option<Value> {
+        let mut total = self.factor(depth)?;
+        loop {
+            if self.takes('*') {
+                total = times(&total, &self.factor(depth)?)?;
+            } else if self.takes('/') {
+                let by = self.factor(depth)?;
+                total = match (by.turns.is_zero(), by.plain.is_zero()) {
+                    (true, true) => return None,
+                    (true, false) => Value {
+                        plain: total.plain / &by.plain,
+                        turns: total.turns / &by.plain,
+                        exact: total.exact && by.exact,
+                    },
+                    (false, _) => Value::rounded(total.to_f64() / by.to_f64())?,
+                };
+            } else {
+                return Some(total);
+            }
+        }
+    }
+
+    fn factor(&mut self, depth: usize) -> Option<Value> {
+        if depth > MOST_NESTING {
+            return None;
+        }
+        if self.takes('-') {
+            let value = self.factor(depth + 1)?;
+            return Some(Value {
+                plain: -value.plain,
+                turns: -value.turns,
+                exact: value.exact,
+            });
+        }
+        if self.takes('+') {
+            return self.factor(depth + 1);
+        }
+        if self.takes('(') {
+            let value = self.sum(depth + 1)?;
+            return self.takes(')').then_some(value);
+        }
+        if let Some(rest) = self.rest.strip_prefix("sqrt") {
+            self.rest = rest;
+            if !self.takes('(') {
+                return None;
+            }
+            let value = self.sum(depth + 1)?;
+            return if self.takes(')') { root(&value) } else { None };
+        }
+        if let Some(rest) = self.rest.strip_prefix("pi") {
+            self.rest = rest;
+            return Some(Value {
+                plain: Rational::new(),
+                turns: Rational::from(1),
+                exact: true,
+            });
+        }
+        self.decimal()
+    }
+
+    fn decimal(&mut self) -> Option<Value> {
+        let bytes = self.rest.as_bytes();
+        let mut end = 0;
+        while let Some(&byte) = bytes.get(end) {
+            let after_exponent = end > 0 && matches!(bytes[end - 1], b'e' | b'E');
+            let part = byte.is_ascii_digit()
+                || byte == b'.'
+                || (matches!(byte, b'e' | b'E') && end > 0)
+                || (matches!(byte, b'+' | b'-') && after_exponent);
+            if !part {
+                break;
+            }
+            end += 1;
+        }
+        let (number, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        Some(Value {
+            plain: Value::decimal(number)?,
+            turns: Rational::new(),
+            exact: true,
+        })
+    }
+}
+
+fn times(a: &Value, b: &Value) -> Option<Value> {
+    if !a.turns.is_zero() && !b.turns.is_zero() {
+        return Value::rounded(a.to_f64() * b.to_f64());
+    }
+    let turns = Rational::from(&a.turns * &b.plain) + Rational::from(&b.turns * &a.plain);
+    Some(Value {
+        plain: Rational::from(&a.plain * &b.plain),
+        turns,
+        exact: a.exact && b.exact,
+    })
+}
+
+fn root(value: &Value) -> Option<Value> {
+    if value.turns.is_zero() && value.plain >= 0 {
+        let (p, q) = (value.plain.numer(), value.plain.denom());
+        if p.is_perfect_square() && q.is_perfect_square() {
+            return Some(Value {
+                plain: Rational::from((p.clone().sqrt(), q.clone().sqrt())),
+                turns: Rational::new(),
+                exact: value.exact,
+            });
+        }
+    }
+    let double = value.to_f64();
+    if double < 0.0 {
+        return None;
+    }
+    Value::rounded(double.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_what_is_written() {
+        for (text, numerator, denominator) in [
+            ("0.806", 403, 500),
+            ("384/145", 384, 145),
+            ("-1e-3", -1, 1000),
+            ("2*(1/3 - 1)", -4, 3),
+            ("sqrt(9/4)", 3, 2),
+        ] {
+            let number = Number::read(text).unwrap();
+            assert_eq!(number.value, Rational::from((numerator, denominator)));
+            assert!(number.exact, "{text}");
+        }
+        let root = Number::read("sqrt(3)/2").unwrap();
+        assert!(!root.exact && (root.to_f64() - 0.75f64.sqrt()).abs() < 1e-16);
+        for bad in [
+            "",
+            "x",
+            "1/0",
+            "1..2",
+            "sqrt(-1)",
+            "(1",
+            "1e999999999",
+            "nan",
+        ] {
+            assert_eq!(Number::read(bad), None, "{bad}");
+        }
+        assert_eq!(Number::read("0.806").unwrap().json(), "0.806");
+        assert_eq!(Number::read("1/3").unwrap().json(), "\"1/3\"");
+    }
+
+    #[test]
+    fn rounded_right_angles_are_exact_and_others_are_not_touched() {
+        let snapped = |text: &str| {
+            let read = read_angle(text, false, true).unwrap();
+            read.snapped.is_some().then_some(read.angle.direction)
+        };
+        for text in ["1.57", "1.5708", "1.570796327", "1.5707963267948966"] {
+            assert_eq!(snapped(text), Some([0.0, 1.0]), "{text}");
+        }
+        assert_eq!(snapped("-3.14159"), Some([-1.0, 0.0]));
+        assert_eq!(snapped("-1.5707963267948966"), Some([0.0, -1.0]));
+        for text in ["1.6", "1.571215929", "1.5707", "0.0009", "0"] {
+            assert_eq!(snapped(text), None, "{text}");
+        }
+        assert_eq!(read_angle("1.5708", false, false).unwrap().snapped, None);
+        let right = read_angle("90 deg", false, true).unwrap();
+        assert_eq!((right.angle.half, right.snapped), ([1.0, 1.0], None));
+        assert_eq!(
+            read_angle("-pi/2", true, true).unwrap().angle.half,
+            [1.0, -1.0]
+        );
+    }
+
+    #[test]
+    fn angles_come_back() {
+        for k in -20..20 {
+            let angle = Angle::of_radians(0.15 * f64::from(k));
+            let [c, s] = angle.direction;
+            assert!((radians(Complex64::new(c, s)) - angle.radians).abs() < 1e-14);
+            let [w, t] = angle.half;
+            let over = w * w + t * t;
+            assert!(((w * w - t * t) / over - c).abs() < 1e-15);
+            assert!((2.0 * w * t / over - s).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! Poses of bodies: rotation and position in complex numbers, so that complex solutions are checked as real ones
+//! are; quaternions, roll-pitch-yaw, and rotations that a file rounds.
+
+use super::exact::{Angle, radians};
+use crate::plane::modulus;
+use num_complex::Complex64;
+
+/// Rotations of a file may be off by this much; they are projected then.
+pub const ROTATION_ERROR: f64 = 1e-6;
+
+const ZERO: Complex64 = Complex64::new(0.0, 0.0);
+const ONE: Complex64 = Complex64::new(1.0, 0.0);
+
+/// A complex vector.
+pub type Vector3 = [Complex64; 3];
+
+/// Rotation and position: x -> rotation x + position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The rotation's matrix by rows.
+    pub rotation: [[Complex64; 3]; 3],
+    /// Where the origin goes.
+    pub position: Vector3,
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl Pose {
+    /// The pose that moves nothing.
+    pub const IDENTITY: Self = Self {
+        rotation: [[ONE, ZERO, ZERO], [ZERO, ONE, ZERO], [ZERO, ZERO, ONE]],
+        position: [ZERO; 3],
+    };
+
+    /// A real pose.
+    pub fn real(rotation: [[f64; 3]; 3], position: [f64; 3]) -> Self {
+        Self {
+            rotation: rotation.map(|row| row.map(Complex64::from)),
+            position: position.map(Complex64::from),
+        }
+    }
+
+    /// A shift.
+    pub fn shift(
+        x: impl Into<Complex64>,
+        y: impl Into<Complex64>,
+        z: impl Into<Complex64>,
+    ) -> Self {
+        Self {
+            position: [x.into(), y.into(), z.into()],
+            ..Self::IDENTITY
+        }
+    }
+
+    /// The turn about z by cosine and sine.
+    pub fn about_z(c: Complex64, s: Complex64) -> Self {
+        Self {
+            rotation: [[c, -s, ZERO], [s, c, ZERO], [ZERO, ZERO, ONE]],
+            ..Self::IDENTITY
+        }
+    }
+
+    /// The turn about x by cosine and sine.
+    pub fn about_x(c: Complex64, s: Complex64) -> Self {
+        Self {
+            rotation: [[ONE, ZERO, ZERO], [ZERO, c, -s], [ZERO, s, c]],
+            ..Self::IDENTITY
+        }
+    }
+
+    /// Rz(yaw) Ry(pitch) Rx(roll): what URDF calls rpy.
+    pub fn of_roll_pitch_yaw(angles: [Angle; 3]) -> Self {
+        let [roll, pitch, yaw] = angles.map(|a| a.direction.map(Complex64::from));
+        let about_y = Self {
+            rotation: [
+                [pitch[0], ZERO, pitch[1]],
+                [ZERO, ONE, ZERO],
+                [-pitch[1], ZERO, pitch[0]],
+            ],
+            ..Self::IDENTITY
+        };
+        Self::about_z(yaw[0], yaw[1])
+            .then(&about_y)
+            .then(&Self::about_x(roll[0], roll[1]))
+    }
+
+    /// The rotation of a quaternion [w, x, y, z] of any length; `None` for one of length 0.
+    pub fn of_quaternion(q: [Complex64; 4], position: Vector3) -> Option<Self> {
+        let [w, x, y, z] = q;
+        let square = w * w + x * x + y * y + z * z;
+        let size: f64 = q.iter().map(|c| c.norm_sqr()).sum();
+        if size == 0.0 || square.norm_sqr() <= 1e-24 * size * size {
+            return None;
+        }
+        let rows = [
+            [
+                w * w + x * x - y * y - z * z,
+                (x * y - w * z) * 2.0,
+                (x * z + w * y) * 2.0,
+            ],
+            [
+                (x * y + w * z) * 2.0,
+                w * w - x * x + y * y - z * z,
+                (y * z - w * x) * 2.0,
+            ],
+            [
+                (x * z - w * y) * 2.0,
+                (y * z + w * x) * 2.0,
+                w * w - x * x - y * y + z * z,
+            ],
+        ];
+        Some(Self {
+            rotation: rows.map(|row| row.map(|c| c / square)),
+            position,
+        })
+    }
+
+    /// The unit quaternion [w, x, y, z] of a real rotation, w >= 0.
+    pub fn quaternion(&self) -> [f64; 4] {
+        let m = self.rotation.map(|row| row.map(|c| c.re));
+        let squares = [
+            1.0 + m[0][0] + m[1][1] + m[2][2],
+            1.0 + m[0][0] - m[1][1] - m[2][2],
+            1.0 - m[0][0] + m[1][1] - m[2][2],
+            1.0 - m[0][0] - m[1][1] + m[2][2],
+        ];
+        let largest = (0..4).fold(
+            0,
+            |best, i| if squares[i] > squares[best] { i } else { best },
+        );
+        let mixed = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
+        let sums = [m[1][0] + m[0][1], m[0][2] + m[2][0], m[2][1] + m[1][2]];
+        let s = squares[largest];
+        let mut q = match largest {
+            0 => [s, mixed[0], mixed[1], mixed[2]],
+            1 => [mixed[0], s, sums[0], sums[1]],
+            2 => [mixed[1], sums[0], s, sums[2]],
+            _ => [mixed[2], sums[1], sums[2], s],
+        };
+        let length = q.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
+        q.iter_mut().for_each(|c| *c *= sign / length);
+        q
+    }
+
+    /// This pose, then the other in its frame: self * other.
+    pub fn then(&self, other: &Self) -> Self {
+        let product = |i: usize, j: usize| {
+            (0..3)
+                .map(|k| self.rotation[i][k] * other.rotation[k][j])
+                .sum()
+        };
+        Self {
+            rotation: std::array::from_fn(|i| std::array::from_fn(|j| product(i, j))),
+            position: self.point(other.position),
+        }
+    }
+
+    /// The pose that takes back; its rotation is orthogonal.
+    pub fn inverse(&self) -> Self {
+        let transposed: [[Complex64; 3]; 3] =
+            std::array::from_fn(|i| std::array::from_fn(|j| self.rotation[j][i]));
+        let turned = Self {
+            rotation: transposed,
+            position: [ZERO; 3],
+        };
+        Self {
+            position: turned.point(self.position).map(|c| -c),
+            ..turned
+        }
+    }
+
+    /// Where a point goes.
+    pub fn point(&self, p: Vector3) -> Vector3 {
+        let turned = self.direction(p);
+        std::array::from_fn(|i| turned[i] + self.position[i])
+    }
+
+    /// Where a direction goes.
+    pub fn direction(&self, d: Vector3) -> Vector3 {
+        std::array::from_fn(|i| (0..3).map(|k| self.rotation[i][k] * d[k]).sum())
+    }
+
+    /// A column of the rotation.
+    pub fn column(&self, j: usize) -> Vector3 {
+        std::array::from_fn(|i| self.rotation[i][j])
+    }
+
+    /// The largest difference of an entry, positions in units of `size`.
+    pub fn distance(&self, other: &Self, size: f64) -> f64 {
+        let mut most = 0.0f64;
+        for i in 0..3 {
+            for j in 0..3 {
+                most = most.max(modulus(self.rotation[i][j] - other.rotation[i][j]));
+            }
+            most = most.max(modulus(self.position[i] - other.position[i]) / size);
+        }
+        most
+    }
+
+    /// Roll, pitch and yaw of a real rotation, in radians.
+    pub fn roll_pitch_yaw(&self) -> [f64; 3] {
+        let m = self.rotation.map(|row| row.map(|c| c.re));
+        let across = (m[0][0] * m[0][0] + m[1][0] * m[1][0]).sqrt();
+        let angle = |c: f64, s: f64| radians(Complex64::new(c, s));
+        let pitch = angle(across, -m[2][0]);
+        if across > 1e-12 {
+            [angle(m[2][2], m[2][1]), pitch, angle(m[0][0], m[1][0])]
+        } else {
+            [0.0, pitch, angle(m[1][1], -m[0][1])]
+        }
+    }
+}
+
+/// How far a matrix is from a rotation, and the rotation near to it.
+///
+/// The error is the largest entry of M'M - I, or infinite for a mirror image.
+pub fn nearest_rotation(rows: [[f64; 3]; 3]) -> (f64, [[f64; 3]; 3]) {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let mut error = 0.0f64;
+    for i in 0..3 {
+        for j in 0..3 {
+            let wanted = if i == j { 1.0 } else { 0.0 };
+            error = error.max((dot(rows[i], rows[j]) - wanted).abs());
+        }
+    }
+    if cross(rows[0], rows[1])
+        .iter()
+        .zip(rows[2])
+        .map(|(a, b)| a * b)
+        .sum::<f64>()
+        < 0.0
+        || !error.is_finite()
+    {
+        return (f64::INFINITY, rows);
+    }
+    // By the quaternion: exactly orthogonal up to rounding.
+    let q = Pose::real(rows, [0.0; 3]).quaternion();
+    let Some(pose) = Pose::of_quaternion(q.map(Complex64::from), [ZERO; 3]) else {
+        return (f64::INFINITY, rows);
+    };
+    (error, pose.rotation.map(|row| row.map(|c| c.re)))
+}
+
+/// The vector product.
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// The scalar product.
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The vector of length 1 in this direction; `None` for the vector 0.
+pub fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
+    let length = dot(a, a).sqrt();
+    (length > 0.0 && length.is_finite()).then(|| a.map(|c| c / length))
+}
+
+/// A frame with its origin at a point, its z along a direction, its x as near as can be to another one,
+/// or to an axis of the coordinates. `None` where a direction is 0 or the two are parallel.
+pub fn frame(point: [f64; 3], z: [f64; 3], x: Option<[f64; 3]>) -> Option<Pose> {
+    let z = unit(z)?;
+    let x = x.unwrap_or_else(|| {
+        let least = (0..3).fold(
+            0,
+            |best, i| if z[i].abs() < z[best].abs() { i } else { best },
+        );
+        std::array::from_fn(|i| if i == least { 1.0 } else { 0.0 })
+    });
+    let along = dot(x, z);
+    let x: [f64; 3] = std::array::from_fn(|i| x[i] - along * z[i]);
+    if dot(x, x) < 1e-20 {
+        return None;
+    }
+    let x = unit(x)?;
+    let y = cross(z, x);
+    let rotation = std::array::from_fn(|i| [x[i], y[i], z[i]]);
+    Some(Pose::real(rotation, point))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(k: f64) -> Pose {
+        let q = [0.3 + k, -0.5, 0.7 * k, 0.2].map(Complex64::from);
+        Pose::of_quaternion(q, [k.into(), 2.0.into(), (-1.0).into()]).unwrap()
+    }
+
+    #[test]
+    fn representations_come_back() {
+        for k in [-2.0, -0.3, 0.0, 0.4, 5.0] {
+            let pose = sample(k);
+            let q = pose.quaternion().map(Complex64::from);
+            let back = Pose::of_quaternion(q, pose.position).unwrap();
+            assert!(pose.distance(&back, 1.0) < 1e-14);
+            let rpy = pose.roll_pitch_yaw().map(Angle::of_radians);
+            let turned = Pose {
+                position: pose.position,
+                ..Pose::of_roll_pitch_yaw(rpy)
+            };
+            assert!(pose.distance(&turned, 1.0) < 1e-14);
+            let identity = pose.then(&pose.inverse());
+            assert!(identity.distance(&Pose::IDENTITY, 1.0) < 1e-14);
+        }
+    }
+
+    #[test]
+    fn rotations_that_are_none_are_told() {
+        let rows = sample(0.4).rotation.map(|row| row.map(|c| c.re));
+        let (error, _) = nearest_rotation(rows);
+        assert!(error < 1e-15);
+        let mut off = rows;
+        off[0][0] += 1e-4;
+        let (error, near) = nearest_rotation(off);
+        assert!(error > 1e-5 && error < 1e-3);
+        assert!(nearest_rotation(near).0 < 1e-15);
+        let mirrored = [rows[1], rows[0], rows[2]];
+        assert_eq!(nearest_rotation(mirrored).0, f64::INFINITY);
+    }
+}

@@ -1,0 +1,138 @@
+//! Parts that all bodies of a mechanism's file have: angles, vectors, poses, lists.
+
+use super::document::{Entry, MechanismError};
+use super::exact::{Angle, Number};
+use super::pose::{Pose, ROTATION_ERROR, nearest_rotation};
+use super::{MOST_PARTS, Snapped, Space, Vector, noted};
+use num_complex::Complex64;
+
+/// What readers of bodies need to know of the file, and what they note.
+pub(crate) struct Context {
+    pub space: Space,
+    pub degrees: bool,
+    pub snap: bool,
+    pub snapped: Vec<Snapped>,
+}
+
+impl Context {
+    /// An angle, its snapping noted.
+    pub fn angle(&mut self, entry: &Entry<'_>) -> Result<Angle, MechanismError> {
+        let read = entry.angle(self.degrees, self.snap)?;
+        Ok(noted(read, &entry.path, &mut self.snapped))
+    }
+
+    /// A point or direction: three numbers, in the plane two.
+    pub fn vector(&self, entry: &Entry<'_>, what: &str) -> Result<Vector, MechanismError> {
+        if self.space == Space::Planar {
+            let [x, y] = entry.numbers::<2>(&format!("{what}: two numbers"))?;
+            return Ok([x, y, Number::integer(0)]);
+        }
+        entry.numbers::<3>(&format!("{what}: three numbers"))
+    }
+
+    /// A direction, which is not 0.
+    pub fn direction(&self, entry: &Entry<'_>, what: &str) -> Result<Vector, MechanismError> {
+        let vector = self.vector(entry, what)?;
+        if vector.iter().all(|c| c.value.is_zero()) {
+            return Err(entry.error(format!("{what} has length 0; expected a direction")));
+        }
+        Ok(vector)
+    }
+}
+
+/// A pose: position with rotation, quaternion or rpy; in the plane position (or x, y) with angle.
+pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pose, MechanismError> {
+    let fields = entry.fields("a pose: an object with position and rotation, quaternion or rpy")?;
+    if space == Space::Planar {
+        let position = fields
+            .required("position", "two coordinates")?
+            .doubles::<2>("two numbers")?;
+        let angle = match fields.optional("angle") {
+            Some(angle) => angle.angle(degrees, false)?.angle,
+            None => Angle::ZERO,
+        };
+        fields.finish()?;
+        let [c, s] = angle.direction.map(Complex64::from);
+        return Ok(Pose {
+            position: [position[0].into(), position[1].into(), Complex64::default()],
+            ..Pose::about_z(c, s)
+        });
+    }
+    let position = match fields.optional("position") {
+        Some(position) => position.doubles::<3>("three numbers")?,
+        None => [0.0; 3],
+    };
+    let position = position.map(Complex64::from);
+    let ways: Vec<Entry<'_>> = ["rotation", "quaternion", "rpy"]
+        .iter()
+        .filter_map(|n| fields.optional(n))
+        .collect();
+    if ways.len() > 1 {
+        return Err(fields.error("expected one of rotation, quaternion and rpy"));
+    }
+    let pose = match ways.first() {
+        None => Pose {
+            position,
+            ..Pose::IDENTITY
+        },
+        Some(way) if way.path.ends_with("rotation") => {
+            let rows = way.items("three rows")?;
+            let rows: Result<Vec<[f64; 3]>, _> = rows
+                .iter()
+                .map(|r| r.doubles::<3>("three numbers"))
+                .collect();
+            let rows: [[f64; 3]; 3] = rows?
+                .try_into()
+                .map_err(|_| way.error("expected three rows of three numbers"))?;
+            let (error, rotation) = nearest_rotation(rows);
+            if error > ROTATION_ERROR {
+                return Err(way.error(format!(
+                    "this is no rotation: rows are off from orthogonal unit vectors by {error:.1e}; at most {ROTATION_ERROR:.0e} is rounded away"
+                )));
+            }
+            Pose {
+                position,
+                ..Pose::real(rotation, [0.0; 3])
+            }
+        }
+        Some(way) if way.path.ends_with("quaternion") => {
+            let q = way.doubles::<4>("four numbers [w, x, y, z]")?;
+            let square: f64 = q.iter().map(|c| c * c).sum();
+            if (square - 1.0).abs() > ROTATION_ERROR {
+                return Err(way.error(format!(
+                    "expected a quaternion of length 1, its square is {square}"
+                )));
+            }
+            Pose::of_quaternion(q.map(Complex64::from), position)
+                .ok_or_else(|| way.error("expected a quaternion of length 1"))?
+        }
+        Some(way) => {
+            let items = way.items("three angles")?;
+            let angles: Result<Vec<Angle>, _> = items
+                .iter()
+                .map(|a| Ok(a.angle(degrees, false)?.angle))
+                .collect();
+            let angles: [Angle; 3] = angles?
+                .try_into()
+                .map_err(|_| way.error("expected roll, pitch and yaw"))?;
+            Pose {
+                position,
+                ..Pose::of_roll_pitch_yaw(angles)
+            }
+        }
+    };
+    fields.finish()?;
+    Ok(pose)
+}
+
+/// The items of a list, as many as a mechanism may have.
+pub(crate) fn parts<'a>(entry: &Entry<'a>, what: &str) -> Result<Vec<Entry<'a>>, MechanismError> {
+    let items = entry.items(what)?;
+    if items.len() > MOST_PARTS {
+        return Err(entry.error(format!(
+            "{} parts; at most {MOST_PARTS} are read",
+            items.len()
+        )));
+    }
+    Ok(items)
+}
