@@ -88,7 +88,7 @@ fn check(name: &str, system: &System, expected: &[Expected]) {
         let began = Instant::now();
         let found = decompose(system, seed);
         let (counts, settled) = (counted(&found), found.settled());
-        let (paths, loops) = (found.paths, found.paths_of_loops);
+        let (paths, loops) = (found.paths.total, found.paths_of_loops.total);
         eprintln!(
             "{name}, seed {seed}: {counts:?}, settled {settled}, {paths} + {loops} paths, {:.2} s{}",
             began.elapsed().as_secs_f64(),

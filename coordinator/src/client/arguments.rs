@@ -51,6 +51,8 @@ pub enum Command {
     Solve(Solve),
     /// What a file holds and what each start would cost; solves nothing
     Info(Info),
+    /// Every irreducible component of every dimension, with its degree and multiplicity
+    Decompose(Decompose),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths
@@ -147,7 +149,7 @@ fn precision(text: &str) -> Result<PrecisionChoice, String> {
 }
 
 /// What is solved and how: the options of everything that takes a system.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Problem")]
 pub struct ProblemArguments {
     /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
@@ -280,6 +282,90 @@ pub struct Solve {
     /// Where the answer goes.
     #[command(flatten)]
     pub output: OutputArguments,
+}
+
+/// A range of dimensions, as typed: `1`, or `0..2` with both ends.
+fn dimensions(text: &str) -> Result<Dimensions, String> {
+    let read = |part: &str| part.parse::<u32>().ok();
+    let range = match text.split_once("..") {
+        Some((lowest, highest)) => read(lowest).zip(read(highest)),
+        None => read(text).map(|only| (only, only)),
+    };
+    let range = range.filter(|(lowest, highest)| lowest <= highest);
+    let (lowest, highest) = range
+        .ok_or_else(|| "expected a dimension such as 1, or a range such as 0..2".to_owned())?;
+    Ok(Dimensions { lowest, highest })
+}
+
+/// Dimensions of components, from the lowest to the highest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimensions {
+    /// The lowest.
+    pub lowest: u32,
+    /// The highest.
+    pub highest: u32,
+}
+
+/// `cognate decompose`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate decompose twisted_cubic.bertini
+  cognate decompose system.bertini --dimension 1..2 --format json | jq .decomposition.components
+  cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl")]
+pub struct Decompose {
+    /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
+    #[arg(help_heading = "Problem")]
+    pub file: PathBuf,
+    /// Dimensions of the components that are wanted: D or D..E [default: all]
+    #[arg(long, value_name = "D|D..E", value_parser = dimensions, help_heading = "Problem")]
+    pub dimension: Option<Dimensions>,
+    /// Loops in a row that bring no witness points together before these stay apart [default: 12]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200), help_heading = "Problem")]
+    pub loops: Option<u32>,
+    /// Values of the parameters: Bertini's format or JSON, one set
+    #[arg(long, value_name = "FILE", help_heading = "Problem")]
+    pub target_parameters: Option<PathBuf>,
+    /// Variable groups instead of those in the file: "x,y;z,w"
+    #[arg(long, value_name = "GROUPS", help_heading = "Problem")]
+    pub groups: Option<String>,
+    /// Seed of everything random; the same seed gives the same bits [default: made from the problem]
+    #[arg(long, value_name = "N", help_heading = "Problem")]
+    pub seed: Option<u64>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t, help_heading = "Problem")]
+    pub preset: PresetName,
+    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision, help_heading = "Problem")]
+    pub precision: PrecisionChoice,
+    /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
+    #[arg(long, help_heading = "Problem")]
+    pub exact: bool,
+    /// Threads that track [default: cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+    /// Also write summary.json, decomposition.json and witness_points.jsonl here
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+}
+
+impl Decompose {
+    /// What is decomposed, as the options of a solve.
+    pub fn problem(&self) -> ProblemArguments {
+        ProblemArguments {
+            file: self.file.clone(),
+            target_parameters: self.target_parameters.clone(),
+            groups: self.groups.clone(),
+            seed: self.seed,
+            preset: self.preset,
+            precision: self.precision,
+            exact: self.exact,
+            ..ProblemArguments::default()
+        }
+    }
 }
 
 /// `cognate synthesize`.

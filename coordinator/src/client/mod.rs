@@ -31,6 +31,7 @@ pub fn main() -> ExitCode {
             Command::Worker(a) => return commands::worker::run(a),
             Command::Info(a) => commands::info::run(&a),
             Command::Path(a) => commands::path::run(&a),
+            Command::Decompose(a) => commands::decompose::run(&a),
             other => in_runtime(other),
         },
     };
@@ -80,6 +81,7 @@ async fn one_shot(command: Command) -> Result<Exit, ClientError> {
         Command::Solve(_)
         | Command::Info(_)
         | Command::Path(_)
+        | Command::Decompose(_)
         | Command::Coordinator(_)
         | Command::Worker(_)
         | Command::Synthesize(_) => unreachable!("these were run before"),

@@ -64,9 +64,18 @@ impl Cascade {
         }
     }
 
-    /// The supersets, highest dimension first, of dimensions that have points or lost some.
-    pub fn supersets(&mut self) -> Vec<Superset> {
-        std::mem::take(&mut self.supersets)
+    /// The supersets of all dimensions that are asked and of those above, highest first.
+    pub fn supersets(&mut self, problem: &Problem) -> Vec<Superset> {
+        let mut supersets = std::mem::take(&mut self.supersets);
+        // Levels that no path reached have no points, but for those of paths that were lost before.
+        for level in supersets.len()..problem.asked_levels {
+            supersets.push(Superset {
+                dimension: problem.variables() - level - 1,
+                failed: self.failed,
+                ..Superset::default()
+            });
+        }
+        supersets
     }
 
     /// Learns from the stage that is done, and says which comes next.
@@ -77,7 +86,7 @@ impl Cascade {
             Some(job) if self.sliding => self.slid(job),
             Some(job) => self.intersected(problem, job),
         }
-        if self.points.is_empty() || self.level >= problem.levels {
+        if self.points.is_empty() || self.level >= problem.asked_levels {
             return None;
         }
         let degree = problem.row_degrees[self.level];

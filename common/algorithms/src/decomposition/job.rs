@@ -7,7 +7,8 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
-use cognate_solutions::classification::{Decision, Tolerances};
+use cognate_solutions::classification::{Decision, Tolerances, Verdict};
+use cognate_solutions::witness::TrackedPaths;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -145,25 +146,31 @@ impl Job {
         pairs.map(|(r, d)| (r, d, values(r))).collect()
     }
 
-    /// Number of its paths, without repetitions.
-    pub fn paths(&self) -> u64 {
-        match &self.work {
-            Doing::Tracked(stages) => stages.results().len() as u64,
-            Doing::Asked { .. } => 0,
+    /// Its paths, counted.
+    pub fn paths(&self) -> TrackedPaths {
+        let Doing::Tracked(stages) = &self.work else {
+            return TrackedPaths::default();
+        };
+        let failed = stages.decisions().into_iter();
+        let failed = failed.filter(|decision| decision.verdict == Verdict::Failed);
+        let mut paths = TrackedPaths {
+            total: stages.results().len() as u64,
+            failed: failed.count() as u64,
+            ..TrackedPaths::default()
+        };
+        for target in 0..stages.first().homotopy.targets() as usize {
+            let history = stages.history(target, false);
+            paths.retracked += history.retracked;
+            paths.crossings_found += history.crossings_found;
+            paths.crossings_resolved += history.crossings_resolved;
         }
+        paths
     }
 
     /// Crossings of its paths that are left.
     pub fn crossings_left(&self) -> u64 {
-        let Doing::Tracked(stages) = &self.work else {
-            return 0;
-        };
-        let targets = stages.first().homotopy.targets() as usize;
-        let left = |target| {
-            let history = stages.history(target, false);
-            history.crossings_found - history.crossings_resolved
-        };
-        (0..targets).map(left).sum()
+        let paths = self.paths();
+        paths.crossings_found - paths.crossings_resolved
     }
 }
 

@@ -24,7 +24,9 @@ use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
-use cognate_solutions::witness::{ComponentId, Decomposition, Dimension, Doubt, WitnessSet};
+use cognate_solutions::witness::{
+    ComponentId, Decomposition, Dimension, Doubt, TrackedPaths, WitnessSet,
+};
 use cognate_systems::system::System;
 use deflated::PureSet;
 use job::{Job, Tracking};
@@ -62,8 +64,8 @@ pub struct DecompositionSolve {
     /// Sets of one dimension and multiplicity, not yet told apart, and components made of them.
     sets: Vec<PureSet>,
     components: Vec<WitnessSet>,
-    paths: u64,
-    paths_of_loops: u64,
+    paths: TrackedPaths,
+    paths_of_loops: TrackedPaths,
 }
 
 impl DecompositionSolve {
@@ -84,8 +86,8 @@ impl DecompositionSolve {
             dimensions: Vec::new(),
             sets: Vec::new(),
             components: Vec::new(),
-            paths: 0,
-            paths_of_loops: 0,
+            paths: TrackedPaths::default(),
+            paths_of_loops: TrackedPaths::default(),
         })
     }
 
@@ -104,19 +106,20 @@ impl DecompositionSolve {
                 }
             }
             let done = self.job.take();
+            let paths = done.as_ref().map_or_else(TrackedPaths::default, Job::paths);
             let id = StageId(self.systems.len() as u32);
             self.job = match &mut self.step {
                 Step::Done(_) => return Next::Done,
                 Step::Cascade(cascade) => {
-                    self.paths += done.as_ref().map_or(0, Job::paths);
+                    self.paths.add(&paths);
                     cascade.advance(&self.problem, done.as_ref(), id)
                 }
                 Step::Sieve(sieve) => {
-                    self.paths += done.as_ref().map_or(0, Job::paths);
+                    self.paths.add(&paths);
                     sieve.advance(&self.problem, done.as_ref(), id, &mut self.sets)
                 }
                 Step::Split(split) => {
-                    self.paths_of_loops += done.as_ref().map_or(0, Job::paths);
+                    self.paths_of_loops.add(&paths);
                     split.advance(&self.problem, done.as_ref(), id)
                 }
             };
@@ -130,10 +133,15 @@ impl DecompositionSolve {
     fn next_step(&mut self) {
         match &mut self.step {
             Step::Cascade(cascade) => {
-                self.step = Step::Sieve(Sieve::new(cascade.supersets()));
+                self.step = Step::Sieve(Sieve::new(cascade.supersets(&self.problem)));
                 return;
             }
-            Step::Sieve(sieve) => self.dimensions = sieve.dimensions(),
+            Step::Sieve(sieve) => {
+                let asked = |number: usize| self.problem.asked.contains(&(number as u32));
+                self.dimensions = sieve.dimensions();
+                self.dimensions.retain(|d| asked(d.number as usize));
+                self.sets.retain(|set| asked(set.dimension));
+            }
             Step::Split(split) => {
                 let (found, dimension) = split.components(&self.problem);
                 self.components.extend(found);
@@ -181,6 +189,7 @@ impl DecompositionSolve {
         }
         Decomposition {
             ambient: self.problem.variables() as u32,
+            asked: [*self.problem.asked.start(), *self.problem.asked.end()],
             components,
             dimensions,
             paths: self.paths,

@@ -2,6 +2,7 @@
 
 pub mod cancel;
 pub mod coordinator;
+pub mod decompose;
 pub mod explain;
 pub mod fleet;
 pub mod info;

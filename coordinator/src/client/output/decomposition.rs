@@ -1,0 +1,252 @@
+//! A decomposition for people: components by dimension, how the paths add up, what is not settled; and the
+//! folder of --output.
+
+use super::files::{create, make_folder, write_file};
+use super::table::Lines;
+use super::text::{Columns, Look, count, counted, magnitude, seconds, wrapped};
+use crate::client::error::{ClientError, Exit};
+use crate::results::decomposition::{ComponentBlock, DecompositionSummary, EvidenceBlock};
+use cognate_solutions::witness::{Decomposition, Irreducible};
+use serde_json::json;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Doubts shown before a table says how many more there are.
+const DOUBTS_SHOWN: usize = 8;
+
+/// The exit code that this answer has.
+pub fn exit(summary: &DecompositionSummary) -> Exit {
+    match summary.settled {
+        true => Exit::Solved,
+        false => Exit::Unsettled,
+    }
+}
+
+/// The whole table; `files` is the folder with the witness points.
+pub fn table(summary: &DecompositionSummary, files: Option<&Path>, look: Look) -> String {
+    let mut text = headline(summary, look);
+    text.push('\n');
+    if !summary.decomposition.components.is_empty() {
+        text.push_str(&indented(&components(summary, look)));
+        text.push('\n');
+    }
+    text.push_str(&indented(&dimensions(summary, look)));
+    text.push('\n');
+    let (paths, loops) = (&summary.paths.superset, &summary.paths.loops);
+    let number = (count(paths.total.max(loops.total)).len() + 1).max(6);
+    let mut lines = Lines::new(look, number);
+    let note = format!(
+        "{} tracked again, {} failed, {} of {} resolved",
+        count(paths.retracked),
+        count(paths.failed),
+        count(paths.crossings_resolved),
+        counted(paths.crossings_found, "crossing"),
+    );
+    lines.heading("Paths", &count(paths.total), &note);
+    let note = match loops.failed {
+        0 => String::new(),
+        failed => format!("{} failed", count(failed)),
+    };
+    lines.line("of loops", &count(loops.total), &note);
+    let time = &summary.time;
+    let cpu = format!("{} of CPU", seconds(time.cpu_seconds));
+    lines.heading("Time", &seconds(time.wall_seconds), &cpu);
+    text.push_str(&lines.finish());
+    for warning in &summary.warnings {
+        for (i, line) in wrapped(warning, look.width - 11).iter().enumerate() {
+            let lead = if i == 0 { "  warning: " } else { "           " };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    let note = match files {
+        Some(folder) => format!("witness points are in {}", folder.display()),
+        None => "--output DIR writes the witness points".into(),
+    };
+    let _ = writeln!(text, "\n  {}", look.dim(&note));
+    text
+}
+
+/// Two columns before each line.
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+/// What was found, in a line or two, and what is not settled.
+fn headline(summary: &DecompositionSummary, look: Look) -> String {
+    let found = &summary.decomposition;
+    let number: u64 = found.components.iter().map(|c| c.count).sum();
+    let answer = match number {
+        0 if summary.settled => "no solutions".into(),
+        0 => "no components found".into(),
+        n => counted(n, "component"),
+    };
+    let answer = match summary.settled {
+        true => look.good(&answer),
+        false => look.warn(&answer),
+    };
+    let problem = &summary.problem;
+    let mut text = format!("{}: {answer}\n", look.bold(&problem.name));
+    let [lowest, highest] = found.asked;
+    let asked = match lowest == highest {
+        true => format!("dimension {lowest}"),
+        false => format!("dimensions {lowest} to {highest}"),
+    };
+    let what = format!(
+        "{}, {}, {asked}, by {}, seed {}",
+        counted(problem.variables, "variable"),
+        counted(problem.equations, "equation"),
+        problem.method,
+        problem.seed
+    );
+    for line in wrapped(&what, look.width) {
+        let _ = writeln!(text, "{}", look.dim(&line));
+    }
+    for doubt in found.unsettled.iter().take(DOUBTS_SHOWN) {
+        for (i, line) in wrapped(doubt, look.width - 15).iter().enumerate() {
+            let lead = match i {
+                0 => "not settled: ",
+                _ => "             ",
+            };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    let more = found.unsettled.len().saturating_sub(DOUBTS_SHOWN);
+    if more > 0 {
+        let _ = writeln!(
+            text,
+            "{}and {} more",
+            look.warn("not settled: "),
+            count(more as u64)
+        );
+    }
+    text
+}
+
+/// What components are alike in for one line of the table.
+fn likeness(c: &ComponentBlock) -> (u32, u64, Option<u64>, u64, Irreducible, &[u32]) {
+    (
+        c.dimension,
+        c.degree,
+        c.multiplicity,
+        c.tracked_multiplicity,
+        c.irreducible,
+        &c.deflation,
+    )
+}
+
+fn components(summary: &DecompositionSummary, look: Look) -> String {
+    let mut columns = Columns::new(&[
+        ">dimension",
+        ">degree",
+        ">multiplicity",
+        ">count",
+        "irreducible",
+        "evidence",
+    ]);
+    for alike in summary
+        .decomposition
+        .components
+        .chunk_by(|a, b| likeness(a) == likeness(b))
+    {
+        let first = &alike[0];
+        columns.row(vec![
+            first.dimension.to_string(),
+            count(first.degree),
+            first.multiplicity.map_or_else(|| "?".into(), count),
+            count(alike.iter().map(|c| c.count).sum()),
+            match first.irreducible {
+                Irreducible::Yes => "yes".into(),
+                Irreducible::Unsettled => "unsettled".into(),
+            },
+            evidence(alike),
+        ]);
+    }
+    columns.render(Look {
+        width: look.width - 2,
+        ..look
+    })
+}
+
+/// The weakest evidence of these components.
+fn evidence(alike: &[ComponentBlock]) -> String {
+    let first = &alike[0];
+    let deflated = match first.deflation.len() {
+        0 => String::new(),
+        n => format!(", {}", counted(n as u64, "deflation")),
+    };
+    if first.dimension == 0 {
+        return format!("isolated{deflated}");
+    }
+    let worst = |of: &dyn Fn(&EvidenceBlock) -> Option<f64>| {
+        let values = alike.iter().filter_map(|c| of(&c.evidence));
+        values.reduce(f64::max)
+    };
+    let deviation = worst(&|e| e.trace_deviation).map_or_else(|| "?".into(), magnitude);
+    let wrong = alike.iter().filter_map(|c| c.evidence.smallest_wrong_union);
+    let wrong = match wrong.reduce(f64::min) {
+        Some(least) => format!(", of wrong unions {}", magnitude(least)),
+        None => String::new(),
+    };
+    format!("trace {deviation}{wrong}{deflated}")
+}
+
+fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
+    let mut columns = Columns::new(&[
+        ">dimension",
+        ">components",
+        ">degree",
+        ">paths",
+        ">junk",
+        ">excess",
+        ">failed",
+        "complete",
+    ]);
+    for (number, d) in summary.decomposition.by_dimension.iter().rev() {
+        columns.row(vec![
+            number.to_string(),
+            count(d.components),
+            count(d.degree),
+            count(d.superset),
+            count(d.junk),
+            count(d.excess),
+            count(d.failed),
+            d.complete.name().into(),
+        ]);
+    }
+    columns.render(Look {
+        width: look.width - 2,
+        ..look
+    })
+}
+
+/// The folder of --output: `summary.json`; `decomposition.json` with slices and evidence;
+/// `witness_points.jsonl` with a point on each line.
+pub fn write(
+    folder: &Path,
+    summary: &DecompositionSummary,
+    found: &Decomposition,
+    variables: &[String],
+) -> Result<(), ClientError> {
+    make_folder(folder)?;
+    let mut lines = create(folder, "witness_points.jsonl")?;
+    for set in &found.components {
+        for point in &set.points {
+            let values: Vec<_> = variables.iter().zip(point).collect();
+            let values: serde_json::Map<String, serde_json::Value> = values
+                .into_iter()
+                .map(|(name, z)| (name.clone(), json!([z.re, z.im])))
+                .collect();
+            let line = json!({ "component": set.id.to_string(), "variables": values });
+            lines.write(&format!("{line}\n"))?;
+        }
+    }
+    lines.finish()?;
+    let mut without_points = found.clone();
+    for set in &mut without_points.components {
+        set.points.clear();
+    }
+    let text = serde_json::to_string_pretty(&without_points).expect("numbers can be written");
+    write_file(folder, "decomposition.json", &format!("{text}\n"))?;
+    let text = String::from_utf8_lossy(&summary.to_json()).into_owned();
+    write_file(folder, "summary.json", &format!("{text}\n"))
+}

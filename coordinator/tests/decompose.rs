@@ -1,0 +1,139 @@
+//! `cognate decompose` as a process: its JSON, its files, its exit codes.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A quadric surface, a line and a point: the products of one equation of each.
+const UNION: &str = "CONFIG\nEND;\nINPUT\nvariable_group x, y, z;\nfunction f1, f2, f3, f4, f5, f6;\n\
+    q = x*y - z;\nf1 = q*(x - 1)*(x - 3);\nf2 = q*(x - 1)*(y - 5);\nf3 = q*(x - 1)*(z + 7);\n\
+    f4 = q*(y - 2)*(x - 3);\nf5 = q*(y - 2)*(y - 5);\nf6 = q*(y - 2)*(z + 7);\nEND;\n";
+
+fn decompose(folder: &Path, text: &str, options: &[&str]) -> Output {
+    let file = folder.join("system.bertini");
+    std::fs::write(&file, text).expect("the folder is writable");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+    command.arg("decompose").arg(&file).args(options);
+    command.output().expect("the program starts")
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).expect("one JSON object")
+}
+
+/// Dimension and degree of each component.
+fn components(summary: &Value) -> Vec<(u64, u64)> {
+    let list = summary["decomposition"]["components"].as_array();
+    let of = |c: &Value| (c["dimension"].as_u64(), c["degree"].as_u64());
+    let list = list.expect("a list").iter();
+    list.map(|c| (of(c).0.expect("a number"), of(c).1.expect("a number")))
+        .collect()
+}
+
+#[test]
+fn components_stand_in_the_answer_and_in_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let here = folder.path().join("here");
+    let files = here.display().to_string();
+    let options = [
+        "--seed",
+        "1",
+        "--format",
+        "json",
+        "--threads",
+        "2",
+        "--output",
+        &files,
+    ];
+    let output = decompose(folder.path(), UNION, &options);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let summary = json(&output);
+    assert_eq!(components(&summary), [(2, 2), (1, 1), (0, 1)]);
+    assert_eq!(
+        summary["decomposition"]["by_dimension"]["2"]["complete"],
+        "yes"
+    );
+    assert_eq!(summary["problem"]["seed"], 1);
+    let read = |name: &str| std::fs::read_to_string(here.join(name)).expect(name);
+    let written: Value = serde_json::from_str(&read("summary.json")).expect("JSON");
+    assert_eq!(written, summary);
+    let points = read("witness_points.jsonl");
+    assert_eq!(points.lines().count(), 2 + 1 + 1);
+    for line in points.lines() {
+        let point: Value = serde_json::from_str(line).expect("JSON");
+        let value = |name: &str| -> num_complex::Complex64 {
+            serde_json::from_value(point["variables"][name].clone()).expect("a number")
+        };
+        let (x, y, z) = (value("x"), value("y"), value("z"));
+        let distance = match point["component"].as_str().expect("a name") {
+            "2.1" => (x * y - z).norm_sqr(),
+            "1.1" => (x - 1.0).norm_sqr() + (y - 2.0).norm_sqr(),
+            _ => (x - 3.0).norm_sqr() + (y - 5.0).norm_sqr() + (z + 7.0).norm_sqr(),
+        };
+        assert!(distance < 1e-20, "{line}");
+    }
+    let kept: Value = serde_json::from_str(&read("decomposition.json")).expect("JSON");
+    assert_eq!(
+        kept["components"][0]["slice"].as_array().map(Vec::len),
+        Some(2)
+    );
+    // The same with another number of threads, but for the time.
+    let options = ["--seed", "1", "--format", "json", "--threads", "1"];
+    let mut alone = json(&decompose(folder.path(), UNION, &options));
+    alone["time"] = summary["time"].clone();
+    assert_eq!(alone, summary);
+    let options = ["--seed", "1", "--format", "json", "--dimension", "1"];
+    let lines = json(&decompose(folder.path(), UNION, &options));
+    assert_eq!(components(&lines), [(1, 1)]);
+    assert_eq!(lines["settled"], true);
+}
+
+#[test]
+fn what_cannot_be_decomposed_is_refused_with_its_reason() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let refused = |text: &str, options: &[&str], reason: &str| {
+        let output = decompose(folder.path(), text, options);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains(reason), "{said}");
+        assert!(output.stdout.is_empty(), "{output:?}");
+    };
+    refused(
+        UNION,
+        &["--dimension", "3"],
+        "components have dimensions 0 to 2",
+    );
+    refused(
+        UNION,
+        &["--dimension", "2..1"],
+        "expected a dimension such as 1",
+    );
+    let family =
+        "CONFIG\nEND;\nINPUT\nvariable_group x, y; parameter p; function f; f = x*y - p;\nEND;\n";
+    refused(family, &[], "1 parameters, but 0 values");
+    let nothing = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; f = x - x;\nEND;\n";
+    refused(nothing, &[], "every point is a solution");
+}
+
+#[test]
+fn parameters_get_their_values() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let family =
+        "CONFIG\nEND;\nINPUT\nvariable_group x, y; parameter p; function f; f = x*y - p;\nEND;\n";
+    for (value, expected) in [("0", vec![(1, 1), (1, 1)]), ("3", vec![(1, 2)])] {
+        let file = folder.path().join("values");
+        std::fs::write(&file, format!("{{\"p\": {value}}}")).expect("the folder is writable");
+        let file = file.display().to_string();
+        let options = [
+            "--target-parameters",
+            &file,
+            "--format",
+            "json",
+            "--seed",
+            "2",
+        ];
+        let output = decompose(folder.path(), family, &options);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert_eq!(components(&json(&output)), expected);
+    }
+}
