@@ -324,6 +324,7 @@ impl RetriedStage {
                 start_points: points.as_start(),
                 ..self.first.clone()
             },
+            system: None,
             objects: vec![points],
         }
     }

@@ -11,6 +11,7 @@ use cognate_numeric::scalar::{Complex, DoubleDouble, Jet, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::system::System;
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 /// A number of about 32 digits.
 pub type Number = Complex<DoubleDouble<f64>>;
@@ -35,7 +36,7 @@ pub struct SlicedEquations {
 }
 
 /// A witness point with all its digits.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefinedPoint {
     /// The point.
     pub point: Vec<Number>,
@@ -51,7 +52,7 @@ pub struct RefinedPoint {
 }
 
 /// How a witness point moves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bend {
     /// x'.
     pub velocity: Vec<Number>,

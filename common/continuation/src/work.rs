@@ -3,7 +3,7 @@
 //! Pure data: it travels to workers, who build everything else from it and the system.
 
 use crate::homotopies::HomotopyKind;
-use crate::start_points::StartPoints;
+use crate::start_points::{Digest, StartPoints};
 use crate::start_systems::polyhedral::branches::BRANCHES;
 use crate::tracker::settings::Settings;
 use serde::{Deserialize, Serialize};
@@ -50,6 +50,8 @@ impl Work {
 pub struct Stage {
     /// Its number within the job.
     pub id: StageId,
+    /// Digest of the system that it is of, where that is not the job's: named by whoever stores the system.
+    pub system: Option<Digest>,
     /// What is done with each item.
     pub work: Work,
     /// What is deformed into what.

@@ -16,7 +16,7 @@ use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::Store;
 use crate::results::summary::{self, LargeAnswer, Summary};
 use cognate_algorithms::Opening;
-use cognate_continuation::work::StageId;
+use cognate_continuation::work::{Stage, StageId};
 use std::sync::Arc;
 
 const HERE: &str = "the steward is back before the step ends";
@@ -205,10 +205,22 @@ impl Drive {
             close: close.to_vec(),
             ..Advance::default()
         };
-        for Opening { stage, objects } in &wanted.open {
+        for opening in &wanted.open {
+            let Opening {
+                stage,
+                system,
+                objects,
+            } = opening;
             for points in objects {
                 tools.store.put(points.to_bytes().into()).await?;
             }
+            let stage = &Stage {
+                system: match system {
+                    Some(system) => Some(tools.store.put_problem(system).await?),
+                    None => None,
+                },
+                ..stage.clone()
+            };
             let items = stage
                 .items()
                 .ok_or(LedgerError::TooLarge("the number of items of a stage"))?;

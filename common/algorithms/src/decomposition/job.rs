@@ -1,4 +1,4 @@
-//! Job: one stage of a decomposition with its repetitions, on the system that was made for it.
+//! Job: one stage of a decomposition with its repetitions, and the system that it is of.
 
 use crate::retried_stage::RetriedStage;
 use crate::{Next, Opening};
@@ -11,6 +11,7 @@ use cognate_solutions::classification::{Decision, Tolerances, Verdict};
 use cognate_solutions::witness::TrackedPaths;
 use cognate_systems::system::System;
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What a stage is tracked with.
@@ -22,8 +23,27 @@ pub(super) struct Tracking {
     pub seed: u64,
 }
 
+/// The system that a stage is of: what is written down of it, so that it can be made again.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) enum StageSystem {
+    /// Combinations of the equations, as many as there are variables.
+    Staircase,
+    /// All given equations with the slices of this dimension.
+    Sliced {
+        /// The dimension.
+        dimension: usize,
+    },
+    /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
+    Tracked {
+        /// Rank of the Jacobian before each deflation.
+        ranks: Vec<u32>,
+        /// The dimension.
+        dimension: usize,
+    },
+}
+
 /// What the job does.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Doing {
     /// Paths, tracked again where they failed or crossed.
     Tracked(Box<RetriedStage>),
@@ -36,9 +56,9 @@ enum Doing {
 }
 
 /// One stage, and all that belongs to it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Job {
-    pub system: Arc<System>,
+    pub system: StageSystem,
     work: Doing,
     unsent: Option<Arc<StoredPoints>>,
 }
@@ -51,10 +71,10 @@ fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
 }
 
 impl Job {
-    /// Paths from these points.
+    /// Paths from these points. `system` is the one of this description.
     pub fn track(
         id: StageId,
-        system: &Arc<System>,
+        (description, system): (StageSystem, &System),
         homotopy: HomotopyKind,
         points: &[Vec<Complex64>],
         with: &Tracking,
@@ -64,7 +84,7 @@ impl Job {
         let first = stage(id, Work::Track, homotopy, &points, with);
         let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
         Self {
-            system: Arc::clone(system),
+            system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
             unsent: Some(points),
         }
@@ -73,7 +93,7 @@ impl Job {
     /// Whether these candidates at the only target are isolated.
     pub fn isolate(
         id: StageId,
-        system: &Arc<System>,
+        system: StageSystem,
         parameters: Vec<Complex64>,
         candidates: StoredPoints,
         with: &Tracking,
@@ -85,7 +105,7 @@ impl Job {
         };
         let stage = stage(id, Work::LocalDimension, homotopy, &points, with);
         Self {
-            system: Arc::clone(system),
+            system,
             work: Doing::Asked {
                 stage: Box::new(stage),
                 opened: false,
@@ -183,6 +203,7 @@ fn stage(
 ) -> Stage {
     Stage {
         id,
+        system: None,
         work,
         homotopy,
         start_points: points.as_start(),

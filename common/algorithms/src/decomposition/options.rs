@@ -4,10 +4,11 @@ use crate::retried_stage::MAX_RETRIES;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_solutions::classification::Tolerances;
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// Everything that decides how a system is decomposed, besides the system.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DecompositionOptions {
     /// Seed of everything random.
     pub seed: u64,

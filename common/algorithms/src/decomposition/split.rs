@@ -6,7 +6,7 @@
 //! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
 //! point comes to one of the same component.
 
-use super::deflated::PureSet;
+use super::deflated::{Deflations, PureSet};
 use super::job::Job;
 use super::problem::Problem;
 use cognate_continuation::bend::{Bend, Number, length, rounded};
@@ -20,6 +20,7 @@ use cognate_solutions::witness::{
     ComponentId, Dimension, Doubt, Evidence, Irreducible, Trace, WitnessSet,
 };
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A sum is 0 within this many times its error,
@@ -40,7 +41,7 @@ const BACK: f64 = 1e-6;
 const LEGS: usize = 3;
 
 /// Points that belong together.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Class {
     points: Vec<usize>,
     /// What it rests on, once it is a component.
@@ -48,7 +49,7 @@ struct Class {
 }
 
 /// One set on its way to components.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Split {
     set: PureSet,
     bends: Vec<Bend>,
@@ -63,16 +64,18 @@ pub(super) struct Split {
 }
 
 impl Split {
-    pub fn new(problem: &Problem, set: PureSet) -> Self {
+    pub fn new(problem: &Problem, deflations: &mut Deflations, set: PureSet) -> Self {
         let mut random = RandomStream::new(problem.seed(), Purpose::Detour, set.dimension as u64);
         let direction: Vec<Complex64> = (0..set.dimension).map(|_| random.unit()).collect();
         let bends = match set.dimension {
             0 => Vec::new(),
-            _ => set
-                .points
-                .iter()
-                .map(|point| set.equations.bend(point, &direction))
-                .collect(),
+            dimension => {
+                let equations = deflations.sliced(problem, &set.ranks, dimension);
+                let points = set.points.iter();
+                points
+                    .map(|point| equations.bend(point, &direction))
+                    .collect()
+            }
         };
         let class = |k| Class {
             points: vec![k],
@@ -92,7 +95,12 @@ impl Split {
     }
 
     /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(&mut self, problem: &Problem, done: Option<&Job>, id: StageId) -> Option<Job> {
+    pub fn advance(
+        &mut self,
+        (problem, deflations): (&Problem, &mut Deflations),
+        done: Option<&Job>,
+        id: StageId,
+    ) -> Option<Job> {
         if self.set.dimension == 0 {
             return None;
         }
@@ -107,7 +115,7 @@ impl Split {
                 (None, _) => self.give_up_loop(),
             }
             if self.leg > 0 {
-                return Some(self.track(problem, &points, id));
+                return Some(self.track(problem, deflations, &points, id));
             }
         }
         self.close(own);
@@ -119,7 +127,7 @@ impl Split {
         self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
         self.travellers.sort_unstable();
         let points = self.travelling();
-        Some(self.track(problem, &points, id))
+        Some(self.track(problem, deflations, &points, id))
     }
 
     fn open(&self) -> impl Iterator<Item = &Class> {
@@ -144,12 +152,20 @@ impl Split {
         rows.flat_map(|row| form(seed, row, number, n)).collect()
     }
 
-    fn track(&self, problem: &Problem, points: &[Vec<Complex64>], id: StageId) -> Job {
+    fn track(
+        &self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        points: &[Vec<Complex64>],
+        id: StageId,
+    ) -> Job {
         let homotopy = HomotopyKind::Parameter {
             start: self.corner(problem, self.leg),
             targets: vec![self.corner(problem, self.leg + 1)],
         };
-        Job::track(id, &self.set.tracked, homotopy, points, &problem.tracking)
+        let system = deflations.of_stage(problem, &self.set.tracked());
+        let system = (self.set.tracked(), &*system);
+        Job::track(id, system, homotopy, points, &problem.tracking)
     }
 
     fn give_up_loop(&mut self) {

@@ -8,9 +8,10 @@
 
 use super::Real;
 use crate::rational::Rational;
+use serde::{Deserialize, Serialize};
 
 /// `hi + lo` with `hi` the sum rounded to a double, in the width of `B`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[repr(C)]
 pub struct DoubleDouble<B> {
     hi: B,

@@ -51,6 +51,10 @@ pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
     };
     let stage = Stage {
         id: StageId(m.id),
+        system: match m.system.is_empty() {
+            true => None,
+            false => Some(digest("system", &m.system)?),
+        },
         work,
         homotopy: homotopy(required("homotopy", m.homotopy.as_ref())?)
             .map_err(|e| e.within("homotopy"))?,

@@ -27,6 +27,7 @@ pub fn stage(stage: &Stage) -> v1::Stage {
             Work::CountMixedCells => v1::Work::CountMixedCells,
         }
         .into(),
+        system: stage.system.map(digest).unwrap_or_default(),
         homotopy: Some(homotopy(&stage.homotopy)),
         start_points: Some(start_points(&stage.start_points)),
         settings: Some(super::problem::settings(&SettingsChoice::all(

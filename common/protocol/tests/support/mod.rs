@@ -336,6 +336,7 @@ impl Draw {
             |draw: &mut Self| -> Vec<Complex64> { (0..length).map(|_| draw.complex()).collect() };
         Stage {
             id: StageId(self.index(5)),
+            system: None,
             work: Work::Track,
             homotopy: match self.below(5) {
                 3 => HomotopyKind::Toric,

@@ -16,7 +16,8 @@ use crate::results::decomposition::{
 };
 use crate::results::summary::TimeBlock;
 use cognate_algorithms::Opening;
-use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, drive};
+use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
+use cognate_algorithms::run_locally::drive;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -47,7 +48,7 @@ pub fn run(a: &Decompose) -> Result<Exit, ClientError> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = a.threads.map_or(cores, |n| n as usize);
     let mut tracking = Tracking::new(threads)?;
-    let found = tracking.decompose(solve)?;
+    let found = tracking.decompose(&taken.system, solve)?;
     let wall_seconds = began.elapsed().as_secs_f64();
     let summary = DecompositionSummary {
         job: String::new(),
@@ -129,8 +130,12 @@ impl Tracking {
         })
     }
 
-    fn decompose(&mut self, mut solve: DecompositionSolve) -> Result<Decomposition, ClientError> {
-        drive(&mut solve, |system, opening| self.stage(system, opening))?;
+    fn decompose(
+        &mut self,
+        system: &System,
+        mut solve: DecompositionSolve,
+    ) -> Result<Decomposition, ClientError> {
+        drive(&mut solve, &mut |opening| self.stage(system, opening))?;
         let found = solve.decomposition().cloned();
         found.ok_or_else(|| ClientError::Local("the decomposition ended without an answer".into()))
     }
@@ -144,6 +149,7 @@ impl Tracking {
         self.objects
             .extend(made.map(|points| (points.digest(), Arc::clone(points))));
         let find = |wanted: Digest| self.objects.get(&wanted).cloned();
+        let system = opening.system.as_deref().unwrap_or(system);
         let prepared = PreparedWork::new(system, &opening.stage, &find);
         let prepared = prepared
             .map_err(|e| ClientError::Local(format!("a stage could not be prepared: {e}")))?;

@@ -5,7 +5,7 @@ use super::files::{create, make_folder, write_file};
 use super::table::Lines;
 use super::text::{Columns, Look, count, counted, magnitude, seconds, wrapped};
 use crate::client::error::{ClientError, Exit};
-use crate::results::decomposition::{ComponentBlock, DecompositionSummary, EvidenceBlock};
+use crate::results::decomposition::{ComponentBlock, DecompositionSummary};
 use cognate_solutions::witness::{Decomposition, Irreducible};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -141,7 +141,7 @@ fn components(summary: &DecompositionSummary, look: Look) -> String {
         ">multiplicity",
         ">count",
         "irreducible",
-        "evidence",
+        "trace",
     ]);
     for alike in summary
         .decomposition
@@ -167,27 +167,20 @@ fn components(summary: &DecompositionSummary, look: Look) -> String {
     })
 }
 
-/// The weakest evidence of these components.
+/// The largest trace of these components, and the least of points that are none.
 fn evidence(alike: &[ComponentBlock]) -> String {
-    let first = &alike[0];
-    let deflated = match first.deflation.len() {
-        0 => String::new(),
-        n => format!(", {}", counted(n as u64, "deflation")),
-    };
-    if first.dimension == 0 {
-        return format!("isolated{deflated}");
+    if alike[0].dimension == 0 {
+        return "isolated".into();
     }
-    let worst = |of: &dyn Fn(&EvidenceBlock) -> Option<f64>| {
-        let values = alike.iter().filter_map(|c| of(&c.evidence));
-        values.reduce(f64::max)
-    };
-    let deviation = worst(&|e| e.trace_deviation).map_or_else(|| "?".into(), magnitude);
+    let traces = alike.iter().filter_map(|c| c.evidence.trace_deviation);
+    let trace = traces
+        .reduce(f64::max)
+        .map_or_else(|| "?".into(), magnitude);
     let wrong = alike.iter().filter_map(|c| c.evidence.smallest_wrong_union);
-    let wrong = match wrong.reduce(f64::min) {
-        Some(least) => format!(", of wrong unions {}", magnitude(least)),
-        None => String::new(),
-    };
-    format!("trace {deviation}{wrong}{deflated}")
+    match wrong.reduce(f64::min) {
+        Some(least) => format!("{trace}, wrong {}", magnitude(least)),
+        None => trace,
+    }
 }
 
 fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
