@@ -41,9 +41,15 @@ proptest! {
         } else {
             Source::Text { name: "a.txt".to_owned(), content: b"x^2 - 2;".to_vec() }
         };
-        let submission = Submission { source, options: draw.options() };
-        let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
-        prop_assert_eq!(from_proto::problem::submission(message).unwrap(), submission);
+        let options = draw.options();
+        let dimensions = draw.some(|draw| [draw.index(5), 5 + draw.index(5)]);
+        let idle_loops = draw.some(|draw| 1 + draw.index(200));
+        let decompose = Some(Decompose { dimensions, idle_loops });
+        for options in [Options { decompose, ..options.clone() }, options] {
+            let submission = Submission { source: source.clone(), options };
+            let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
+            prop_assert_eq!(from_proto::problem::submission(message).unwrap(), submission);
+        }
     }
 
     #[test]
@@ -65,7 +71,8 @@ proptest! {
             start_points: of_cells(BRANCHES * (BRANCHES - 1) / 2, branches),
             ..draw.stage()
         };
-        for stage in [draw.stage(), draw.later_stage(), sharpening, counting, counted] {
+        let made = Stage { system: Some(draw.digest()), ..draw.stage() };
+        for stage in [draw.stage(), draw.later_stage(), sharpening, counting, counted, made] {
             let message: v1::Stage = sent(&to_proto::path::stage(&stage));
             prop_assert_eq!(from_proto::path::stage(&message).unwrap(), stage);
         }

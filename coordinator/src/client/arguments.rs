@@ -306,6 +306,18 @@ pub struct Dimensions {
     pub highest: u32,
 }
 
+/// Which components are wanted.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Components")]
+pub struct ComponentArguments {
+    /// Dimensions of the components that are wanted: D or D..E [default: all]
+    #[arg(long, value_name = "D|D..E", value_parser = dimensions)]
+    pub dimension: Option<Dimensions>,
+    /// Loops in a row that bring no witness points together before these stay apart [default: 12]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200))]
+    pub loops: Option<u32>,
+}
+
 /// `cognate decompose`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
@@ -317,12 +329,9 @@ pub struct Decompose {
     /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
     #[arg(help_heading = "Problem")]
     pub file: PathBuf,
-    /// Dimensions of the components that are wanted: D or D..E [default: all]
-    #[arg(long, value_name = "D|D..E", value_parser = dimensions, help_heading = "Problem")]
-    pub dimension: Option<Dimensions>,
-    /// Loops in a row that bring no witness points together before these stay apart [default: 12]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200), help_heading = "Problem")]
-    pub loops: Option<u32>,
+    /// Which components.
+    #[command(flatten)]
+    pub components: ComponentArguments,
     /// Values of the parameters: Bertini's format or JSON, one set
     #[arg(long, value_name = "FILE", help_heading = "Problem")]
     pub target_parameters: Option<PathBuf>,
@@ -341,8 +350,17 @@ pub struct Decompose {
     /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
     #[arg(long, help_heading = "Problem")]
     pub exact: bool,
-    /// Threads that track [default: cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
+    #[arg(long, value_name = "URL", help_heading = "Service")]
+    pub coordinator: Option<String>,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
+    /// Local worker processes
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
+    pub workers: u32,
+    /// Threads of each worker [default: cores / workers]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
     pub threads: Option<u32>,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
@@ -364,6 +382,14 @@ impl Decompose {
             precision: self.precision,
             exact: self.exact,
             ..ProblemArguments::default()
+        }
+    }
+
+    /// Where the answer goes.
+    pub fn output(&self) -> OutputArguments {
+        OutputArguments {
+            format: self.format,
+            output: self.output.clone(),
         }
     }
 }
@@ -704,6 +730,12 @@ pub struct Submit {
     /// What is solved.
     #[command(flatten)]
     pub problem: ProblemArguments,
+    /// All irreducible components instead of isolated solutions, as `cognate decompose` finds them
+    #[arg(long, help_heading = "Components")]
+    pub decompose: bool,
+    /// Which components.
+    #[command(flatten)]
+    pub components: ComponentArguments,
     /// Which coordinator.
     #[command(flatten)]
     pub service: ServiceArguments,

@@ -5,6 +5,7 @@ use cognate_protocol::limits::{MESSAGE_BYTES, PIECE_BYTES};
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::{from_proto, v1};
 use cognate_solutions::solution::Solution;
+use cognate_solutions::witness::Decomposition;
 use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::{Bearer, CredentialFiles, Credentials, Role, innermost};
 use std::time::Duration;
@@ -193,6 +194,20 @@ impl Connection {
         let request = v1::GetSummaryRequest { job: job.into() };
         let answer = self.client.get_summary(request).await;
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().json)
+    }
+
+    /// The components that a finished job found, with their witness points.
+    pub async fn decomposition(&mut self, job: &str) -> Result<Decomposition, ClientError> {
+        let request = v1::GetDecompositionRequest { job: job.into() };
+        let answer = self.client.get_decomposition(request).await;
+        let mut pieces = answer.map_err(|e| self.explain(&e))?.into_inner();
+        let mut json = Vec::new();
+        while let Some(piece) = pieces.message().await.map_err(|e| self.explain(&e))? {
+            json.extend_from_slice(&piece.data);
+        }
+        serde_json::from_slice(&json).map_err(|e| {
+            ClientError::GaveUp(format!("its components are not what was agreed: {e}"))
+        })
     }
 
     /// Hands every solution of a finished job to `take`, until it says that it has enough.

@@ -31,7 +31,6 @@ pub fn main() -> ExitCode {
             Command::Worker(a) => return commands::worker::run(a),
             Command::Info(a) => commands::info::run(&a),
             Command::Path(a) => commands::path::run(&a),
-            Command::Decompose(a) => commands::decompose::run(&a),
             other => in_runtime(other),
         },
     };
@@ -57,6 +56,7 @@ fn in_runtime(command: Command) -> Result<Exit, ClientError> {
             // These stop in an orderly way of their own.
             Command::Coordinator(a) => commands::coordinator::run(&a).await,
             Command::Solve(a) => commands::solve::run(&a).await,
+            Command::Decompose(a) => commands::decompose::run(&a).await,
             Command::Synthesize(a) => commands::synthesize::run(&a).await,
             other => tokio::select! {
                 ended = one_shot(other) => ended,

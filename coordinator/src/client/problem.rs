@@ -192,6 +192,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         deflate: a.deflate,
         warnings,
         sets,
+        decompose: None,
     };
     Ok(Prepared {
         submission: Submission {

@@ -13,6 +13,7 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
+use crate::results::decomposition::{DECOMPOSITION, DecompositionSummary};
 use crate::results::store::Store;
 use crate::results::summary::{self, LargeAnswer, Summary};
 use cognate_algorithms::Opening;
@@ -267,12 +268,22 @@ impl Drive {
                 .finish(self.job, self.epoch, JobEnd::Failed { reason })
                 .await?);
         }
-        let mut sets = self.at_work(|steward| steward.solution_sets()).await;
         let row = ledger.job(self.job).await?;
         let row = row.ok_or(LedgerError::UnknownJob(self.job))?;
         let stages = ledger.stages(self.job).await?;
         let workers = ledger.contributions(self.job).await?;
         let now = ledger.now().await?;
+        if let Some(found) = self.steward().decomposition().cloned() {
+            let summary =
+                DecompositionSummary::new(&row, &self.planned, &found, &stages, &workers, now);
+            let solutions = store.put_record(&DECOMPOSITION, found).await?;
+            let summary = store.put(summary.to_json().into()).await?;
+            let end = JobEnd::Solved { solutions, summary };
+            ledger.finish(self.job, self.epoch, end).await?;
+            tracing::info!(job = %self.job, "the job is decomposed");
+            return Ok(());
+        }
+        let mut sets = self.at_work(|steward| steward.solution_sets()).await;
         let mut summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
         summary.monodromy = self.steward().monodromy();
         let solutions = match sets.pop() {

@@ -1,7 +1,11 @@
 //! DecompositionSummary: what a finished decomposition is in one JSON object, field by field as the contract
 //! has it.
 
+use super::store::RecordKind;
 use super::summary::{TimeBlock, WorkerBlock};
+use crate::jobs::planning::Planned;
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::rows::{Contribution, JobRow, StageRow};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
     Decomposition, Dimension, Doubt, Irreducible, TrackedPaths, WitnessSet,
@@ -9,13 +13,16 @@ use cognate_solutions::witness::{
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Decompositions as objects.
+pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC01");
+
 /// More isolated points than these stand together, by multiplicity.
 const MOST_POINTS_LISTED: usize = 1000;
 
 /// A finished decomposition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DecompositionSummary {
-    /// Id of the job; empty where no service was asked.
+    /// Id of the job.
     pub job: String,
     /// The system, the method and the seed.
     pub problem: DecomposedProblem,
@@ -257,6 +264,59 @@ fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
 }
 
 impl DecompositionSummary {
+    /// The summary of a job that has found this.
+    pub fn new(
+        job: &JobRow,
+        planned: &Planned,
+        found: &Decomposition,
+        stages: &[StageRow],
+        workers: &[Contribution],
+        now: LedgerTime,
+    ) -> Self {
+        Self {
+            job: job.job.to_string(),
+            problem: DecomposedProblem {
+                name: planned.name.clone(),
+                digest: planned.problem.to_string(),
+                variables: planned.variables,
+                equations: planned.equations,
+                method: planned.start.clone(),
+                seed: planned.seed,
+            },
+            decomposition: DecompositionBlock::new(found),
+            paths: PathBlock {
+                superset: found.paths,
+                loops: found.paths_of_loops,
+            },
+            time: TimeBlock::new(job, stages, now),
+            workers: WorkerBlock::all(workers),
+            settled: found.settled(),
+            warnings: planned.warnings.clone(),
+        }
+    }
+
+    /// What `explain` says of it.
+    pub fn lines(&self) -> Vec<String> {
+        let found = &self.decomposition;
+        let mut lines = Vec::new();
+        for (number, d) in found.by_dimension.iter().rev() {
+            lines.push(format!(
+                "dimension {number}: {} components of degree {} in all, complete: {}; {} paths to solutions, {} of \
+                 them on sets of higher dimension; {} failed on the way",
+                d.components,
+                d.degree,
+                d.complete.name(),
+                d.superset,
+                d.junk,
+                d.failed
+            ));
+        }
+        let unsettled = found.unsettled.iter();
+        lines.extend(unsettled.map(|doubt| format!("not settled: {doubt}")));
+        lines.extend(self.warnings.iter().map(|w| format!("warning: {w}")));
+        lines
+    }
+
     /// As JSON.
     pub fn to_json(&self) -> Vec<u8> {
         serde_json::to_vec_pretty(self).expect("names and numbers can be written as JSON")

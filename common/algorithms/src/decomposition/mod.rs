@@ -232,7 +232,7 @@ impl DecompositionSolve {
             };
         }
         Decomposition {
-            ambient: self.problem.variables() as u32,
+            variables: self.state.system.variables.clone(),
             asked: [*self.problem.asked.start(), *self.problem.asked.end()],
             components,
             dimensions,

@@ -436,7 +436,11 @@ impl Split {
                 trace,
                 smallest_wrong_union: self.smallest_wrong,
                 loops: self.loops,
-                worst_condition: points.iter().map(condition).fold(0.0, f64::max),
+                worst_condition: points
+                    .iter()
+                    .map(condition)
+                    .fold(0.0, f64::max)
+                    .min(f64::MAX),
                 doubts,
             },
         }

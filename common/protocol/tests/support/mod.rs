@@ -250,6 +250,7 @@ impl Draw {
             deflate: length > 2,
             warnings: Vec::new(),
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
+            decompose: None,
         }
     }
 

@@ -55,8 +55,8 @@ impl TrackedPaths {
 /// All irreducible components of a system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decomposition {
-    /// Number of variables.
-    pub ambient: u32,
+    /// Names of the variables, in the order of the coordinates.
+    pub variables: Vec<String>,
     /// Lowest and highest dimension of the components that are wanted.
     pub asked: [u32; 2],
     /// The components: by dimension, degree and multiplicity, largest first.

@@ -1,5 +1,6 @@
 //! `cognate submit`: hands a problem to a coordinator.
 
+use super::decompose;
 use crate::client::arguments::{Format, Submit};
 use crate::client::connection::Connection;
 use crate::client::error::{ClientError, Exit};
@@ -18,7 +19,16 @@ const ATTEMPTS: u32 = 5;
 
 /// Prints the job's id alone on a line.
 pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
-    let prepared = problem::prepare(&a.problem)?;
+    let mut prepared = problem::prepare(&a.problem)?;
+    let components = &a.components;
+    if a.decompose {
+        prepared = decompose::prepared(prepared, components);
+    } else if components.dimension.is_some() || components.loops.is_some() {
+        return Err(ClientError::Input {
+            origin: "--dimension, --loops".into(),
+            message: "only go with --decompose".into(),
+        });
+    }
     let mut connection = Connection::open(&a.service.target()?).await?;
     let request_id = match &a.request_id {
         Some(id) => id.clone(),

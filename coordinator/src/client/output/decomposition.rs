@@ -2,6 +2,7 @@
 //! folder of --output.
 
 use super::files::{create, make_folder, write_file};
+use super::json;
 use super::table::Lines;
 use super::text::{Columns, Look, count, counted, magnitude, seconds, wrapped};
 use crate::client::error::{ClientError, Exit};
@@ -51,6 +52,12 @@ pub fn table(summary: &DecompositionSummary, files: Option<&Path>, look: Look) -
     let time = &summary.time;
     let cpu = format!("{} of CPU", seconds(time.cpu_seconds));
     lines.heading("Time", &seconds(time.wall_seconds), &cpu);
+    let workers = summary.workers.len();
+    if workers > 0 {
+        let items: u64 = summary.workers.iter().map(|worker| worker.paths).sum();
+        let note = counted(items, "item");
+        lines.heading("Workers", &workers.to_string(), &note);
+    }
     text.push_str(&lines.finish());
     for warning in &summary.warnings {
         for (i, line) in wrapped(warning, look.width - 11).iter().enumerate() {
@@ -71,15 +78,20 @@ fn indented(text: &str) -> String {
     text.lines().map(|line| format!("  {line}\n")).collect()
 }
 
+/// The answer in one phrase.
+pub fn answer(summary: &DecompositionSummary) -> String {
+    let found = summary.decomposition.components.iter();
+    match found.map(|c| c.count).sum() {
+        0 if summary.settled => "no components in the dimensions that were asked".into(),
+        0 => "no components found".into(),
+        n => counted(n, "component"),
+    }
+}
+
 /// What was found, in a line or two, and what is not settled.
 fn headline(summary: &DecompositionSummary, look: Look) -> String {
     let found = &summary.decomposition;
-    let number: u64 = found.components.iter().map(|c| c.count).sum();
-    let answer = match number {
-        0 if summary.settled => "no solutions".into(),
-        0 => "no components found".into(),
-        n => counted(n, "component"),
-    };
+    let answer = answer(summary);
     let answer = match summary.settled {
         true => look.good(&answer),
         false => look.warn(&answer),
@@ -214,17 +226,12 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
 
 /// The folder of --output: `summary.json`; `decomposition.json` with slices and evidence;
 /// `witness_points.jsonl` with a point on each line.
-pub fn write(
-    folder: &Path,
-    summary: &DecompositionSummary,
-    found: &Decomposition,
-    variables: &[String],
-) -> Result<(), ClientError> {
+pub fn write(folder: &Path, summary: &str, found: &Decomposition) -> Result<(), ClientError> {
     make_folder(folder)?;
     let mut lines = create(folder, "witness_points.jsonl")?;
     for set in &found.components {
         for point in &set.points {
-            let values: Vec<_> = variables.iter().zip(point).collect();
+            let values: Vec<_> = found.variables.iter().zip(point).collect();
             let values: serde_json::Map<String, serde_json::Value> = values
                 .into_iter()
                 .map(|(name, z)| (name.clone(), json!([z.re, z.im])))
@@ -240,6 +247,5 @@ pub fn write(
     }
     let text = serde_json::to_string_pretty(&without_points).expect("numbers can be written");
     write_file(folder, "decomposition.json", &format!("{text}\n"))?;
-    let text = String::from_utf8_lossy(&summary.to_json()).into_owned();
-    write_file(folder, "summary.json", &format!("{text}\n"))
+    write_file(folder, "summary.json", &json::summary(summary))
 }
