@@ -10,7 +10,8 @@ use serde_json::Value;
 fn problem() -> Submission {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/decomposition/systems");
     let file = format!("{folder}/nid_illustrative/system.bertini");
-    let mut submission = Submission::of(std::fs::read_to_string(file).expect("the system is there"));
+    let mut submission =
+        Submission::of(std::fs::read_to_string(file).expect("the system is there"));
     submission.options.decompose = Some(v1::Decompose::default());
     submission
 }

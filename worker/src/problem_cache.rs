@@ -155,7 +155,8 @@ impl ChunkTracker for PreparedWork {
             Self::Certify(_)
             | Self::LocalDimension(_)
             | Self::Sharpen(_)
-            | Self::CountMixedCells(_) => 1,
+            | Self::CountMixedCells(_)
+            | Self::Bend(_) => 1,
         }
     }
 }

@@ -58,6 +58,7 @@ fn purpose(stage: &Stage) -> String {
         (Work::Sharpen { digits }, _) => format!("bringing solutions to {digits} digits"),
         (Work::LocalDimension, _) => "whether singular endpoints are isolated".to_owned(),
         (Work::CountMixedCells, _) => "counting mixed cells".to_owned(),
+        (Work::Bend, _) => "derivatives of witness points".to_owned(),
         (Work::Track, 0) if stage.homotopy == HomotopyKind::Toric => {
             "tracking to a generic system".to_owned()
         }

@@ -17,7 +17,10 @@ use crate::results::decomposition::{DECOMPOSITION, DecompositionSummary};
 use crate::results::store::Store;
 use crate::results::summary::{self, LargeAnswer, Summary};
 use cognate_algorithms::Opening;
+use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, StageId};
+use cognate_systems::system::System;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 const HERE: &str = "the steward is back before the step ends";
@@ -45,6 +48,8 @@ pub struct Drive {
     pending: Option<Wanted>,
     /// What is remembered of a first stage that is too large to be held.
     large: LargeStage,
+    /// Systems that were made for stages and can be read back.
+    readable: HashSet<Digest>,
 }
 
 impl Drive {
@@ -100,6 +105,7 @@ impl Drive {
             steward: Some(steward),
             pending,
             large: LargeStage::default(),
+            readable: HashSet::new(),
         })
     }
 
@@ -217,7 +223,7 @@ impl Drive {
             }
             let stage = &Stage {
                 system: match system {
-                    Some(system) => Some(tools.store.put_problem(system).await?),
+                    Some(system) => Some(self.keep_system(tools, system).await?),
                     None => None,
                 },
                 ..stage.clone()
@@ -258,6 +264,20 @@ impl Drive {
             return Ok(Driven::Ended);
         }
         Ok(Driven::Went)
+    }
+
+    /// Keeps a system that was made for a stage. What no worker could read ends the job here.
+    async fn keep_system(
+        &mut self,
+        tools: &Tools<'_>,
+        system: &System,
+    ) -> Result<Digest, DriveError> {
+        let digest = tools.store.put_problem(system).await?;
+        if !self.readable.contains(&digest) {
+            tools.store.problem(digest).await?;
+            self.readable.insert(digest);
+        }
+        Ok(digest)
     }
 
     async fn finish(&mut self, tools: &Tools<'_>) -> Result<(), DriveError> {

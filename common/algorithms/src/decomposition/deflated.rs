@@ -64,6 +64,14 @@ impl PureSet {
         self.points.iter().map(double).collect()
     }
 
+    /// All of its equations with the slices, whose coefficients are parameters.
+    pub fn whole(&self) -> StageSystem {
+        StageSystem::Whole {
+            ranks: self.ranks.clone(),
+            dimension: self.dimension,
+        }
+    }
+
     /// As many combinations of its equations as are tracked, with the slices, whose coefficients are
     /// parameters.
     pub fn tracked(&self) -> StageSystem {
@@ -133,6 +141,10 @@ impl Deflations {
             StageSystem::Sliced { dimension } => {
                 Arc::new(slice(&problem.given, *dimension, problem.variables()))
             }
+            StageSystem::Whole { ranks, dimension } => {
+                let system = self.system(problem, ranks);
+                Arc::new(slice(&system, *dimension, problem.variables()))
+            }
             StageSystem::Tracked { ranks, dimension } => {
                 let tracked = problem.tracked(&self.system(problem, ranks), *dimension);
                 Arc::new(tracked.expect("derivatives of polynomials have degrees"))
@@ -142,8 +154,7 @@ impl Deflations {
         made
     }
 
-    /// The equations that are regular after these deflations, with the slices of this dimension.
-    pub fn sliced(
+    fn sliced(
         &mut self,
         problem: &Problem,
         ranks: &[u32],
@@ -340,7 +351,7 @@ fn deflated(system: &System, rank: usize, depth: usize, seed: u64) -> System {
         rank,
         &mut random,
     );
-    let names = (0..=rank).map(|k| format!("multiplier {depth} {k}"));
+    let names = (0..=rank).map(|k| format!("multiplier:{depth}:{k}"));
     result.variables.extend(names);
     result.groups = vec![VariableGroup {
         variables: (0..result.variables.len()).collect(),

@@ -33,6 +33,13 @@ pub(super) enum StageSystem {
         /// The dimension.
         dimension: usize,
     },
+    /// All equations that are regular after these deflations, with the slices of this dimension.
+    Whole {
+        /// Rank of the Jacobian before each deflation.
+        ranks: Vec<u32>,
+        /// The dimension.
+        dimension: usize,
+    },
     /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
     Tracked {
         /// Rank of the Jacobian before each deflation.
@@ -98,12 +105,44 @@ impl Job {
         candidates: StoredPoints,
         with: &Tracking,
     ) -> Self {
-        let points = Arc::new(candidates);
         let homotopy = HomotopyKind::Parameter {
             start: parameters.clone(),
             targets: vec![parameters],
         };
-        let stage = stage(id, Work::LocalDimension, homotopy, &points, with);
+        Self::ask(
+            id,
+            system,
+            Work::LocalDimension,
+            homotopy,
+            Arc::new(candidates),
+            with,
+        )
+    }
+
+    /// How these witness points move when the parameters go from the first to the second.
+    pub fn bend(
+        id: StageId,
+        system: StageSystem,
+        [start, target]: [Vec<Complex64>; 2],
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        let homotopy = HomotopyKind::Parameter {
+            start,
+            targets: vec![target],
+        };
+        Self::ask(id, system, Work::Bend, homotopy, stored(points), with)
+    }
+
+    fn ask(
+        id: StageId,
+        system: StageSystem,
+        work: Work,
+        homotopy: HomotopyKind,
+        points: Arc<StoredPoints>,
+        with: &Tracking,
+    ) -> Self {
+        let stage = stage(id, work, homotopy, &points, with);
         Self {
             system,
             work: Doing::Asked {
@@ -161,7 +200,11 @@ impl Job {
         let Doing::Tracked(stages) = &self.work else {
             return Vec::new();
         };
-        let values = |r: &PathResult| stages.shape().to_variables(r.endpoint.to_double());
+        // One that ended its worker has no end.
+        let values = |r: &PathResult| match r.endpoint.to_double() {
+            [] => Vec::new(),
+            end => stages.shape().to_variables(end),
+        };
         let pairs = stages.results().iter().zip(stages.decisions());
         pairs.map(|(r, d)| (r, d, values(r))).collect()
     }

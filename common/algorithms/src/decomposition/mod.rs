@@ -196,7 +196,7 @@ impl DecompositionSolve {
         self.state.step = match self.state.sets.is_empty() {
             false => {
                 let set = self.state.sets.remove(0);
-                Step::Split(Split::new(&self.problem, &mut self.deflations, set))
+                Step::Split(Split::new(set))
             }
             true => Step::Done(Box::new(self.summary())),
         };
@@ -351,6 +351,7 @@ pub fn run_locally(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::AnyAlgorithm;
     use crate::run_locally::drive;
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -436,5 +437,39 @@ mod tests {
         };
         let found = decompose(CURVES, moved);
         assert!(!found.settled(), "{found:?}");
+    }
+
+    #[test]
+    fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
+        let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; \
+                    f = (x - y)^2*(y - x^2 + 2);\nEND;\n";
+        let system = formats::read("test", text.as_bytes()).unwrap().system;
+        let solve = || DecompositionSolve::new(&system, &DecompositionOptions::default()).unwrap();
+        let lived = run_locally(solve(), 8).unwrap();
+        let mut solve = AnyAlgorithm::Decomposition(Box::new(solve()));
+        let mut open: Option<Box<crate::Opening>> = None;
+        let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+        loop {
+            match solve.next() {
+                Next::Open(opening) => open = Some(opening),
+                Next::Wait => {
+                    let opening = open.take().unwrap();
+                    let snapshot = solve.snapshot();
+                    let again = AnyAlgorithm::restore(&snapshot).unwrap();
+                    assert!(again == solve && again.snapshot() == snapshot);
+                    solve = again;
+                    let made = opening.objects.iter();
+                    objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+                    let find = |digest: Digest| objects.get(&digest).cloned();
+                    let system = opening.system.as_deref().unwrap();
+                    let prepared = PreparedWork::new(system, &opening.stage, &find).unwrap();
+                    let results = prepared.run(0..prepared.items(), 8);
+                    solve.absorb(opening.stage.id, &mut results.into_iter());
+                }
+                Next::Done => break,
+            }
+        }
+        assert_eq!(solve.decomposition(), Some(&lived));
+        assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
     }
 }

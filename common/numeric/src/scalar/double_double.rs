@@ -18,6 +18,19 @@ pub struct DoubleDouble<B> {
     lo: B,
 }
 
+impl DoubleDouble<f64> {
+    /// The two doubles, whose sum it is, the larger first.
+    pub fn parts(&self) -> [f64; 2] {
+        [self.hi, self.lo]
+    }
+
+    /// The number of these parts, as [`Self::parts`] gave them; `None` where they are not finite or the second
+    /// is no rounding error of the first.
+    pub fn from_parts([hi, lo]: [f64; 2]) -> Option<Self> {
+        (hi.is_finite() && lo.is_finite() && hi + lo == hi).then_some(Self { hi, lo })
+    }
+}
+
 /// `a + b = sum + error`, exactly (TwoSum).
 #[inline(always)]
 fn two_sum<B: Real>(a: &B, b: &B) -> (B, B) {

@@ -64,7 +64,7 @@ impl Draw {
         Complex64::new(self.number(), self.number())
     }
 
-    fn digest(&mut self) -> Digest {
+    pub fn digest(&mut self) -> Digest {
         Digest(std::array::from_fn(|_| self.0.bits() as u8))
     }
 
@@ -471,6 +471,7 @@ impl Draw {
                 })
             }),
             mixed_cells: None,
+            bend: None,
         }
     }
 }
