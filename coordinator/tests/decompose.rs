@@ -4,10 +4,9 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A quadric surface, a line and a point: the products of one equation of each.
-const UNION: &str = "CONFIG\nEND;\nINPUT\nvariable_group x, y, z;\nfunction f1, f2, f3, f4, f5, f6;\n\
-    q = x*y - z;\nf1 = q*(x - 1)*(x - 3);\nf2 = q*(x - 1)*(y - 5);\nf3 = q*(x - 1)*(z + 7);\n\
-    f4 = q*(y - 2)*(x - 3);\nf5 = q*(y - 2)*(y - 5);\nf6 = q*(y - 2)*(z + 7);\nEND;\n";
+/// A parabola, a line and a point.
+const UNION: &str = "CONFIG\nEND;\nINPUT\nvariable_group x, y;\nfunction f, g;\n\
+    curves = (y - x^2)*(x + 2*y - 1);\nf = curves*(x - 3);\ng = curves*(y - 5);\nEND;\n";
 
 fn decompose(folder: &Path, text: &str, options: &[&str]) -> Output {
     let file = folder.join("system.bertini");
@@ -39,9 +38,9 @@ fn components_stand_in_the_answer_and_in_files() {
     let output = decompose(folder.path(), UNION, &options);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let summary = json(&output);
-    assert_eq!(components(&summary), [(2, 2), (1, 1), (0, 1)]);
+    assert_eq!(components(&summary), [(1, 2), (1, 1), (0, 1)]);
     assert_eq!(
-        summary["decomposition"]["by_dimension"]["2"]["complete"],
+        summary["decomposition"]["by_dimension"]["1"]["complete"],
         "yes"
     );
     assert_eq!(summary["problem"]["seed"], 1);
@@ -55,18 +54,18 @@ fn components_stand_in_the_answer_and_in_files() {
         let value = |name: &str| -> num_complex::Complex64 {
             serde_json::from_value(point["variables"][name].clone()).expect("a number")
         };
-        let (x, y, z) = (value("x"), value("y"), value("z"));
+        let (x, y) = (value("x"), value("y"));
         let distance = match point["component"].as_str().expect("a name") {
-            "2.1" => (x * y - z).norm_sqr(),
-            "1.1" => (x - 1.0).norm_sqr() + (y - 2.0).norm_sqr(),
-            _ => (x - 3.0).norm_sqr() + (y - 5.0).norm_sqr() + (z + 7.0).norm_sqr(),
+            "1.1" => (y - x * x).norm_sqr(),
+            "1.2" => (x + 2.0 * y - 1.0).norm_sqr(),
+            _ => (x - 3.0).norm_sqr() + (y - 5.0).norm_sqr(),
         };
         assert!(distance < 1e-20, "{line}");
     }
     let kept: Value = serde_json::from_str(&read("decomposition.json")).expect("JSON");
     assert_eq!(
         kept["components"][0]["slice"].as_array().map(Vec::len),
-        Some(2)
+        Some(1)
     );
     // The same with another number of workers, but for who did it.
     let options = ["--seed", "1", "--format", "json", "--workers", "1"];
@@ -77,7 +76,7 @@ fn components_stand_in_the_answer_and_in_files() {
     assert_eq!(alone, summary);
     let options = ["--seed", "1", "--format", "json", "--dimension", "1"];
     let lines = json(&decompose(folder.path(), UNION, &options));
-    assert_eq!(components(&lines), [(1, 1)]);
+    assert_eq!(components(&lines), [(1, 2), (1, 1)]);
     assert_eq!(lines["settled"], true);
 }
 
@@ -93,8 +92,8 @@ fn what_cannot_be_decomposed_is_refused_with_its_reason() {
     };
     refused(
         UNION,
-        &["--dimension", "3"],
-        "components have dimensions 0 to 2",
+        &["--dimension", "2"],
+        "components have dimensions 0 to 1",
     );
     refused(
         UNION,
@@ -105,7 +104,7 @@ fn what_cannot_be_decomposed_is_refused_with_its_reason() {
         "CONFIG\nEND;\nINPUT\nvariable_group x, y; parameter p; function f; f = x*y - p;\nEND;\n";
     refused(family, &[], "1 parameters, but 0 values");
     let nothing = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; f = (x + y)^2 - x^2 - 2*x*y - y^2;\nEND;\n";
-    refused(nothing, &[], "every point is a solution");
+    refused(nothing, &[], "is 0 for all values of the variables");
 }
 
 #[test]

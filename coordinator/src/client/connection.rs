@@ -5,7 +5,6 @@ use cognate_protocol::limits::{MESSAGE_BYTES, PIECE_BYTES};
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::{from_proto, v1};
 use cognate_solutions::solution::Solution;
-use cognate_solutions::witness::Decomposition;
 use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::{Bearer, CredentialFiles, Credentials, Role, innermost};
 use std::time::Duration;
@@ -196,8 +195,9 @@ impl Connection {
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().json)
     }
 
-    /// The components that a finished job found, with their witness points.
-    pub async fn decomposition(&mut self, job: &str) -> Result<Decomposition, ClientError> {
+    /// The components that a finished job found, with their witness points: one JSON object, whose numbers are
+    /// kept as they were written.
+    pub async fn decomposition(&mut self, job: &str) -> Result<serde_json::Value, ClientError> {
         let request = v1::GetDecompositionRequest { job: job.into() };
         let answer = self.client.get_decomposition(request).await;
         let mut pieces = answer.map_err(|e| self.explain(&e))?.into_inner();
@@ -205,9 +205,8 @@ impl Connection {
         while let Some(piece) = pieces.message().await.map_err(|e| self.explain(&e))? {
             json.extend_from_slice(&piece.data);
         }
-        serde_json::from_slice(&json).map_err(|e| {
-            ClientError::GaveUp(format!("its components are not what was agreed: {e}"))
-        })
+        serde_json::from_slice(&json)
+            .map_err(|e| ClientError::GaveUp(format!("its components are no JSON: {e}")))
     }
 
     /// Hands every solution of a finished job to `take`, until it says that it has enough.

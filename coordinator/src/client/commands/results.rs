@@ -109,7 +109,7 @@ async fn components(
 ) -> Result<Exit, ClientError> {
     if let Some(folder) = &output.output {
         let found = connection.decomposition(job).await?;
-        decomposition::write(folder, json, &found)?;
+        decomposition::write(folder, json, found)?;
     }
     let text = match output.format {
         Format::Json => json::summary(json),

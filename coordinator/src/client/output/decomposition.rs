@@ -7,8 +7,8 @@ use super::table::Lines;
 use super::text::{Columns, Look, count, counted, magnitude, seconds, wrapped};
 use crate::client::error::{ClientError, Exit};
 use crate::results::decomposition::{ComponentBlock, DecompositionSummary};
-use cognate_solutions::witness::{Decomposition, Irreducible};
-use serde_json::json;
+use cognate_solutions::witness::Irreducible;
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -225,27 +225,34 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
 }
 
 /// The folder of --output: `summary.json`; `decomposition.json` with slices and evidence;
-/// `witness_points.jsonl` with a point on each line.
-pub fn write(folder: &Path, summary: &str, found: &Decomposition) -> Result<(), ClientError> {
+/// `witness_points.jsonl` with a point on each line. Numbers stay as they were written.
+pub fn write(folder: &Path, summary: &str, mut found: Value) -> Result<(), ClientError> {
+    let strange = || ClientError::GaveUp("its components are not what was agreed".into());
     make_folder(folder)?;
     let mut lines = create(folder, "witness_points.jsonl")?;
-    for set in &found.components {
-        for point in &set.points {
-            let values: Vec<_> = found.variables.iter().zip(point).collect();
-            let values: serde_json::Map<String, serde_json::Value> = values
-                .into_iter()
-                .map(|(name, z)| (name.clone(), json!([z.re, z.im])))
-                .collect();
-            let line = json!({ "component": set.id.to_string(), "variables": values });
+    let variables = found["variables"].as_array().cloned().ok_or_else(strange)?;
+    let components = found["components"].as_array_mut().ok_or_else(strange)?;
+    for component in components {
+        let fields = component.as_object_mut().ok_or_else(strange)?;
+        let points = fields.remove("points");
+        let id = &fields["id"];
+        let id = format!("{}.{}", id["dimension"], id["number"]);
+        for point in points
+            .as_ref()
+            .and_then(Value::as_array)
+            .ok_or_else(strange)?
+        {
+            let coordinates = point.as_array().ok_or_else(strange)?;
+            let mut values = Map::new();
+            for (name, z) in variables.iter().zip(coordinates) {
+                let name = name.as_str().ok_or_else(strange)?;
+                values.insert(name.to_owned(), z.clone());
+            }
+            let line = json!({ "component": id, "variables": values });
             lines.write(&format!("{line}\n"))?;
         }
     }
     lines.finish()?;
-    let mut without_points = found.clone();
-    for set in &mut without_points.components {
-        set.points.clear();
-    }
-    let text = serde_json::to_string_pretty(&without_points).expect("numbers can be written");
-    write_file(folder, "decomposition.json", &format!("{text}\n"))?;
+    write_file(folder, "decomposition.json", &format!("{found:#}\n"))?;
     write_file(folder, "summary.json", &json::summary(summary))
 }
