@@ -163,31 +163,32 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             true => None,
             false => Some(equation_sets("sets", &m.sets)?),
         },
-        decompose: match &m.decompose {
-            None => None,
-            Some(wanted) => Some(decompose(wanted).map_err(|e| e.within("decompose"))?),
-        },
+        decompose: m.decompose.map(decompose).transpose()?,
     })
 }
 
-fn decompose(m: &v1::Decompose) -> Result<Decompose, ProtocolError> {
+fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
     let dimensions = match (m.lowest_dimension, m.highest_dimension) {
         (None, None) => None,
         (Some(lowest), Some(highest)) if lowest <= highest => Some([lowest, highest]),
         (Some(lowest), highest) => {
             return Err(ProtocolError::invalid(
-                "highest_dimension",
+                "decompose.highest_dimension",
                 highest.map_or("nothing".to_owned(), |n| n.to_string()),
                 format!("a number from {lowest}, the lowest dimension"),
             ));
         }
-        (None, Some(_)) => return Err(ProtocolError::missing("lowest_dimension")),
+        (None, Some(_)) => return Err(ProtocolError::missing("decompose.lowest_dimension")),
     };
     if let Some(loops) = m.idle_loops
         && !(1..=MOST_IDLE_LOOPS).contains(&loops)
     {
         let expected = format!("1 to {MOST_IDLE_LOOPS}");
-        return Err(ProtocolError::invalid("idle_loops", loops, expected));
+        return Err(ProtocolError::invalid(
+            "decompose.idle_loops",
+            loops,
+            expected,
+        ));
     }
     Ok(Decompose {
         dimensions,

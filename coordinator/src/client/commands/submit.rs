@@ -1,6 +1,5 @@
 //! `cognate submit`: hands a problem to a coordinator.
 
-use super::decompose;
 use crate::client::arguments::{Format, Submit};
 use crate::client::connection::Connection;
 use crate::client::error::{ClientError, Exit};
@@ -22,7 +21,7 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     let mut prepared = problem::prepare(&a.problem)?;
     let components = &a.components;
     if a.decompose {
-        prepared = decompose::prepared(prepared, components);
+        prepared = problem::for_components(prepared, components);
     } else if components.dimension.is_some() || components.loops.is_some() {
         return Err(ClientError::Input {
             origin: "--dimension, --loops".into(),
