@@ -149,6 +149,9 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
             "precision of {bits} bits; paths are tracked with {MOST_BITS} at most"
         )));
     }
+    if options.decompose.is_some() {
+        return check_decomposition(options);
+    }
     match (options.start, &options.start_solutions) {
         (StartKind::Given, None) => Err(ApiError::Problem(
             "options.start_solutions: start kind \"given\" needs start solutions".to_owned(),
@@ -195,6 +198,29 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
             ))
         }
         _ => Ok(()),
+    }
+}
+
+/// A decomposition has a start of its own, and no isolated solutions to do something with.
+fn check_decomposition(options: &Options) -> Result<(), ApiError> {
+    let refused = [
+        (options.start != StartKind::Auto, "start"),
+        (options.start_solutions.is_some(), "start_solutions"),
+        (!options.start_parameters.is_empty(), "start_parameters"),
+        (options.sets.is_some(), "sets"),
+        (options.idle_loops.is_some(), "idle_loops"),
+        (options.expected_solutions.is_some(), "expected_solutions"),
+        (options.confidence.is_some(), "confidence"),
+        (options.trace_test, "trace_test"),
+        (options.certify, "certify"),
+        (options.digits.is_some(), "digits"),
+        (options.deflate, "deflate"),
+    ];
+    match refused.iter().find(|(given, _)| *given) {
+        Some((_, field)) => Err(ApiError::Problem(format!(
+            "options.{field}: does not go with options.decompose"
+        ))),
+        None => Ok(()),
     }
 }
 

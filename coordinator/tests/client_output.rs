@@ -4,7 +4,8 @@
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_coordinator::client::commands::{info, jobs, workers};
 use cognate_coordinator::client::output::text::Look;
-use cognate_coordinator::client::output::{summary, table};
+use cognate_coordinator::client::output::{decomposition, summary, table};
+use cognate_coordinator::results::decomposition::DecompositionSummary;
 use cognate_protocol::v1;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
@@ -122,6 +123,55 @@ fn an_answer_with_open_questions() {
     });
     assert_eq!(summary::exit(&answer) as u8, 1);
     assert_eq!(summary::open_questions(&answer).len(), 4);
+}
+
+const DECOMPOSED: &str = r#"{
+  "job": "", "settled": @settled@,
+  "problem": {"name": "nid_illustrative.bertini", "digest": "5f0c", "variables": 3, "equations": 3, "method": "cascade", "seed": 42},
+  "decomposition": {"settled": @settled@, "asked": [0, 2], "components": [
+    {"id": "2.1", "dimension": 2, "degree": 2, "count": 1, "multiplicity": 1, "tracked_multiplicity": 1, "irreducible": "yes",
+     "deflation": [], "multidegree": null, "self_conjugate": null, "certified": null,
+     "evidence": {"trace_deviation": 3e-31, "noise": 1e-28, "smallest_wrong_union": 0.62, "loops": 0, "precision_bits": 106,
+                  "rank_gap": null, "worst_condition": 12.0, "doubts": []}},
+    {"id": "1.1", "dimension": 1, "degree": 3, "count": 1, "multiplicity": null, "tracked_multiplicity": 2, "irreducible": "unsettled",
+     "deflation": [1], "multidegree": null, "self_conjugate": null, "certified": null,
+     "evidence": {"trace_deviation": 0.04, "noise": 1e-28, "smallest_wrong_union": 0.02, "loops": 24, "precision_bits": 106,
+                  "rank_gap": null, "worst_condition": 40.0, "doubts": [{"kind": "open", "classes": 3}, {"kind": "multiplicity"}]}},
+    {"id": "0.1", "dimension": 0, "degree": 1, "count": 1208, "multiplicity": 1, "tracked_multiplicity": 1, "irreducible": "yes",
+     "deflation": [], "multidegree": null, "self_conjugate": null, "certified": null,
+     "evidence": {"trace_deviation": null, "noise": null, "smallest_wrong_union": null, "loops": 0, "precision_bits": null,
+                  "rank_gap": null, "worst_condition": 7.0, "doubts": []}}],
+   "by_dimension": {
+     "0": {"components": 1208, "degree": 1208, "superset": 1220, "junk": 12, "excess": 3, "failed": 0, "complete": "yes", "doubts": []},
+     "1": {"components": 1, "degree": 3, "superset": 6, "junk": 0, "excess": 0, "failed": 2, "complete": "no",
+           "doubts": [{"kind": "points_missing"}, {"kind": "failed_paths", "paths": 2}]},
+     "2": {"components": 1, "degree": 2, "superset": 2, "junk": 0, "excess": 0, "failed": 0, "complete": "yes", "doubts": []}},
+   "embedded": "not searched", "unsettled": @doubts@},
+  "paths": {"total": 1520, "failed": 2, "retracked": 7, "crossings_found": 1, "crossings_resolved": 1,
+            "loops": {"total": 72, "failed": 1, "retracked": 0, "crossings_found": 0, "crossings_resolved": 0}},
+  "time": {"wall_seconds": 0.41, "cpu_seconds": 0.63, "tracking_cpu_seconds": 0.63, "paths_per_second": 3880.0},
+  "workers": [], "warnings": ["ParameterHomotopy: 1: solved at random parameters"]
+}"#;
+
+#[test]
+fn components_by_dimension() {
+    let doubts = r#"["dimension 1: second derivatives do not sum to 0: witness points are missing",
+        "dimension 1: 2 paths failed that may have ended here",
+        "component 1.1: 3 classes of witness points that loops did not bring together"]"#;
+    for (name, settled, doubts) in [
+        ("decomposition", "true", "[]"),
+        ("decomposition_unsettled", "false", doubts),
+    ] {
+        let json = DECOMPOSED
+            .replace("@settled@", settled)
+            .replace("@doubts@", doubts);
+        let answer: DecompositionSummary = serde_json::from_str(&json).expect("a summary");
+        check_widths(name, |look| {
+            decomposition::table(&answer, (settled == "false").then(|| "here".as_ref()), look)
+        });
+        let exit = decomposition::exit(&answer) as u8;
+        assert_eq!(exit, u8::from(settled == "false"));
+    }
 }
 
 fn read(file: &str) -> cognate_systems::formats::Problem {

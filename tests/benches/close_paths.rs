@@ -45,6 +45,7 @@ fn measure(exponent: u32) -> Result<Row, Failure> {
     for seed in 1..=SEEDS {
         let stage = Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::PathVariable {
                 parameters: vec![Complex64::new(1.0, 0.0)],

@@ -135,6 +135,7 @@ impl Family {
         let numbers = self.parameters.iter().map(|_| random.unit()).collect();
         let stage = Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::Parameter {
                 start: self.parameters.clone(),
@@ -359,6 +360,7 @@ fn rotations_as_unknowns(family: &Family) -> Result<(), Failure> {
     let targets = vec![family.parameters.iter().map(|_| random.unit()).collect()];
     let stage = Stage {
         id: StageId(0),
+        system: None,
         work: Work::Track,
         homotopy: HomotopyKind::Parameter {
             start: family.parameters.clone(),

@@ -3,12 +3,18 @@
 //! `SEEDS=30 cargo test -p cognate-tests --test decomposition` takes more seeds than the three of every run.
 
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
+use cognate_algorithms::run_locally::drive;
+use cognate_continuation::prepared_work::PreparedWork;
+use cognate_continuation::stage::PrepareError;
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_protocol::digest;
 use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
 use cognate_tests::systems::{shared, written};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Dimension, degree, multiplicity and how many there are of them.
@@ -88,7 +94,7 @@ fn check(name: &str, system: &System, expected: &[Expected]) {
         let began = Instant::now();
         let found = decompose(system, seed);
         let (counts, settled) = (counted(&found), found.settled());
-        let (paths, loops) = (found.paths, found.paths_of_loops);
+        let (paths, loops) = (found.paths.total, found.paths_of_loops.total);
         eprintln!(
             "{name}, seed {seed}: {counts:?}, settled {settled}, {paths} + {loops} paths, {:.2} s{}",
             began.elapsed().as_secs_f64(),
@@ -231,4 +237,31 @@ fn isolated_points_are_components() {
     check("two conics", &system, &[(0, 1, 1, 4)]);
     let double = written("variable_group x, y; function f, g; f = (x - y)^2; g = x^2 + y^2 - 2;");
     check("two double points", &double, &[(0, 1, 2, 2)]);
+}
+
+/// Whatever a stage is of can be sent to a worker, node by node as it is.
+#[test]
+fn systems_of_stages_survive_the_wire() {
+    for name in ["twisted_cubic", "conic_p1p2", "double_line", "jets_a3"] {
+        let system = instance(name);
+        let solve = DecompositionSolve::new(&system, &DecompositionOptions::default());
+        let mut solve = solve.expect("it can be decomposed");
+        let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+        let mut systems = BTreeSet::new();
+        let driven = drive::<PrepareError>(&mut solve, &mut |opening| {
+            let made = opening.objects.iter();
+            objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+            let system = opening.system.as_deref();
+            let system = system.expect("every stage brings its system");
+            let bytes = digest::encode_system(system);
+            let sent = digest::decode_system(&bytes).expect("a worker can read it");
+            assert!(sent == *system, "{name}: {:?}", opening.stage);
+            systems.insert(digest::of_bytes(&bytes));
+            let find = |digest: Digest| objects.get(&digest).cloned();
+            let prepared = PreparedWork::new(&sent, &opening.stage, &find)?;
+            Ok(prepared.run(0..prepared.items(), 8))
+        });
+        assert_eq!(driven, Ok(()));
+        assert!(systems.len() > 1, "{name}");
+    }
 }

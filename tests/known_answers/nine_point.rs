@@ -248,6 +248,7 @@ fn rotations_as_unknowns_end_at_the_same_linkages() {
         });
         let stage = Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::Parameter {
                 start: start.clone(),

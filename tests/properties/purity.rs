@@ -104,6 +104,15 @@ work_conformance! {
         },
         &|stage| stage.work == Work::CountMixedCells,
     );
+    // A set that is regular, and one that is deflated.
+    bend, Work::Bend, Subject::of_decomposition(
+        &written("variable_group x, y, z; function f, g; f = y - x^2; g = z - x*y;"),
+        &|stage| stage.work == Work::Bend,
+    );
+    bend_deflated, Work::Bend, Subject::of_decomposition(
+        &written("variable_group x, y; function f; f = (x^2*y - x - y^2 + 2)^2;"),
+        &|stage| stage.work == Work::Bend,
+    );
 }
 
 homotopy_conformance! {

@@ -1,8 +1,9 @@
 //! Subject: a stage of a real solve, with all that a worker needs to do its items.
 
+use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::plan::GivenStart;
 use cognate_algorithms::run_locally::drive;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{PathAlgorithm, PlanOptions, plan};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
@@ -62,23 +63,48 @@ impl Subject {
             points.insert(given.digest(), Arc::new(given));
         }
         let mut plan = plan(system, &options).expect("a plan");
+        Self::on_the_way(&plan.system, &mut plan.algorithm, points, wanted)
+    }
+
+    /// The first wanted stage of a decomposition.
+    ///
+    /// # Panics
+    /// When it has no such stage.
+    pub fn of_decomposition(system: &System, wanted: &dyn Fn(&Stage) -> bool) -> Self {
+        let options = DecompositionOptions {
+            seed: 7,
+            ..DecompositionOptions::default()
+        };
+        let solve = DecompositionSolve::new(system, &options);
+        let mut solve = solve.expect("it can be decomposed");
+        Self::on_the_way(system, &mut solve, HashMap::new(), wanted)
+    }
+
+    fn on_the_way(
+        system: &System,
+        algorithm: &mut dyn PathAlgorithm,
+        mut points: HashMap<Digest, Arc<StoredPoints>>,
+        wanted: &dyn Fn(&Stage) -> bool,
+    ) -> Self {
         let mut found = None;
-        let ended = drive::<()>(&mut plan.algorithm, &mut |opening| {
+        let ended = drive::<()>(algorithm, &mut |opening| {
             let brought = opening.objects.iter();
             points.extend(brought.map(|object| (object.digest(), Arc::clone(object))));
+            let system = opening.system.as_deref().unwrap_or(system);
             if wanted(&opening.stage) {
-                found = Some(opening.stage.clone());
+                found = Some((system.clone(), opening.stage.clone()));
                 return Err(());
             }
             let find = |digest: Digest| points.get(&digest).cloned();
-            let prepared = PreparedWork::new(&plan.system, &opening.stage, &find);
+            let prepared = PreparedWork::new(system, &opening.stage, &find);
             let prepared = prepared.expect("a stage of a solve can be prepared");
             Ok(prepared.run(0..prepared.items(), 8))
         });
         assert_eq!(ended, Err(()), "the solve has no such stage");
+        let (system, stage) = found.expect("it ended there");
         Self {
-            system: plan.system,
-            stage: found.expect("it ended there"),
+            system,
+            stage,
             points,
         }
     }

@@ -5,6 +5,7 @@ mod bad_input;
 mod body_guidance;
 mod certificates;
 mod coordinator_restarted;
+mod decomposition_killed;
 mod digits;
 mod full_disk;
 mod late_chunk;

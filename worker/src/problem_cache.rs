@@ -104,8 +104,10 @@ impl ProblemCache {
         lease: &Lease,
     ) -> Result<Prepared, PrepareFailure> {
         let stage = transport.stage(&lease.id.job, lease.id.stage).await?;
-        let cell = lock(&self.systems).cell(lease.problem);
-        let fetch = || async { transport.system(lease.problem).await.map(Arc::new) };
+        // A stage may be of a system that was made for it.
+        let digest = stage.system.unwrap_or(lease.problem);
+        let cell = lock(&self.systems).cell(digest);
+        let fetch = || async { transport.system(digest).await.map(Arc::new) };
         let system = Arc::clone(cell.get_or_try_init(fetch).await?);
         let points = match stage.start_points.object() {
             Some(object) => Some((object, Arc::new(transport.points(object).await?))),
@@ -153,7 +155,8 @@ impl ChunkTracker for PreparedWork {
             Self::Certify(_)
             | Self::LocalDimension(_)
             | Self::Sharpen(_)
-            | Self::CountMixedCells(_) => 1,
+            | Self::CountMixedCells(_)
+            | Self::Bend(_) => 1,
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::certified_solve::CertifiedSolve;
 use crate::closing_stage::FiniteEndpoints;
 use crate::completeness::{Complete, Completeness};
+use crate::decomposition::DecompositionSolve;
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
@@ -14,11 +15,12 @@ use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 12;
+const VERSION: u8 = 13;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,6 +39,8 @@ pub enum AnyAlgorithm {
     Polyhedral(Box<PolyhedralSolve>),
     /// All regular solutions of one system, equation by equation.
     Regeneration(Box<RegenerationSolve>),
+    /// All components of one system.
+    Decomposition(Box<DecompositionSolve>),
 }
 
 /// Why a snapshot cannot be read.
@@ -91,6 +95,9 @@ impl AnyAlgorithm {
             Self::Regeneration(solve) => {
                 Self::Regeneration(Box::new(solve.with_max_retries(max_retries)))
             }
+            Self::Decomposition(solve) => {
+                Self::Decomposition(Box::new(solve.with_max_retries(max_retries)))
+            }
         }
     }
 
@@ -103,6 +110,7 @@ impl AnyAlgorithm {
             Self::Sharpened(solve) => &**solve,
             Self::Polyhedral(solve) => &**solve,
             Self::Regeneration(solve) => &**solve,
+            Self::Decomposition(solve) => &**solve,
         }
     }
 
@@ -115,7 +123,16 @@ impl AnyAlgorithm {
             Self::ZeroDimensional(_)
             | Self::Parameter(_)
             | Self::Polyhedral(_)
-            | Self::Regeneration(_) => None,
+            | Self::Regeneration(_)
+            | Self::Decomposition(_) => None,
+        }
+    }
+
+    /// The decomposition that was found, where it is one and `next` has said `Done`.
+    pub fn decomposition(&self) -> Option<&Decomposition> {
+        match self {
+            Self::Decomposition(solve) => solve.decomposition(),
+            _ => None,
         }
     }
 
@@ -133,7 +150,7 @@ impl AnyAlgorithm {
             Self::Certified(solve) => solve.solve().renumbered_results(),
             Self::Sharpened(solve) => solve.solve().renumbered_results(),
             Self::ZeroDimensional(solve) => solve.paths().results_with_images(),
-            Self::Parameter(_) | Self::Monodromy(_) => None,
+            Self::Parameter(_) | Self::Monodromy(_) | Self::Decomposition(_) => None,
         }
     }
 
@@ -168,6 +185,7 @@ impl AnyAlgorithm {
             Self::Sharpened(solve) => &mut **solve,
             Self::Polyhedral(solve) => &mut **solve,
             Self::Regeneration(solve) => &mut **solve,
+            Self::Decomposition(solve) => &mut **solve,
         }
     }
 }

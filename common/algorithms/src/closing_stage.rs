@@ -96,6 +96,7 @@ impl<Fact> ClosingStage<Fact> {
         let id = before.iter().map(|stage| stage.id.0 + 1).max().unwrap_or(0);
         let stage = Stage {
             id: StageId(id),
+            system: None,
             work,
             homotopy,
             start_points,
@@ -112,6 +113,7 @@ impl<Fact> ClosingStage<Fact> {
         });
         let opening = Opening {
             stage,
+            system: None,
             objects: vec![stored],
         };
         (closing, Some(Box::new(opening)))

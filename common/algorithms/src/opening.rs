@@ -2,6 +2,7 @@
 
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::Stage;
+use cognate_systems::system::System;
 use std::sync::Arc;
 
 /// A stage to open. Whoever carries it out keeps the objects first, under
@@ -11,6 +12,9 @@ use std::sync::Arc;
 pub struct Opening {
     /// The stage.
     pub stage: Stage,
+    /// The system that it is of, where that is not the one that was planned for. Whoever keeps it names it in
+    /// the stage.
+    pub system: Option<Arc<System>>,
     /// Points that its start points name and that nobody has yet: made from earlier results.
     /// Later stages may name them again without bringing them.
     pub objects: Vec<Arc<StoredPoints>>,
@@ -29,6 +33,7 @@ impl From<Stage> for Opening {
     fn from(stage: Stage) -> Self {
         Self {
             stage,
+            system: None,
             objects: Vec::new(),
         }
     }

@@ -145,6 +145,7 @@ impl ParameterSolve {
         };
         Some(Opening {
             stage,
+            system: None,
             objects: vec![points],
         })
     }
@@ -223,6 +224,7 @@ mod tests {
         });
         let first = Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::Parameter {
                 start: vec![number(1.0, 0.0)],

@@ -381,6 +381,7 @@ fn plan_polyhedral(
     };
     let first = Stage {
         id: StageId(0),
+        system: None,
         work: Work::Track,
         homotopy: HomotopyKind::Toric,
         start_points: StartPoints::MixedCells {
@@ -619,6 +620,7 @@ fn finish(
     let several = matches!(homotopy, HomotopyKind::Parameter { .. });
     let first = Stage {
         id: StageId(0),
+        system: None,
         work: Work::Track,
         homotopy,
         start_points,

@@ -250,6 +250,7 @@ fn open(
     };
     let stage = Stage {
         id,
+        system: None,
         work: Work::Track,
         homotopy,
         start_points: stored.as_start(),

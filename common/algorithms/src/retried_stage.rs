@@ -325,6 +325,7 @@ impl RetriedStage {
                 start_points: points.as_start(),
                 ..self.first.clone()
             },
+            system: None,
             objects: vec![points],
         }
     }

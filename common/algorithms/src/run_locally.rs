@@ -37,6 +37,7 @@ pub fn run_locally(
         let objects_of_stage = opening.objects.iter();
         made.extend(objects_of_stage.map(|points| (points.digest(), Arc::clone(points))));
         let find = |wanted: Digest| made.get(&wanted).cloned().or_else(|| objects(wanted));
+        let system = opening.system.as_deref().unwrap_or(system);
         let prepared = PreparedWork::new(system, &opening.stage, &find)?;
         Ok(prepared.run(0..prepared.items(), width))
     })?;
@@ -111,6 +112,7 @@ mod tests {
                         start_points: points.as_start(),
                         ..first_stage(if k == 1 { leg(2.0, 3.0) } else { leg(3.0, 5.0) })
                     },
+                    system: None,
                     objects: vec![points],
                 },
             };

@@ -36,6 +36,8 @@ pub enum StartKind {
     LinearProduct,
     /// Equation by equation: numbers are known when they are found.
     Regeneration,
+    /// Equation by equation, for components of all dimensions.
+    Cascade,
 }
 
 impl std::fmt::Display for StartKind {
@@ -48,6 +50,7 @@ impl std::fmt::Display for StartKind {
             Self::Polyhedral => "polyhedral",
             Self::LinearProduct => "linear-product",
             Self::Regeneration => "regeneration",
+            Self::Cascade => "cascade",
         })
     }
 }

@@ -32,6 +32,7 @@ pub fn system() -> System {
 pub fn first_stage(homotopy: HomotopyKind) -> Stage {
     Stage {
         id: StageId(0),
+        system: None,
         work: Work::Track,
         homotopy,
         start_points: StartPoints::TotalDegree { degrees: vec![4] },

@@ -25,6 +25,7 @@
 //! // A stage says what is asked; it is pure data and could be sent to a worker.
 //! let stage = Stage {
 //!     id: StageId(0),
+//!     system: None,
 //!     work: Work::Track,
 //!     homotopy: HomotopyKind::StraightLine { parameters: Vec::new() },
 //!     start_points: StartPoints::TotalDegree { degrees: polynomial::degrees(&system)?.total },

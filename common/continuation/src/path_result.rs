@@ -4,6 +4,7 @@
 //! compared bit for bit. What needs all paths at once (multiplicity, duplicates,
 //! classes) is `solutions`' business.
 
+use crate::bend::Bend;
 use crate::certification::Certification;
 use crate::sharpening::Sharpening;
 use crate::start_systems::polyhedral::branches::BranchCount;
@@ -170,6 +171,9 @@ pub struct PathResult {
     pub boundary: Option<Box<BoundaryKey>>,
     /// The mixed cells of a branch, in a stage that counts them; its `origin` is the branch.
     pub mixed_cells: Option<BranchCount>,
+    /// How the point moves with the parameters, in a stage that asks that; coordinates are those of the
+    /// unknowns.
+    pub bend: Option<Box<Bend>>,
 }
 
 impl PathResult {
@@ -199,6 +203,7 @@ impl PathResult {
             sharpening: None,
             boundary: None,
             mixed_cells: None,
+            bend: None,
         }
     }
 }

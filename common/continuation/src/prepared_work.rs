@@ -1,5 +1,6 @@
 //! PreparedWork: all that a worker makes of a stage before it does its items, whatever they are.
 
+use crate::bend::stage::BendStage;
 use crate::certification::CertificationStage;
 use crate::local_dimension::prepared::PreparedLocalDimension;
 use crate::path_result::PathResult;
@@ -25,6 +26,8 @@ pub enum PreparedWork {
     Sharpen(Box<SharpeningStage>),
     /// Branches whose mixed cells are counted.
     CountMixedCells(Box<CountingStage>),
+    /// Witness points that are moved.
+    Bend(Box<BendStage>),
 }
 
 impl PreparedWork {
@@ -50,6 +53,7 @@ impl PreparedWork {
             Work::CountMixedCells => {
                 Self::CountMixedCells(Box::new(CountingStage::new(system, stage)?))
             }
+            Work::Bend => Self::Bend(Box::new(BendStage::new(system, stage, objects)?)),
         })
     }
 
@@ -74,6 +78,7 @@ impl PreparedWork {
             Self::LocalDimension(stage) => stage.items(),
             Self::Sharpen(stage) => stage.items(),
             Self::CountMixedCells(stage) => stage.items(),
+            Self::Bend(stage) => stage.items(),
         }
     }
 
@@ -86,6 +91,7 @@ impl PreparedWork {
             Self::LocalDimension(stage) => stage.run(items),
             Self::Sharpen(stage) => stage.run(items),
             Self::CountMixedCells(stage) => stage.run(items),
+            Self::Bend(stage) => stage.run(items),
         }
     }
 }

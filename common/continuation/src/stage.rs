@@ -655,6 +655,7 @@ mod tests {
     fn stage(degrees: &[u32]) -> Stage {
         Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::StraightLine {
                 parameters: Vec::new(),

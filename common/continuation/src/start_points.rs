@@ -66,7 +66,7 @@ pub enum StartPoints {
 }
 
 /// Points as an object: the variables of the system in order, one point after the other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StoredPoints {
     /// Coordinates per point.
     pub dimension: usize,

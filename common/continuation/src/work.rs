@@ -3,7 +3,7 @@
 //! Pure data: it travels to workers, who build everything else from it and the system.
 
 use crate::homotopies::HomotopyKind;
-use crate::start_points::StartPoints;
+use crate::start_points::{Digest, StartPoints};
 use crate::start_systems::polyhedral::branches::BRANCHES;
 use crate::tracker::settings::Settings;
 use serde::{Deserialize, Serialize};
@@ -30,6 +30,9 @@ pub enum Work {
     /// Count the mixed cells of each branch (see `start_systems::polyhedral::branches`); the items
     /// are the branches of the start points.
     CountMixedCells,
+    /// Find out how each witness point moves, to the second order, when the parameters leave the start for the
+    /// target (see `bend`).
+    Bend,
 }
 
 impl Work {
@@ -38,9 +41,11 @@ impl Work {
     pub fn tracks_paths(self) -> bool {
         match self {
             Self::Track => true,
-            Self::Certify | Self::LocalDimension | Self::Sharpen { .. } | Self::CountMixedCells => {
-                false
-            }
+            Self::Certify
+            | Self::LocalDimension
+            | Self::Sharpen { .. }
+            | Self::CountMixedCells
+            | Self::Bend => false,
         }
     }
 }
@@ -50,6 +55,8 @@ impl Work {
 pub struct Stage {
     /// Its number within the job.
     pub id: StageId,
+    /// Digest of the system that it is of, where that is not the job's: named by whoever stores the system.
+    pub system: Option<Digest>,
     /// What is done with each item.
     pub work: Work,
     /// What is deformed into what.
@@ -70,7 +77,7 @@ impl Stage {
         match self.work {
             Work::LocalDimension => return self.start_points.count(),
             Work::CountMixedCells => return Some(BRANCHES),
-            Work::Track | Work::Certify | Work::Sharpen { .. } => {}
+            Work::Track | Work::Certify | Work::Sharpen { .. } | Work::Bend => {}
         }
         match (&self.homotopy, &self.start_points) {
             // An item of a repetition is named by its index among all targets and starts.

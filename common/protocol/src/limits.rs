@@ -64,6 +64,12 @@ pub const MOVED_SLICES: Limit = Limit {
     what: "slices beside an endpoint",
     value: 100,
 };
+/// Doubles of a derivative of a witness point: four for each unknown.
+pub const BEND_DOUBLES: Limit = Limit {
+    name: "BEND_DOUBLES",
+    what: "doubles of a derivative",
+    value: 4 * COORDINATES.value,
+};
 /// Coordinates of an endpoint: every variable may have a group of its own.
 pub const COORDINATES: Limit = Limit {
     name: "COORDINATES",

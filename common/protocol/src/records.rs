@@ -7,6 +7,7 @@
 //! agree. The hash is over these bytes before any compression; neither time nor
 //! worker is in them.
 
+use cognate_continuation::bend::{Bend, Number};
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::path_result::{
     AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, NUMBERS, PathIndex,
@@ -18,6 +19,7 @@ use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, Cou
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_numeric::exact_text::{exact_text, read_exact};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::scalar::DoubleDouble;
 use num_complex::Complex64;
 
 const MAGIC: &[u8; 8] = b"CGNRES01";
@@ -34,6 +36,7 @@ mod tag {
     pub const MIXED_CELLS: u8 = 8;
     pub const UNCOUNTED: u8 = 9;
     pub const MOVED_SLICES: u8 = 10;
+    pub const BEND: u8 = 11;
 }
 
 /// Bytes that hold no records.
@@ -123,6 +126,14 @@ impl Writer {
         self.f64(z.im);
     }
 
+    /// A number of two doubles each for real and imaginary part.
+    fn numbers(&mut self, numbers: &[Number]) {
+        self.length(numbers.len());
+        for part in numbers.iter().flat_map(|z| [z.re, z.im]) {
+            part.parts().iter().for_each(|&x| self.f64(x));
+        }
+    }
+
     fn length(&mut self, length: usize) {
         self.u32(u32::try_from(length).expect("a path has far fewer than 2^32 coordinates"));
     }
@@ -147,6 +158,7 @@ impl Writer {
             sharpening,
             boundary,
             mixed_cells,
+            bend,
         } = result;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -277,6 +289,17 @@ impl Writer {
                 self.f64(slice.reached);
             }
         }
+        if let Some(Bend {
+            velocity,
+            acceleration,
+            error,
+        }) = bend.as_deref()
+        {
+            self.0.push(tag::BEND);
+            self.numbers(velocity);
+            self.numbers(acceleration);
+            self.f64(*error);
+        }
     }
 }
 
@@ -374,6 +397,22 @@ impl<'a> Reader<'a> {
             .collect()
     }
 
+    fn numbers(&mut self) -> Result<Vec<Number>, DamagedRecords> {
+        let count = self.length(32)?;
+        let part = |r: &mut Self| {
+            let parts = [r.f64()?, r.f64()?];
+            DoubleDouble::from_parts(parts).ok_or_else(|| r.damaged("no number of two doubles"))
+        };
+        (0..count)
+            .map(|_| {
+                Ok(Number {
+                    re: part(self)?,
+                    im: part(self)?,
+                })
+            })
+            .collect()
+    }
+
     fn certificate(&mut self) -> Result<Certificate, DamagedRecords> {
         let centre = self.exact_parts()?;
         let mut numbers = || -> Result<Vec<f64>, DamagedRecords> {
@@ -448,6 +487,7 @@ impl<'a> Reader<'a> {
             sharpening: None,
             boundary: None,
             mixed_cells: None,
+            bend: None,
         };
         let mut last = 0;
         while self.at < end {
@@ -553,6 +593,17 @@ impl<'a> Reader<'a> {
                         2 => BranchCount::TooLarge,
                         _ => return Err(self.damaged("a reason that this version does not know")),
                     });
+                }
+                tag::BEND => {
+                    let bend = Bend {
+                        velocity: self.numbers()?,
+                        acceleration: self.numbers()?,
+                        error: self.f64()?,
+                    };
+                    if !bend.is_sound() {
+                        return Err(self.damaged("derivatives that do not belong together"));
+                    }
+                    result.bend = Some(Box::new(bend));
                 }
                 _ => return Err(self.damaged("a fact that this version does not know")),
             }

@@ -70,6 +70,17 @@ pub struct Options {
     pub warnings: Vec<String>,
     /// For [`StartKind::LinearProduct`]: the variables of each factor of each equation.
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
+    /// All irreducible components are wanted instead of isolated solutions.
+    pub decompose: Option<Decompose>,
+}
+
+/// Which components a client asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Decompose {
+    /// Lowest and highest dimension; `None`: all.
+    pub dimensions: Option<[u32; 2]>,
+    /// Loops in a row that bring no witness points together before these stay apart.
+    pub idle_loops: Option<u32>,
 }
 
 /// The start system that a client asks for.

@@ -2,13 +2,14 @@
 
 mod support;
 
+use cognate_continuation::bend::{Bend, Number};
 use cognate_continuation::path_result::{Coordinates, PathResult};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::polyhedral::branches::{
     BRANCHES, BranchCount, CellBranches, CountedCells,
 };
 use cognate_continuation::work::{Stage, Work};
-use cognate_protocol::submission::{Source, Submission};
+use cognate_protocol::submission::{Decompose, Options, Source, Submission};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -41,9 +42,15 @@ proptest! {
         } else {
             Source::Text { name: "a.txt".to_owned(), content: b"x^2 - 2;".to_vec() }
         };
-        let submission = Submission { source, options: draw.options() };
-        let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
-        prop_assert_eq!(from_proto::problem::submission(message).unwrap(), submission);
+        let options = draw.options();
+        let dimensions = (seed % 2 == 0).then_some([(seed % 5) as u32, 5 + (seed % 7) as u32]);
+        let idle_loops = (seed % 3 == 0).then_some(1 + (seed % 200) as u32);
+        let decompose = Some(Decompose { dimensions, idle_loops });
+        for options in [Options { decompose, ..options.clone() }, options] {
+            let submission = Submission { source: source.clone(), options };
+            let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
+            prop_assert_eq!(from_proto::problem::submission(message).unwrap(), submission);
+        }
     }
 
     #[test]
@@ -65,7 +72,9 @@ proptest! {
             start_points: of_cells(BRANCHES * (BRANCHES - 1) / 2, branches),
             ..draw.stage()
         };
-        for stage in [draw.stage(), draw.later_stage(), sharpening, counting, counted] {
+        let made = Stage { system: Some(draw.digest()), ..draw.stage() };
+        let bend = Stage { work: Work::Bend, ..draw.stage() };
+        for stage in [bend, draw.stage(), draw.later_stage(), sharpening, counting, counted, made] {
             let message: v1::Stage = sent(&to_proto::path::stage(&stage));
             prop_assert_eq!(from_proto::path::stage(&message).unwrap(), stage);
         }
@@ -81,6 +90,19 @@ proptest! {
             mixed_cells: Some(count),
             ..draw.path_result()
         }));
+        let third = |sign: f64| {
+            let mut third = Number::from_f64((), sign, sign * 1e-3);
+            third.mul(&Number::from_f64((), 1.0 / 3.0, 1e-20));
+            third
+        };
+        results.push(PathResult {
+            bend: Some(Box::new(Bend {
+                velocity: vec![third(1.0), third(-7.0)],
+                acceleration: vec![third(0.0), third(1e300)],
+                error: 1e-30,
+            })),
+            ..draw.path_result()
+        });
         for result in &results {
             let message: v1::PathResult = sent(&to_proto::path::path_result(result));
             let back = from_proto::path::path_result(&message).unwrap();

@@ -202,7 +202,7 @@ fn one_unknown(shape: &PointShape) -> bool {
 }
 
 /// What dual spaces and moved slices at a singular endpoint say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Isolation {
     /// It is isolated: dual spaces stop growing.
     Isolated {

@@ -37,7 +37,7 @@ pub enum SymmetryGenerator {
 }
 
 /// A polynomial system in variables and parameters.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct System {
     /// All expressions of the system.
     pub expressions: Expressions,

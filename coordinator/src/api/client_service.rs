@@ -1,7 +1,7 @@
 //! gRPC for clients: decode, one call inwards, encode.
 
 use super::error::ApiError;
-use super::{Answers, Context, guarded};
+use super::{Answers, Context, guarded, pieces};
 use crate::coordinator::{Answered, ClassifiedPath, CoordinatorError};
 use crate::intake;
 use crate::jobs::planning::Planned;
@@ -236,11 +236,23 @@ impl ClientApi for ClientService {
         let job = job(&request.into_inner().job)?;
         let summary = self.context.coordinator.summary(job).await;
         let (summary, json) = summary.map_err(ApiError::from)?;
-        let counts = to_proto::solution::counts(&summary.paths, &summary.solutions);
-        Ok(Response::new(v1::Summary {
-            json,
-            counts: Some(counts),
-        }))
+        let counts = summary
+            .solve()
+            .map(|summary| to_proto::solution::counts(&summary.paths, &summary.solutions));
+        Ok(Response::new(v1::Summary { json, counts }))
+    }
+
+    type GetDecompositionStream = Answers<v1::ObjectPiece>;
+
+    async fn get_decomposition(
+        &self,
+        request: Request<v1::GetDecompositionRequest>,
+    ) -> Result<Response<Self::GetDecompositionStream>, Status> {
+        let job = job(&request.into_inner().job)?;
+        let found = self.context.coordinator.decomposition(job).await;
+        let found = found.map_err(ApiError::from)?;
+        let json = serde_json::to_vec(&found).expect("names and numbers can be written as JSON");
+        Ok(Response::new(pieces(json.into())))
     }
 
     type StreamSolutionsStream = Answers<v1::Solution>;

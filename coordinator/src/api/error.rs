@@ -72,7 +72,9 @@ fn code(error: &CoordinatorError) -> Code {
         CoordinatorError::UnknownStage { .. }
         | CoordinatorError::Ledger(LedgerError::UnknownJob(_))
         | CoordinatorError::Store(StoreError::Missing(_)) => Code::NotFound,
-        CoordinatorError::NoResult { .. } => Code::FailedPrecondition,
+        CoordinatorError::NoResult { .. }
+        | CoordinatorError::Decomposed(_)
+        | CoordinatorError::NotDecomposed(_) => Code::FailedPrecondition,
         CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
         CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
         CoordinatorError::Ledger(

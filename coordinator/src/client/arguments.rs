@@ -54,6 +54,8 @@ pub enum Command {
     Info(Info),
     /// A system in another notation
     Convert(Convert),
+    /// Every irreducible component of every dimension, with its degree and multiplicity
+    Decompose(Decompose),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths
@@ -165,7 +167,7 @@ fn precision(text: &str) -> Result<PrecisionChoice, String> {
 }
 
 /// What is solved and how: the options of everything that takes a system.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Problem")]
 pub struct ProblemArguments {
     /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
@@ -310,6 +312,119 @@ pub struct Solve {
     /// What is seen meanwhile.
     #[command(flatten)]
     pub progress: ProgressArguments,
+}
+
+/// A range of dimensions, as typed: `1`, or `0..2` with both ends.
+fn dimensions(text: &str) -> Result<Dimensions, String> {
+    let read = |part: &str| part.parse::<u32>().ok();
+    let range = match text.split_once("..") {
+        Some((lowest, highest)) => read(lowest).zip(read(highest)),
+        None => read(text).map(|only| (only, only)),
+    };
+    let range = range.filter(|(lowest, highest)| lowest <= highest);
+    let (lowest, highest) = range
+        .ok_or_else(|| "expected a dimension such as 1, or a range such as 0..2".to_owned())?;
+    Ok(Dimensions { lowest, highest })
+}
+
+/// Dimensions of components, from the lowest to the highest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimensions {
+    /// The lowest.
+    pub lowest: u32,
+    /// The highest.
+    pub highest: u32,
+}
+
+/// Which components are wanted.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Components")]
+pub struct ComponentArguments {
+    /// Dimensions of the components that are wanted: D or D..E [default: all]
+    #[arg(long, value_name = "D|D..E", value_parser = dimensions)]
+    pub dimension: Option<Dimensions>,
+    /// Loops in a row that bring no witness points together before these stay apart [default: 12]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200))]
+    pub loops: Option<u32>,
+}
+
+/// `cognate decompose`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate decompose twisted_cubic.bertini
+  cognate decompose system.bertini --dimension 1..2 --format json | jq .decomposition.components
+  cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl")]
+pub struct Decompose {
+    /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
+    #[arg(help_heading = "Problem")]
+    pub file: PathBuf,
+    /// Which components.
+    #[command(flatten)]
+    pub components: ComponentArguments,
+    /// Values of the parameters: Bertini's format or JSON, one set
+    #[arg(long, value_name = "FILE", help_heading = "Problem")]
+    pub target_parameters: Option<PathBuf>,
+    /// Variable groups instead of those in the file: "x,y;z,w"
+    #[arg(long, value_name = "GROUPS", help_heading = "Problem")]
+    pub groups: Option<String>,
+    /// Seed of everything random; the same seed gives the same bits [default: made from the problem]
+    #[arg(long, value_name = "N", help_heading = "Problem")]
+    pub seed: Option<u64>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t, help_heading = "Problem")]
+    pub preset: PresetName,
+    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision, help_heading = "Problem")]
+    pub precision: PrecisionChoice,
+    /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
+    #[arg(long, help_heading = "Problem")]
+    pub exact: bool,
+    /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
+    #[arg(long, value_name = "URL", help_heading = "Service")]
+    pub coordinator: Option<String>,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
+    /// Local worker processes
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
+    pub workers: u32,
+    /// Threads of each worker [default: cores / workers]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
+    pub threads: Option<u32>,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+    /// Also write summary.json, decomposition.json and witness_points.jsonl here
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+    /// What is seen meanwhile.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
+}
+
+impl Decompose {
+    /// What is decomposed, as the options of a solve.
+    pub fn problem(&self) -> ProblemArguments {
+        ProblemArguments {
+            file: self.file.clone(),
+            target_parameters: self.target_parameters.clone(),
+            groups: self.groups.clone(),
+            seed: self.seed,
+            preset: self.preset,
+            precision: self.precision,
+            exact: self.exact,
+            ..ProblemArguments::default()
+        }
+    }
+
+    /// Where the answer goes.
+    pub fn output(&self) -> OutputArguments {
+        OutputArguments {
+            format: self.format,
+            output: self.output.clone(),
+        }
+    }
 }
 
 /// `cognate synthesize`.
@@ -676,6 +791,12 @@ pub struct Submit {
     /// What is solved.
     #[command(flatten)]
     pub problem: ProblemArguments,
+    /// All irreducible components instead of isolated solutions, as `cognate decompose` finds them
+    #[arg(long, help_heading = "Components")]
+    pub decompose: bool,
+    /// Which components.
+    #[command(flatten)]
+    pub components: ComponentArguments,
     /// Which coordinator.
     #[command(flatten)]
     pub service: ServiceArguments,

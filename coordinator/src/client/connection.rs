@@ -195,6 +195,20 @@ impl Connection {
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().json)
     }
 
+    /// The components that a finished job found, with their witness points: one JSON object, whose numbers are
+    /// kept as they were written.
+    pub async fn decomposition(&mut self, job: &str) -> Result<serde_json::Value, ClientError> {
+        let request = v1::GetDecompositionRequest { job: job.into() };
+        let answer = self.client.get_decomposition(request).await;
+        let mut pieces = answer.map_err(|e| self.explain(&e))?.into_inner();
+        let mut json = Vec::new();
+        while let Some(piece) = pieces.message().await.map_err(|e| self.explain(&e))? {
+            json.extend_from_slice(&piece.data);
+        }
+        serde_json::from_slice(&json)
+            .map_err(|e| ClientError::GaveUp(format!("its components are no JSON: {e}")))
+    }
+
     /// Hands every solution of a finished job to `take`, until it says that it has enough.
     pub async fn solutions(
         &mut self,

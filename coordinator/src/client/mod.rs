@@ -59,6 +59,7 @@ fn in_runtime(command: Command) -> Result<Exit, ClientError> {
             // These stop in an orderly way of their own.
             Command::Coordinator(a) => commands::coordinator::run(&a).await,
             Command::Solve(a) => commands::solve::run(&a).await,
+            Command::Decompose(a) => commands::decompose::run(&a).await,
             Command::Synthesize(a) => commands::synthesize::run(&a).await,
             other => tokio::select! {
                 ended = one_shot(other) => ended,
@@ -85,6 +86,7 @@ async fn one_shot(command: Command) -> Result<Exit, ClientError> {
         | Command::Convert(_)
         | Command::Path(_)
         | Command::Mechanism(_)
+        | Command::Decompose(_)
         | Command::Coordinator(_)
         | Command::Worker(_)
         | Command::Synthesize(_) => unreachable!("these were run before"),

@@ -10,6 +10,7 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
     let missing = match command {
         Command::Solve(c) => precision(c.problem.precision),
         Command::Path(c) => precision(c.problem.precision),
+        Command::Decompose(c) => precision(c.precision),
         Command::Submit(c) => precision(c.problem.precision),
         Command::Coordinator(c) => coordinator(c),
         Command::Watch(_)

@@ -1,12 +1,12 @@
 //! From arguments to a submission: files read and checked here, so that mistakes are named before anything starts.
 
-use super::arguments::{PresetName, ProblemArguments, Start};
+use super::arguments::{ComponentArguments, PresetName, ProblemArguments, Start};
 use super::error::ClientError;
 use crate::intake;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{
-    Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+    Decompose, Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
 use cognate_systems::formats::{self, FormatError};
 use cognate_systems::system::System;
@@ -192,6 +192,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         deflate: a.deflate,
         warnings,
         sets,
+        decompose: None,
     };
     Ok(Prepared {
         submission: Submission {
@@ -200,6 +201,22 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         },
         name: short_name(&a.file),
     })
+}
+
+/// The submission that asks for these components instead of isolated solutions.
+pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Prepared {
+    let options = &mut prepared.submission.options;
+    // A file's digits are those of isolated solutions.
+    if options.digits.take().is_some() {
+        options
+            .warnings
+            .push("the file asks for digits; witness points have those of doubles".into());
+    }
+    options.decompose = Some(Decompose {
+        dimensions: wanted.dimension.map(|d| [d.lowest, d.highest]),
+        idle_loops: wanted.loops,
+    });
+    prepared
 }
 
 fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientError> {

@@ -6,7 +6,9 @@ use crate::jobs::planning::{Planned, STATE};
 use crate::jobs::progress::JobProgress;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
-use crate::results::summary::{SOLUTIONS, Summary};
+use crate::results::AnySummary;
+use crate::results::decomposition::DECOMPOSITION;
+use crate::results::summary::SOLUTIONS;
 use cognate_algorithms::AnyAlgorithm;
 use cognate_algorithms::monodromy::estimate::percent;
 use cognate_continuation::homotopies::HomotopyKind;
@@ -16,6 +18,7 @@ use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::witness::Decomposition;
 use serde_json::json;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -55,6 +58,7 @@ fn purpose(stage: &Stage) -> String {
         (Work::Sharpen { digits }, _) => format!("bringing solutions to {digits} digits"),
         (Work::LocalDimension, _) => "whether singular endpoints are isolated".to_owned(),
         (Work::CountMixedCells, _) => "counting mixed cells".to_owned(),
+        (Work::Bend, _) => "derivatives of witness points".to_owned(),
         (Work::Track, 0) if stage.homotopy == HomotopyKind::Toric => {
             "tracking to a generic system".to_owned()
         }
@@ -185,7 +189,7 @@ impl Coordinator {
     }
 
     /// The summary of a solved job, as it was written.
-    pub async fn summary(&self, job: JobId) -> Result<(Summary, String), CoordinatorError> {
+    pub async fn summary(&self, job: JobId) -> Result<(AnySummary, String), CoordinatorError> {
         let row = self.solved(job).await?;
         let missing = || CoordinatorError::NoResult {
             job,
@@ -197,7 +201,7 @@ impl Coordinator {
             CoordinatorError::Problem(format!("the summary of job {job} cannot be read: {what}"))
         };
         let text = String::from_utf8(bytes.to_vec()).map_err(|e| damaged(e.to_string()))?;
-        let summary = serde_json::from_str(&text).map_err(|e| damaged(e.to_string()))?;
+        let summary = AnySummary::read(&text).map_err(|e| damaged(e.to_string()))?;
         Ok((summary, text))
     }
 
@@ -218,9 +222,23 @@ impl Coordinator {
         if let Some(sets) = self.solutions.get(&digest) {
             return Ok(sets);
         }
+        if self.store.is_of_kind(&DECOMPOSITION, digest).await? {
+            return Err(CoordinatorError::Decomposed(job));
+        }
         let sets: Arc<Vec<SolutionSet>> = Arc::new(self.store.record(&SOLUTIONS, digest).await?);
         self.solutions.keep(digest, Arc::clone(&sets));
         Ok(sets)
+    }
+
+    /// The components that a solved job found.
+    pub async fn decomposition(&self, job: JobId) -> Result<Decomposition, CoordinatorError> {
+        let row = self.solved(job).await?;
+        match row.solutions {
+            Some(digest) if self.store.is_of_kind(&DECOMPOSITION, digest).await? => {
+                Ok(self.store.record(&DECOMPOSITION, digest).await?)
+            }
+            _ => Err(CoordinatorError::NotDecomposed(job)),
+        }
     }
 
     /// All paths of a solved job, by their indices.
@@ -333,7 +351,10 @@ impl Coordinator {
                 "late: {late} chunks were given to a second worker, which reported {won} of them first"
             ));
         }
-        if let Some(summary) = &summary {
+        if let Some(AnySummary::Decomposition(summary)) = &summary {
+            lines.extend(summary.lines());
+        }
+        if let Some(AnySummary::Solve(summary)) = &summary {
             let paths = &summary.paths;
             lines.push(format!(
                 "paths: {} finite, {} singular, {} on positive-dimensional sets, {} undecided (isolated or not), {} within the \

@@ -34,6 +34,12 @@ pub enum CoordinatorError {
         /// Why it failed or was cancelled.
         reason: Option<String>,
     },
+    /// The job has components, not solutions.
+    #[error("job {0} is a decomposition: it has witness points, and no list of solutions or paths")]
+    Decomposed(JobId),
+    /// The job has solutions, not components.
+    #[error("job {0} is no decomposition: it has solutions, and no witness points")]
+    NotDecomposed(JobId),
     /// A worker's report is no result of its chunk.
     #[error("the report of lease {lease} is no result of its chunk: {what}")]
     Report {

@@ -15,6 +15,8 @@ mod tests;
 #[cfg(test)]
 mod tests_of_counting;
 #[cfg(test)]
+mod tests_of_decomposition;
+#[cfg(test)]
 mod tests_of_limits;
 mod work;
 

@@ -319,16 +319,13 @@ impl Cluster {
         if let Some(stage) = known {
             return stage;
         }
-        let system: System = self
-            .store
-            .problem(lease.problem)
-            .await
-            .expect("it is there");
         let stage = self
             .store
             .stage(lease.definition)
             .await
             .expect("it is there");
+        let digest = stage.system.unwrap_or(lease.problem);
+        let system: System = self.store.problem(digest).await.expect("it is there");
         let points = match stage.start_points.object() {
             None => None,
             Some(object) => {

@@ -406,6 +406,7 @@ async fn a_path_that_kills_workers_is_named_and_the_rest_is_solved() {
     let killed = FailureReason::Tracking(Failure::KilledItsWorker);
     assert_eq!((failed.path, failed.reason), (11, killed));
     let (summary, _) = coordinator.summary(cluster.job).await.unwrap();
+    let summary = summary.solve().expect("a solve");
     assert_eq!(summary.failures[Failure::KilledItsWorker.describe()], 1);
     assert!(!summary.settled);
     let stages = cluster.ledger.stages(cluster.job).await.unwrap();
@@ -557,6 +558,7 @@ async fn a_running_coordinator_needs_nobody_to_drive_it() {
     let explained = coordinator.explain(accepted.job).await.unwrap();
     assert!(explained.text.contains("16 paths"), "{}", explained.text);
     let (summary, text) = coordinator.summary(accepted.job).await.unwrap();
+    let summary = summary.solve().expect("a solve");
     assert_eq!(
         summary.workers.iter().map(|w| w.paths).sum::<u64>(),
         last.stages.iter().map(|s| s.accepted).sum::<u64>()

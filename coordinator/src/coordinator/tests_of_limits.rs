@@ -70,6 +70,7 @@ async fn run(problem: &NewProblem, seed: u64, held_paths: u64, faults: bool) -> 
     let (ledger, store) = (cluster.ledger.clone(), cluster.store.clone());
     let reader = Coordinator::new(ledger, store, who, cluster.policy.clone());
     let (summary, _) = reader.summary(cluster.job).await.unwrap();
+    let summary = summary.solve().expect("a solve");
     let large = reader.large(&row).await.unwrap();
     Said {
         sets: reader.solutions(cluster.job).await.unwrap().to_vec(),

@@ -13,10 +13,14 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
+use crate::results::decomposition::{DECOMPOSITION, DecompositionSummary};
 use crate::results::store::Store;
 use crate::results::summary::{self, LargeAnswer, Summary};
 use cognate_algorithms::Opening;
-use cognate_continuation::work::StageId;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::{Stage, StageId};
+use cognate_systems::system::System;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 const HERE: &str = "the steward is back before the step ends";
@@ -44,6 +48,8 @@ pub struct Drive {
     pending: Option<Wanted>,
     /// What is remembered of a first stage that is too large to be held.
     large: LargeStage,
+    /// Systems that were made for stages and can be read back.
+    readable: HashSet<Digest>,
 }
 
 impl Drive {
@@ -99,6 +105,7 @@ impl Drive {
             steward: Some(steward),
             pending,
             large: LargeStage::default(),
+            readable: HashSet::new(),
         })
     }
 
@@ -205,10 +212,22 @@ impl Drive {
             close: close.to_vec(),
             ..Advance::default()
         };
-        for Opening { stage, objects } in &wanted.open {
+        for opening in &wanted.open {
+            let Opening {
+                stage,
+                system,
+                objects,
+            } = opening;
             for points in objects {
                 tools.store.put(points.to_bytes().into()).await?;
             }
+            let stage = &Stage {
+                system: match system {
+                    Some(system) => Some(self.keep_system(tools, system).await?),
+                    None => None,
+                },
+                ..stage.clone()
+            };
             let items = stage
                 .items()
                 .ok_or(LedgerError::TooLarge("the number of items of a stage"))?;
@@ -247,6 +266,20 @@ impl Drive {
         Ok(Driven::Went)
     }
 
+    /// Keeps a system that was made for a stage. What no worker could read ends the job here.
+    async fn keep_system(
+        &mut self,
+        tools: &Tools<'_>,
+        system: &System,
+    ) -> Result<Digest, DriveError> {
+        let digest = tools.store.put_problem(system).await?;
+        if !self.readable.contains(&digest) {
+            tools.store.problem(digest).await?;
+            self.readable.insert(digest);
+        }
+        Ok(digest)
+    }
+
     async fn finish(&mut self, tools: &Tools<'_>) -> Result<(), DriveError> {
         let Tools { ledger, store, .. } = tools;
         if let Some(reason) = self.steward().failure() {
@@ -255,12 +288,22 @@ impl Drive {
                 .finish(self.job, self.epoch, JobEnd::Failed { reason })
                 .await?);
         }
-        let mut sets = self.at_work(|steward| steward.solution_sets()).await;
         let row = ledger.job(self.job).await?;
         let row = row.ok_or(LedgerError::UnknownJob(self.job))?;
         let stages = ledger.stages(self.job).await?;
         let workers = ledger.contributions(self.job).await?;
         let now = ledger.now().await?;
+        if let Some(found) = self.steward().decomposition().cloned() {
+            let summary =
+                DecompositionSummary::new(&row, &self.planned, &found, &stages, &workers, now);
+            let solutions = store.put_record(&DECOMPOSITION, found).await?;
+            let summary = store.put(summary.to_json().into()).await?;
+            let end = JobEnd::Solved { solutions, summary };
+            ledger.finish(self.job, self.epoch, end).await?;
+            tracing::info!(job = %self.job, "the job is decomposed");
+            return Ok(());
+        }
+        let mut sets = self.at_work(|steward| steward.solution_sets()).await;
         let mut summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
         summary.monodromy = self.steward().monodromy();
         let solutions = match sets.pop() {

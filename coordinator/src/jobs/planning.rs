@@ -5,15 +5,19 @@
 
 use crate::ledger::identity::ItemRange;
 use crate::results::store::RecordKind;
+use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, ProblemError};
 use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use cognate_algorithms::retried_stage::MAX_RETRIES;
-use cognate_algorithms::{Next, PathAlgorithm, PlanError};
+use cognate_algorithms::start_costs::StartKind as PlannedStart;
+use cognate_algorithms::{AnyAlgorithm, Next, PathAlgorithm, PlanError};
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
-use cognate_protocol::submission::{Options, PrecisionChoice, StartKind, StartSolutions};
+use cognate_protocol::submission::{
+    Decompose, Options, PrecisionChoice, StartKind, StartSolutions,
+};
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
@@ -81,6 +85,9 @@ pub enum PlanningError {
     /// No worker could track its paths.
     #[error("its paths cannot be tracked: {0}")]
     Untrackable(#[from] PrepareError),
+    /// The system cannot be decomposed.
+    #[error(transparent)]
+    Decomposition(#[from] ProblemError),
     /// The object of start solutions is none.
     #[error("the start solutions cannot be used: {0}")]
     StartSolutions(#[from] DamagedPoints),
@@ -158,11 +165,15 @@ pub fn plan_job(
     start_solutions: Option<&[u8]>,
     counting_operations: u64,
 ) -> Result<Plan, PlanningError> {
+    let decompose = options.decompose;
     let options = PlanOptions {
         counting_operations,
         ..plan_options(options, start_solutions)?
     };
-    let plan = plan(system, &options)?;
+    let plan = match decompose {
+        Some(wanted) => plan_decomposition(system, wanted, options.clone())?,
+        None => plan(system, &options)?,
+    };
     let points = start_solutions.map(StoredPoints::from_bytes).transpose()?;
     let given = options.start_points.map(|start| start.object).zip(points);
     let given = given.map(|(object, points)| (object, Arc::new(points)));
@@ -172,9 +183,44 @@ pub fn plan_job(
     };
     if let Next::Open(opening) = plan.algorithm.clone().next() {
         let find = |wanted: Digest| opening.object(wanted).or_else(|| find(wanted));
-        PreparedWork::check(&plan.system, &opening.stage, &find)?;
+        let system = opening.system.as_deref().unwrap_or(&plan.system);
+        PreparedWork::check(system, &opening.stage, &find)?;
     }
     Ok(plan)
+}
+
+/// The plan that finds all components.
+fn plan_decomposition(
+    system: &System,
+    wanted: Decompose,
+    options: PlanOptions,
+) -> Result<Plan, PlanningError> {
+    let mut targets = options.target_parameters;
+    let parameters = match targets.len() {
+        0 | 1 => targets.pop().unwrap_or_default(),
+        several => return Err(PlanError::SeveralTargets(several).into()),
+    };
+    let default = DecompositionOptions::default();
+    let options = DecompositionOptions {
+        seed: options.seed,
+        parameters,
+        dimensions: wanted.dimensions.map(|[lowest, highest]| lowest..=highest),
+        settings: options.settings,
+        tolerances: options.tolerances,
+        max_retries: options.max_retries,
+        idle_loops: wanted.idle_loops.unwrap_or(default.idle_loops),
+        ..default
+    };
+    let solve = DecompositionSolve::new(system, &options)?;
+    Ok(Plan {
+        system: system.clone(),
+        algorithm: AnyAlgorithm::Decomposition(Box::new(solve)),
+        start: PlannedStart::Cascade,
+        paths: None,
+        why: "all components are asked for; equation by equation, and in each dimension the points that solve \
+              all equations are taken out"
+            .into(),
+    })
 }
 
 /// The first chunks of a stage: one, from which every lease cuts its size.

@@ -11,6 +11,7 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::plain::{Crowd, PlainCounts, Sieve};
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
 use std::sync::Arc;
 
@@ -145,6 +146,11 @@ impl Steward {
     /// What was found, one set for each target.
     pub fn solution_sets(&self) -> Vec<SolutionSet> {
         self.algorithm.solution_sets(&self.system)
+    }
+
+    /// The components, where the job asks for them and all is done.
+    pub fn decomposition(&self) -> Option<&Decomposition> {
+        self.algorithm.decomposition()
     }
 
     /// How the solutions were found, in a solve by monodromy.

@@ -132,6 +132,37 @@ pub struct TargetBlock {
     pub certification: Option<CertifiedSystem>,
 }
 
+impl TimeBlock {
+    /// The time of a job with these stages that ends now.
+    pub fn new(job: &JobRow, stages: &[StageRow], now: LedgerTime) -> Self {
+        let wall_seconds = now.since_ms(job.submitted) as f64 / 1000.0;
+        let tracking: u64 = stages.iter().map(|s| s.cpu_micros).sum();
+        let items: u64 = stages.iter().map(|s| s.items).sum();
+        let tracking_cpu_seconds = tracking as f64 / 1e6;
+        Self {
+            wall_seconds,
+            cpu_seconds: tracking_cpu_seconds,
+            tracking_cpu_seconds,
+            paths_per_second: items as f64 / wall_seconds.max(0.001),
+        }
+    }
+}
+
+impl WorkerBlock {
+    fn new(of: &Contribution) -> Self {
+        Self {
+            id: of.worker.to_string(),
+            paths: of.items,
+            transport: of.transport.clone(),
+        }
+    }
+
+    /// What each of these workers did.
+    pub fn all(of: &[Contribution]) -> Vec<Self> {
+        of.iter().map(Self::new).collect()
+    }
+}
+
 impl Summary {
     /// The summary of a job whose algorithm is done.
     pub fn new(
@@ -142,10 +173,6 @@ impl Summary {
         workers: &[Contribution],
         now: LedgerTime,
     ) -> Self {
-        let wall_seconds = now.since_ms(job.submitted) as f64 / 1000.0;
-        let tracking: u64 = stages.iter().map(|s| s.cpu_micros).sum();
-        let items: u64 = stages.iter().map(|s| s.items).sum();
-        let tracking_cpu_seconds = tracking as f64 / 1e6;
         let mut warnings = planned.warnings.clone();
         let mut failures = BTreeMap::new();
         for (target, set) in sets.iter().enumerate() {
@@ -185,20 +212,8 @@ impl Summary {
             classes: sum.classes,
             monodromy: None,
             certification: sum.certification,
-            time: TimeBlock {
-                wall_seconds,
-                cpu_seconds: tracking_cpu_seconds,
-                tracking_cpu_seconds,
-                paths_per_second: items as f64 / wall_seconds.max(0.001),
-            },
-            workers: workers
-                .iter()
-                .map(|worker| WorkerBlock {
-                    id: worker.worker.to_string(),
-                    paths: worker.items,
-                    transport: worker.transport.clone(),
-                })
-                .collect(),
+            time: TimeBlock::new(job, stages, now),
+            workers: WorkerBlock::all(workers),
             failures,
             targets: match sets {
                 [_] => Vec::new(),

@@ -189,6 +189,7 @@ impl Transport for Coordinator {
         table.fetched += 1;
         let stage = Stage {
             id,
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::StraightLine {
                 parameters: Vec::new(),

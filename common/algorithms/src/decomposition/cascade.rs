@@ -5,7 +5,7 @@
 //! An end that solves all given equations belongs to the witness superset of dimension n - k - 1 and goes no
 //! further; one that does not is regular with probability 1 and begins the next level.
 
-use super::job::Job;
+use super::job::{Job, StageSystem};
 use super::problem::{Problem, REFINED, SINGULAR};
 use cognate_continuation::bend::exactly;
 use cognate_continuation::homotopies::HomotopyKind;
@@ -15,9 +15,10 @@ use cognate_solutions::classification::Verdict;
 use cognate_solutions::path_crossing::coincidences;
 use cognate_solutions::point_shape::PointShape;
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 /// A point at which several paths end, or one that is singular.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SingularEnd {
     pub values: Vec<Complex64>,
     pub accuracy: f64,
@@ -26,7 +27,7 @@ pub(super) struct SingularEnd {
 }
 
 /// Ends of one level that solve all equations.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Superset {
     pub dimension: usize,
     pub regular: Vec<Vec<Complex64>>,
@@ -40,7 +41,7 @@ pub(super) struct Superset {
 }
 
 /// Level by level.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Cascade {
     level: usize,
     /// Points that the level began with; with slid ones once it slid.
@@ -64,9 +65,18 @@ impl Cascade {
         }
     }
 
-    /// The supersets, highest dimension first, of dimensions that have points or lost some.
-    pub fn supersets(&mut self) -> Vec<Superset> {
-        std::mem::take(&mut self.supersets)
+    /// The supersets of all dimensions that are asked and of those above, highest first.
+    pub fn supersets(&mut self, problem: &Problem) -> Vec<Superset> {
+        let mut supersets = std::mem::take(&mut self.supersets);
+        // Levels that no path reached have no points, but for those of paths that were lost before.
+        for level in supersets.len()..problem.asked_levels {
+            supersets.push(Superset {
+                dimension: problem.variables() - level - 1,
+                failed: self.failed,
+                ..Superset::default()
+            });
+        }
+        supersets
     }
 
     /// Learns from the stage that is done, and says which comes next.
@@ -77,7 +87,7 @@ impl Cascade {
             Some(job) if self.sliding => self.slid(job),
             Some(job) => self.intersected(problem, job),
         }
-        if self.points.is_empty() || self.level >= problem.levels {
+        if self.points.is_empty() || self.level >= problem.asked_levels {
             return None;
         }
         let degree = problem.row_degrees[self.level];
@@ -97,8 +107,18 @@ impl Cascade {
                 level,
             },
         };
-        let (system, with) = (&problem.staircase, &problem.tracking);
+        let system = (StageSystem::Staircase, &*problem.staircase);
+        let with = &problem.tracking;
         Some(Job::track(id, system, homotopy, &self.points, with))
+    }
+
+    /// What the level is for, in a few words.
+    pub fn description(&self, problem: &Problem) -> String {
+        let lowest = problem.variables().saturating_sub(self.level + 1);
+        match self.sliding {
+            true => format!("moving slices for dimension {lowest}"),
+            false => format!("cutting down to dimension {lowest}"),
+        }
     }
 
     fn slid(&mut self, job: &Job) {

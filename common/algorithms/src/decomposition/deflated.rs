@@ -6,14 +6,16 @@
 //! Isosingular sets and deflation, Found. Comput. Math. 13, 2013): points of other ranks are on others.
 
 use super::cascade::SingularEnd;
+use super::job::StageSystem;
 use super::problem::Problem;
 use cognate_continuation::bend::{Number, RefinedPoint, SlicedEquations, exactly, rounded};
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::witness::Multiplicity;
 use cognate_systems::system::{System, VariableGroup};
-use cognate_systems::transform::deflate;
+use cognate_systems::transform::{deflate, slice};
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -46,16 +48,12 @@ const MOVED_FACTOR: f64 = 1e3;
 const SAME: f64 = 1e-14;
 
 /// Witness points that are to be told apart.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PureSet {
     pub dimension: usize,
     /// Rank of the Jacobian before each deflation.
     pub ranks: Vec<u32>,
     pub multiplicity: Multiplicity,
-    /// All equations, regular at the points.
-    pub equations: Arc<SlicedEquations>,
-    /// As many combinations of them as are tracked, with the slices, whose coefficients are parameters.
-    pub tracked: Arc<System>,
     pub points: Vec<RefinedPoint>,
 }
 
@@ -64,6 +62,23 @@ impl PureSet {
     pub fn doubles(&self) -> Vec<Vec<Complex64>> {
         let double = |p: &RefinedPoint| p.point.iter().map(rounded).collect();
         self.points.iter().map(double).collect()
+    }
+
+    /// All of its equations with the slices, whose coefficients are parameters.
+    pub fn whole(&self) -> StageSystem {
+        StageSystem::Whole {
+            ranks: self.ranks.clone(),
+            dimension: self.dimension,
+        }
+    }
+
+    /// As many combinations of its equations as are tracked, with the slices, whose coefficients are
+    /// parameters.
+    pub fn tracked(&self) -> StageSystem {
+        StageSystem::Tracked {
+            ranks: self.ranks.clone(),
+            dimension: self.dimension,
+        }
     }
 }
 
@@ -93,9 +108,10 @@ pub(super) struct Multiple {
 }
 
 /// Deflated equations by their ranks, made once.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Deflations {
     systems: BTreeMap<Vec<u32>, Arc<System>>,
+    of_stages: BTreeMap<StageSystem, Arc<System>>,
     sliced: BTreeMap<(Vec<u32>, usize), Arc<SlicedEquations>>,
 }
 
@@ -112,6 +128,29 @@ impl Deflations {
             }
         };
         self.systems.insert(ranks.to_vec(), Arc::clone(&made));
+        made
+    }
+
+    /// The system of a stage.
+    pub fn of_stage(&mut self, problem: &Problem, wanted: &StageSystem) -> Arc<System> {
+        if let Some(known) = self.of_stages.get(wanted) {
+            return Arc::clone(known);
+        }
+        let made = match wanted {
+            StageSystem::Staircase => Arc::clone(&problem.staircase),
+            StageSystem::Sliced { dimension } => {
+                Arc::new(slice(&problem.given, *dimension, problem.variables()))
+            }
+            StageSystem::Whole { ranks, dimension } => {
+                let system = self.system(problem, ranks);
+                Arc::new(slice(&system, *dimension, problem.variables()))
+            }
+            StageSystem::Tracked { ranks, dimension } => {
+                let tracked = problem.tracked(&self.system(problem, ranks), *dimension);
+                Arc::new(tracked.expect("derivatives of polynomials have degrees"))
+            }
+        };
+        self.of_stages.insert(wanted.clone(), Arc::clone(&made));
         made
     }
 
@@ -199,23 +238,22 @@ impl Deflations {
     }
 
     /// The set of these points at which the given equations are regular.
-    pub fn reduced_set(
-        &mut self,
-        problem: &Problem,
-        dimension: usize,
-        points: Vec<RefinedPoint>,
-    ) -> Option<PureSet> {
+    pub fn reduced_set(dimension: usize, points: Vec<RefinedPoint>) -> Option<PureSet> {
         let multiplicity = Multiplicity {
             scheme: Some(1),
             tracked: 1,
             dual_dimensions: Vec::new(),
         };
-        (!points.is_empty()).then(|| self.set(problem, dimension, Vec::new(), multiplicity, points))
+        (!points.is_empty()).then(|| PureSet {
+            dimension,
+            ranks: Vec::new(),
+            multiplicity,
+            points,
+        })
     }
 
     /// The sets of these points of multiple sets: one for each sequence of ranks and each multiplicity.
     pub fn multiple_sets(
-        &mut self,
         problem: &Problem,
         dimension: usize,
         found: Vec<Multiple>,
@@ -249,29 +287,14 @@ impl Deflations {
                 dual_dimensions: group[0].dual_dimensions.clone(),
             };
             let points = group.into_iter().map(|m| m.point.refined).collect();
-            sets.push(self.set(problem, dimension, ranks, multiplicity, points));
+            sets.push(PureSet {
+                dimension,
+                ranks,
+                multiplicity,
+                points,
+            });
         }
         sets
-    }
-
-    fn set(
-        &mut self,
-        problem: &Problem,
-        dimension: usize,
-        ranks: Vec<u32>,
-        multiplicity: Multiplicity,
-        points: Vec<RefinedPoint>,
-    ) -> PureSet {
-        let system = self.system(problem, &ranks);
-        let tracked = problem.tracked(&system, dimension);
-        PureSet {
-            dimension,
-            equations: self.sliced(problem, &ranks, dimension),
-            tracked: Arc::new(tracked.expect("derivatives of polynomials have degrees")),
-            ranks,
-            multiplicity,
-            points,
-        }
     }
 }
 
@@ -328,7 +351,7 @@ fn deflated(system: &System, rank: usize, depth: usize, seed: u64) -> System {
         rank,
         &mut random,
     );
-    let names = (0..=rank).map(|k| format!("multiplier {depth} {k}"));
+    let names = (0..=rank).map(|k| format!("multiplier:{depth}:{k}"));
     result.variables.extend(names);
     result.groups = vec![VariableGroup {
         variables: (0..result.variables.len()).collect(),

@@ -1,4 +1,4 @@
-//! Job: one stage of a decomposition with its repetitions, on the system that was made for it.
+//! Job: one stage of a decomposition with its repetitions, and the system that it is of.
 
 use crate::retried_stage::RetriedStage;
 use crate::{Next, Opening};
@@ -7,9 +7,11 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
-use cognate_solutions::classification::{Decision, Tolerances};
+use cognate_solutions::classification::{Decision, Tolerances, Verdict};
+use cognate_solutions::witness::TrackedPaths;
 use cognate_systems::system::System;
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What a stage is tracked with.
@@ -21,8 +23,34 @@ pub(super) struct Tracking {
     pub seed: u64,
 }
 
+/// The system that a stage is of: what is written down of it, so that it can be made again.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) enum StageSystem {
+    /// Combinations of the equations, as many as there are variables.
+    Staircase,
+    /// All given equations with the slices of this dimension.
+    Sliced {
+        /// The dimension.
+        dimension: usize,
+    },
+    /// All equations that are regular after these deflations, with the slices of this dimension.
+    Whole {
+        /// Rank of the Jacobian before each deflation.
+        ranks: Vec<u32>,
+        /// The dimension.
+        dimension: usize,
+    },
+    /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
+    Tracked {
+        /// Rank of the Jacobian before each deflation.
+        ranks: Vec<u32>,
+        /// The dimension.
+        dimension: usize,
+    },
+}
+
 /// What the job does.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Doing {
     /// Paths, tracked again where they failed or crossed.
     Tracked(Box<RetriedStage>),
@@ -35,9 +63,9 @@ enum Doing {
 }
 
 /// One stage, and all that belongs to it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Job {
-    pub system: Arc<System>,
+    pub system: StageSystem,
     work: Doing,
     unsent: Option<Arc<StoredPoints>>,
 }
@@ -50,10 +78,10 @@ fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
 }
 
 impl Job {
-    /// Paths from these points.
+    /// Paths from these points. `system` is the one of this description.
     pub fn track(
         id: StageId,
-        system: &Arc<System>,
+        (description, system): (StageSystem, &System),
         homotopy: HomotopyKind,
         points: &[Vec<Complex64>],
         with: &Tracking,
@@ -63,7 +91,7 @@ impl Job {
         let first = stage(id, Work::Track, homotopy, &points, with);
         let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
         Self {
-            system: Arc::clone(system),
+            system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
             unsent: Some(points),
         }
@@ -72,19 +100,51 @@ impl Job {
     /// Whether these candidates at the only target are isolated.
     pub fn isolate(
         id: StageId,
-        system: &Arc<System>,
+        system: StageSystem,
         parameters: Vec<Complex64>,
         candidates: StoredPoints,
         with: &Tracking,
     ) -> Self {
-        let points = Arc::new(candidates);
         let homotopy = HomotopyKind::Parameter {
             start: parameters.clone(),
             targets: vec![parameters],
         };
-        let stage = stage(id, Work::LocalDimension, homotopy, &points, with);
+        Self::ask(
+            id,
+            system,
+            Work::LocalDimension,
+            homotopy,
+            Arc::new(candidates),
+            with,
+        )
+    }
+
+    /// How these witness points move when the parameters go from the first to the second.
+    pub fn bend(
+        id: StageId,
+        system: StageSystem,
+        [start, target]: [Vec<Complex64>; 2],
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        let homotopy = HomotopyKind::Parameter {
+            start,
+            targets: vec![target],
+        };
+        Self::ask(id, system, Work::Bend, homotopy, stored(points), with)
+    }
+
+    fn ask(
+        id: StageId,
+        system: StageSystem,
+        work: Work,
+        homotopy: HomotopyKind,
+        points: Arc<StoredPoints>,
+        with: &Tracking,
+    ) -> Self {
+        let stage = stage(id, work, homotopy, &points, with);
         Self {
-            system: Arc::clone(system),
+            system,
             work: Doing::Asked {
                 stage: Box::new(stage),
                 opened: false,
@@ -140,30 +200,40 @@ impl Job {
         let Doing::Tracked(stages) = &self.work else {
             return Vec::new();
         };
-        let values = |r: &PathResult| stages.shape().to_variables(r.endpoint.to_double());
+        // One that ended its worker has no end.
+        let values = |r: &PathResult| match r.endpoint.to_double() {
+            [] => Vec::new(),
+            end => stages.shape().to_variables(end),
+        };
         let pairs = stages.results().iter().zip(stages.decisions());
         pairs.map(|(r, d)| (r, d, values(r))).collect()
     }
 
-    /// Number of its paths, without repetitions.
-    pub fn paths(&self) -> u64 {
-        match &self.work {
-            Doing::Tracked(stages) => stages.results().len() as u64,
-            Doing::Asked { .. } => 0,
+    /// Its paths, counted.
+    pub fn paths(&self) -> TrackedPaths {
+        let Doing::Tracked(stages) = &self.work else {
+            return TrackedPaths::default();
+        };
+        let failed = stages.decisions().into_iter();
+        let failed = failed.filter(|decision| decision.verdict == Verdict::Failed);
+        let mut paths = TrackedPaths {
+            total: stages.results().len() as u64,
+            failed: failed.count() as u64,
+            ..TrackedPaths::default()
+        };
+        for target in 0..stages.first().homotopy.targets() as usize {
+            let history = stages.history(target, false);
+            paths.retracked += history.retracked;
+            paths.crossings_found += history.crossings_found;
+            paths.crossings_resolved += history.crossings_resolved;
         }
+        paths
     }
 
     /// Crossings of its paths that are left.
     pub fn crossings_left(&self) -> u64 {
-        let Doing::Tracked(stages) = &self.work else {
-            return 0;
-        };
-        let targets = stages.first().homotopy.targets() as usize;
-        let left = |target| {
-            let history = stages.history(target, false);
-            history.crossings_found - history.crossings_resolved
-        };
-        (0..targets).map(left).sum()
+        let paths = self.paths();
+        paths.crossings_found - paths.crossings_resolved
     }
 }
 
@@ -176,6 +246,7 @@ fn stage(
 ) -> Stage {
     Stage {
         id,
+        system: None,
         work,
         homotopy,
         start_points: points.as_start(),

@@ -7,7 +7,7 @@
 
 use super::cascade::{SingularEnd, Superset};
 use super::deflated::{Deflations, Multiple, PureSet};
-use super::job::Job;
+use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::local_dimension::Question;
@@ -17,10 +17,9 @@ use cognate_continuation::work::StageId;
 use cognate_solutions::classification::{Isolation, Verdict, isolation};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{Dimension, Doubt};
-use cognate_systems::transform::slice;
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
-use std::sync::Arc;
 
 /// Highest order of functionals that are asked for.
 const DEPTH: u32 = 12;
@@ -32,7 +31,7 @@ const NEAR: f64 = 1e-7;
 const FAR: f64 = 1e-3;
 
 /// What is known of a singular point.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Suspect {
     end: SingularEnd,
     isolation: Isolation,
@@ -42,7 +41,7 @@ struct Suspect {
 }
 
 /// What the open stage asks.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Asking {
     Nothing,
     Isolation,
@@ -54,7 +53,7 @@ enum Asking {
 }
 
 /// Dimension by dimension.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sieve {
     supersets: VecDeque<Superset>,
     current: Option<Superset>,
@@ -63,7 +62,6 @@ pub(super) struct Sieve {
     /// Sets of higher dimension that are still to be asked.
     sets_left: Vec<usize>,
     dimensions: Vec<Dimension>,
-    deflations: Deflations,
 }
 
 impl Sieve {
@@ -75,7 +73,6 @@ impl Sieve {
             asking: Asking::Nothing,
             sets_left: Vec::new(),
             dimensions: Vec::new(),
-            deflations: Deflations::default(),
         }
     }
 
@@ -87,7 +84,7 @@ impl Sieve {
     /// Learns from the stage that is done, and says which comes next. What is found is added to `sets`.
     pub fn advance(
         &mut self,
-        problem: &Problem,
+        (problem, deflations): (&Problem, &mut Deflations),
         done: Option<&Job>,
         id: StageId,
         sets: &mut Vec<PureSet>,
@@ -97,10 +94,10 @@ impl Sieve {
         }
         loop {
             if self.current.is_some() {
-                if let Some(job) = self.membership(problem, id, sets) {
+                if let Some(job) = self.membership(problem, deflations, id, sets) {
                     return Some(job);
                 }
-                self.settle(problem, sets);
+                self.settle(problem, deflations, sets);
             }
             let superset = self.supersets.pop_front()?;
             self.suspects = superset.singular.iter().map(Suspect::new).collect();
@@ -115,7 +112,7 @@ impl Sieve {
     }
 
     fn isolate(&self, problem: &Problem, dimension: usize, id: StageId) -> Job {
-        let system = slice(&problem.given, dimension, problem.variables());
+        let system = StageSystem::Sliced { dimension };
         let candidate = |suspect: &Suspect| Candidate {
             values: suspect.end.values.clone(),
             target: 0,
@@ -127,11 +124,17 @@ impl Sieve {
         };
         let candidates: Vec<Candidate> = self.suspects.iter().map(candidate).collect();
         let (points, parameters) = (to_stored(&candidates), problem.slices(dimension).concat());
-        Job::isolate(id, &Arc::new(system), parameters, points, &problem.tracking)
+        Job::isolate(id, system, parameters, points, &problem.tracking)
     }
 
     /// Paths on the next set that may hold points about which something is to be learnt.
-    fn membership(&mut self, problem: &Problem, id: StageId, sets: &[PureSet]) -> Option<Job> {
+    fn membership(
+        &mut self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        id: StageId,
+        sets: &[PureSet],
+    ) -> Option<Job> {
         while !self.sets_left.is_empty() {
             let set = self.sets_left.remove(0);
             let asks = |suspect: &Suspect| {
@@ -150,9 +153,10 @@ impl Sieve {
             let homotopy = HomotopyKind::Parameter { start, targets };
             let points = of.doubles();
             self.asking = Asking::Membership { set, suspects };
+            let system = deflations.of_stage(problem, &of.tracked());
             return Some(Job::track(
                 id,
-                &of.tracked,
+                (of.tracked(), &system),
                 homotopy,
                 &points,
                 &problem.tracking,
@@ -189,7 +193,7 @@ impl Sieve {
     }
 
     /// Decides about the points of the current dimension.
-    fn settle(&mut self, problem: &Problem, sets: &mut Vec<PureSet>) {
+    fn settle(&mut self, problem: &Problem, deflations: &mut Deflations, sets: &mut Vec<PureSet>) {
         let Some(superset) = self.current.take() else {
             return;
         };
@@ -215,7 +219,7 @@ impl Sieve {
                         _ => None,
                     };
                     let end = &suspect.end;
-                    match self.deflations.regular_point(problem, dimension, end) {
+                    match deflations.regular_point(problem, dimension, end) {
                         // The tracker called it singular for its condition.
                         Some(point) if point.is_reduced() => match paths {
                             1 => regular.push(point.refined),
@@ -233,14 +237,13 @@ impl Sieve {
             }
         }
         for values in &superset.regular {
-            match self.deflations.reduced_point(problem, dimension, values) {
+            match deflations.reduced_point(problem, dimension, values) {
                 Some(point) => regular.push(point),
                 None => not_deflated += 1,
             }
         }
-        let deflations = &mut self.deflations;
-        sets.extend(deflations.reduced_set(problem, dimension, regular));
-        sets.extend(deflations.multiple_sets(problem, dimension, found));
+        sets.extend(Deflations::reduced_set(dimension, regular));
+        sets.extend(Deflations::multiple_sets(problem, dimension, found));
         let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
         let doubts = [
             (

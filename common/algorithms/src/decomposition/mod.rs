@@ -6,7 +6,7 @@
 //! the slice, tell components apart ([`split`]). (Hauenstein, Sommese, Wampler: Regenerative cascade
 //! homotopies, 2011; Brake, Hauenstein, Liddell: Decomposing solution sets using derivatives, 2016.)
 //!
-//! Stages differ in their systems: [`DecompositionSolve::system`] says which one a stage is tracked on.
+//! Stages differ in their systems, which their openings bring.
 
 mod cascade;
 mod deflated;
@@ -16,28 +16,31 @@ mod options;
 mod problem;
 mod split;
 
-use crate::{Next, Opening};
+use crate::progress::{StageProgress, VerdictCounts};
+use crate::run_locally;
+use crate::{Next, PathAlgorithm, Progress};
 use cascade::Cascade;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
-use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
-use cognate_solutions::witness::{ComponentId, Decomposition, Dimension, Doubt, WitnessSet};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::witness::{
+    ComponentId, Decomposition, Dimension, Doubt, TrackedPaths, WitnessSet,
+};
 use cognate_systems::system::System;
-use deflated::PureSet;
+use deflated::{Deflations, PureSet};
 use job::{Job, Tracking};
 use junk::Sieve;
 pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
+use serde::{Deserialize, Serialize};
 use split::Split;
-use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
 /// Where a decomposition is.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Step {
     /// Equation by equation: points of all dimensions.
     Cascade(Cascade),
@@ -49,109 +52,158 @@ enum Step {
     Done(Box<Decomposition>),
 }
 
-/// A whole decomposition, as a plan that asks for paths and learns from results.
-#[derive(Debug)]
-pub struct DecompositionSolve {
-    problem: Problem,
+/// What is written down of a decomposition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct State {
+    system: Arc<System>,
+    options: DecompositionOptions,
     step: Step,
     job: Option<Job>,
-    /// The system of each stage.
-    systems: Vec<Arc<System>>,
+    /// The stages that were opened.
+    stages: Vec<StageProgress>,
     /// What is known of each dimension, highest first.
     dimensions: Vec<Dimension>,
     /// Sets of one dimension and multiplicity, not yet told apart, and components made of them.
     sets: Vec<PureSet>,
     components: Vec<WitnessSet>,
-    paths: u64,
-    paths_of_loops: u64,
+    paths: TrackedPaths,
+    paths_of_loops: TrackedPaths,
+}
+
+/// A whole decomposition, as a plan that asks for paths and learns from results.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "State", try_from = "State")]
+pub struct DecompositionSolve {
+    state: State,
+    /// Made of the system and the options, and made again where the state is read back.
+    problem: Arc<Problem>,
+    /// Systems that were made of the problem.
+    deflations: Deflations,
+}
+
+impl PartialEq for DecompositionSolve {
+    fn eq(&self, other: &Self) -> bool {
+        self.state == other.state
+    }
+}
+
+impl From<DecompositionSolve> for State {
+    fn from(solve: DecompositionSolve) -> Self {
+        solve.state
+    }
+}
+
+impl TryFrom<State> for DecompositionSolve {
+    type Error = ProblemError;
+
+    fn try_from(state: State) -> Result<Self, ProblemError> {
+        Ok(Self {
+            problem: Arc::new(problem_of(&state.system, &state.options)?),
+            deflations: Deflations::default(),
+            state,
+        })
+    }
+}
+
+fn problem_of(system: &System, options: &DecompositionOptions) -> Result<Problem, ProblemError> {
+    let tracking = Tracking {
+        settings: options.settings.clone(),
+        tolerances: options.tolerances.clone(),
+        max_retries: options.max_retries,
+        seed: options.seed,
+    };
+    Problem::new(system, tracking, options)
 }
 
 impl DecompositionSolve {
     /// The decomposition of a system that has been checked.
     pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
-        let tracking = Tracking {
-            settings: options.settings.clone(),
-            tolerances: options.tolerances.clone(),
-            max_retries: options.max_retries,
-            seed: options.seed,
-        };
-        let problem = Problem::new(system, tracking, options)?;
+        let problem = problem_of(system, options)?;
         Ok(Self {
-            step: Step::Cascade(Cascade::new(&problem)),
-            problem,
-            job: None,
-            systems: Vec::new(),
-            dimensions: Vec::new(),
-            sets: Vec::new(),
-            components: Vec::new(),
-            paths: 0,
-            paths_of_loops: 0,
+            state: State {
+                system: Arc::new(system.clone()),
+                options: options.clone(),
+                step: Step::Cascade(Cascade::new(&problem)),
+                job: None,
+                stages: Vec::new(),
+                dimensions: Vec::new(),
+                sets: Vec::new(),
+                components: Vec::new(),
+                paths: TrackedPaths::default(),
+                paths_of_loops: TrackedPaths::default(),
+            },
+            problem: Arc::new(problem),
+            deflations: Deflations::default(),
         })
     }
 
-    /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
-    pub fn next_stage(&mut self) -> Next {
-        loop {
-            if let Some(job) = &mut self.job {
-                match job.next() {
-                    Next::Open(opening) => {
-                        let system = Arc::clone(&job.system);
-                        self.systems.push(system);
-                        return Next::Open(opening);
-                    }
-                    Next::Wait => return Next::Wait,
-                    Next::Done => {}
-                }
+    /// The same with another limit of repetitions, where nothing is open yet.
+    #[must_use]
+    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
+        self.state.options.max_retries = max_retries;
+        let again = Self::new(&self.state.system, &self.state.options);
+        again.unwrap_or(self)
+    }
+
+    /// The job that comes after the one that is done; `None` where the step has no more work.
+    fn next_job(&mut self) -> Option<Job> {
+        let (state, problem) = (&mut self.state, &*self.problem);
+        let done = state.job.take();
+        let paths = done.as_ref().map_or_else(TrackedPaths::default, Job::paths);
+        let id = StageId(state.stages.len() as u32);
+        let made = (problem, &mut self.deflations);
+        match &mut state.step {
+            Step::Done(_) => None,
+            Step::Cascade(cascade) => {
+                state.paths.add(&paths);
+                cascade.advance(problem, done.as_ref(), id)
             }
-            let done = self.job.take();
-            let id = StageId(self.systems.len() as u32);
-            self.job = match &mut self.step {
-                Step::Done(_) => return Next::Done,
-                Step::Cascade(cascade) => {
-                    self.paths += done.as_ref().map_or(0, Job::paths);
-                    cascade.advance(&self.problem, done.as_ref(), id)
-                }
-                Step::Sieve(sieve) => {
-                    self.paths += done.as_ref().map_or(0, Job::paths);
-                    sieve.advance(&self.problem, done.as_ref(), id, &mut self.sets)
-                }
-                Step::Split(split) => {
-                    self.paths_of_loops += done.as_ref().map_or(0, Job::paths);
-                    split.advance(&self.problem, done.as_ref(), id)
-                }
-            };
-            if self.job.is_none() {
-                self.next_step();
+            Step::Sieve(sieve) => {
+                state.paths.add(&paths);
+                sieve.advance(made, done.as_ref(), id, &mut state.sets)
+            }
+            Step::Split(split) => {
+                state.paths_of_loops.add(&paths);
+                split.advance(made, done.as_ref(), id)
             }
         }
     }
 
     /// Goes on where a step has no more work.
     fn next_step(&mut self) {
-        match &mut self.step {
+        let (state, problem) = (&mut self.state, &*self.problem);
+        match &mut state.step {
             Step::Cascade(cascade) => {
-                self.step = Step::Sieve(Sieve::new(cascade.supersets()));
+                state.step = Step::Sieve(Sieve::new(cascade.supersets(problem)));
                 return;
             }
-            Step::Sieve(sieve) => self.dimensions = sieve.dimensions(),
+            Step::Sieve(sieve) => {
+                let asked = |number: usize| problem.asked.contains(&(number as u32));
+                state.dimensions = sieve.dimensions();
+                state.dimensions.retain(|d| asked(d.number as usize));
+                state.sets.retain(|set| asked(set.dimension));
+            }
             Step::Split(split) => {
-                let (found, dimension) = split.components(&self.problem);
-                self.components.extend(found);
-                let of = self.dimensions.iter_mut();
+                let (found, dimension) = split.components(problem);
+                state.components.extend(found);
+                let of = state.dimensions.iter_mut();
                 if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
                     known.doubts.extend(dimension.doubts);
                 }
             }
             Step::Done(_) => {}
         }
-        self.step = match self.sets.is_empty() {
-            false => Step::Split(Split::new(&self.problem, self.sets.remove(0))),
+        self.state.step = match self.state.sets.is_empty() {
+            false => {
+                let set = self.state.sets.remove(0);
+                Step::Split(Split::new(set))
+            }
             true => Step::Done(Box::new(self.summary())),
         };
     }
 
     fn summary(&mut self) -> Decomposition {
-        let mut components = std::mem::take(&mut self.components);
+        let mut components = std::mem::take(&mut self.state.components);
         let key = |set: &WitnessSet| {
             let mut points: Vec<Vec<i64>> = set.points.iter().map(|p| grid(p)).collect();
             points.sort();
@@ -161,7 +213,7 @@ impl DecompositionSolve {
             let by = std::cmp::Reverse((set.dimension(), set.degree, set.multiplicity.scheme));
             (by, key(set))
         });
-        let mut dimensions = std::mem::take(&mut self.dimensions);
+        let mut dimensions = std::mem::take(&mut self.state.dimensions);
         for dimension in &mut dimensions {
             let own = components.iter_mut();
             let own = own.filter(|set| set.dimension() == dimension.number);
@@ -180,31 +232,86 @@ impl DecompositionSolve {
             };
         }
         Decomposition {
-            ambient: self.problem.variables() as u32,
+            variables: self.state.system.variables.clone(),
+            asked: [*self.problem.asked.start(), *self.problem.asked.end()],
             components,
             dimensions,
-            paths: self.paths,
-            paths_of_loops: self.paths_of_loops,
+            paths: self.state.paths,
+            paths_of_loops: self.state.paths_of_loops,
         }
     }
 
-    /// Takes the results of one stage, complete and in item order.
-    pub fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
-        let job = self.job.as_mut().expect("only an open stage is absorbed");
-        job.absorb(stage, results);
-    }
-
-    /// The system that an opened stage is tracked on.
-    pub fn system(&self, stage: StageId) -> Option<&Arc<System>> {
-        self.systems.get(stage.0 as usize)
-    }
-
-    /// What was found, when `next_stage` has said `Done`.
+    /// What was found, when `next` has said `Done`.
     pub fn decomposition(&self) -> Option<&Decomposition> {
-        match &self.step {
+        match &self.state.step {
             Step::Done(found) => Some(found),
-            _ => None,
+            Step::Cascade(_) | Step::Sieve(_) | Step::Split(_) => None,
         }
+    }
+}
+
+impl PathAlgorithm for DecompositionSolve {
+    fn next(&mut self) -> Next {
+        loop {
+            if let Some(job) = &mut self.state.job {
+                match job.next() {
+                    Next::Open(mut opening) => {
+                        let system = self.deflations.of_stage(&self.problem, &job.system);
+                        opening.system = Some(system);
+                        let stage = &opening.stage;
+                        self.state.stages.push(StageProgress {
+                            id: stage.id,
+                            work: stage.work,
+                            attempt: stage.attempt,
+                            items: stage.items().unwrap_or_default(),
+                            absorbed: false,
+                        });
+                        return Next::Open(opening);
+                    }
+                    Next::Wait => return Next::Wait,
+                    Next::Done => {}
+                }
+            }
+            if let Step::Done(_) = self.state.step {
+                return Next::Done;
+            }
+            self.state.job = self.next_job();
+            if self.state.job.is_none() {
+                self.next_step();
+            }
+        }
+    }
+
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+        let job = self.state.job.as_mut();
+        job.expect("only an open stage is absorbed")
+            .absorb(stage, results);
+        if let Some(known) = self.state.stages.iter_mut().find(|known| known.id == stage) {
+            known.absorbed = true;
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            description: match &self.state.step {
+                Step::Cascade(cascade) => cascade.description(&self.problem),
+                Step::Sieve(_) => "telling junk from witness points".into(),
+                Step::Split(_) => "telling components apart".into(),
+                Step::Done(_) => "done".into(),
+            },
+            stages: self.state.stages.clone(),
+            paths: VerdictCounts::default(),
+            done: matches!(self.state.step, Step::Done(_)),
+        }
+    }
+
+    fn snapshot(&self) -> Vec<u8> {
+        postcard::to_stdvec(&self.state).expect("memory takes every byte")
+    }
+
+    /// None: its answer is [`DecompositionSolve::decomposition`].
+    fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
+        Vec::new()
     }
 }
 
@@ -215,28 +322,6 @@ fn grid(point: &[num_complex::Complex64]) -> Vec<i64> {
         .iter()
         .flat_map(|z| [place(z.re), place(z.im)])
         .collect()
-}
-
-/// Drives a decomposition until it is done. `track` does all items of a stage on its system, in item order;
-/// its first error ends the run.
-pub fn drive<E>(
-    solve: &mut DecompositionSolve,
-    mut track: impl FnMut(&System, &Opening) -> Result<Vec<PathResult>, E>,
-) -> Result<(), E> {
-    let mut open: VecDeque<Box<Opening>> = VecDeque::new();
-    loop {
-        match solve.next_stage() {
-            Next::Open(opening) => open.push_back(opening),
-            Next::Wait => {
-                let opening = open.pop_front();
-                let opening = opening.expect("it waits only for a stage that it opened");
-                let system = solve.system(opening.stage.id);
-                let results = track(system.expect("an opened stage has one"), &opening)?;
-                solve.absorb(opening.stage.id, &mut results.into_iter());
-            }
-            Next::Done => return Ok(()),
-        }
-    }
 }
 
 /// Decomposes in one thread, with lanes of this width.
@@ -257,14 +342,8 @@ pub fn run_locally(
     mut solve: DecompositionSolve,
     width: usize,
 ) -> Result<Decomposition, PrepareError> {
-    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-    drive(&mut solve, |system, opening| {
-        let made = opening.objects.iter();
-        objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
-        let find = |digest: Digest| objects.get(&digest).cloned();
-        let prepared = PreparedWork::new(system, &opening.stage, &find)?;
-        Ok::<_, PrepareError>(prepared.run(0..prepared.items(), width))
-    })?;
+    let system = Arc::clone(&solve.state.system);
+    run_locally::run_locally(&system, &mut solve, &|_| None, width)?;
     let found = solve.decomposition().cloned();
     Ok(found.expect("it says what it found when it is done"))
 }
@@ -272,8 +351,13 @@ pub fn run_locally(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::AnyAlgorithm;
+    use crate::run_locally::drive;
+    use cognate_continuation::prepared_work::PreparedWork;
+    use cognate_continuation::start_points::{Digest, StoredPoints};
     use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
     use cognate_systems::formats;
+    use std::collections::HashMap;
 
     /// Decomposes with a tracker that spoils the results of each stage of the cascade.
     fn decompose(text: &str, spoil: impl Fn(&mut Vec<PathResult>)) -> Decomposition {
@@ -285,11 +369,12 @@ mod tests {
             ..DecompositionOptions::default()
         };
         let mut solve = DecompositionSolve::new(&system, &options).unwrap();
-        let mut objects = HashMap::new();
-        let done: Result<(), PrepareError> = drive(&mut solve, |system, opening| {
+        let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+        let done: Result<(), PrepareError> = drive(&mut solve, &mut |opening| {
             let made = opening.objects.iter();
             objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let find = |digest: Digest| objects.get(&digest).cloned();
+            let system = opening.system.as_deref().unwrap_or(&system);
             let prepared = PreparedWork::new(system, &opening.stage, &find)?;
             let mut results = prepared.run(0..prepared.items(), 8);
             spoil(&mut results);
@@ -352,5 +437,39 @@ mod tests {
         };
         let found = decompose(CURVES, moved);
         assert!(!found.settled(), "{found:?}");
+    }
+
+    #[test]
+    fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
+        let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; \
+                    f = (x - y)^2*(y - x^2 + 2);\nEND;\n";
+        let system = formats::read("test", text.as_bytes()).unwrap().system;
+        let solve = || DecompositionSolve::new(&system, &DecompositionOptions::default()).unwrap();
+        let lived = run_locally(solve(), 8).unwrap();
+        let mut solve = AnyAlgorithm::Decomposition(Box::new(solve()));
+        let mut open: Option<Box<crate::Opening>> = None;
+        let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+        loop {
+            match solve.next() {
+                Next::Open(opening) => open = Some(opening),
+                Next::Wait => {
+                    let opening = open.take().unwrap();
+                    let snapshot = solve.snapshot();
+                    let again = AnyAlgorithm::restore(&snapshot).unwrap();
+                    assert!(again == solve && again.snapshot() == snapshot);
+                    solve = again;
+                    let made = opening.objects.iter();
+                    objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+                    let find = |digest: Digest| objects.get(&digest).cloned();
+                    let system = opening.system.as_deref().unwrap();
+                    let prepared = PreparedWork::new(system, &opening.stage, &find).unwrap();
+                    let results = prepared.run(0..prepared.items(), 8);
+                    solve.absorb(opening.stage.id, &mut results.into_iter());
+                }
+                Next::Done => break,
+            }
+        }
+        assert_eq!(solve.decomposition(), Some(&lived));
+        assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
     }
 }

@@ -3,12 +3,20 @@
 use crate::retried_stage::MAX_RETRIES;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_solutions::classification::Tolerances;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// Everything that decides how a system is decomposed, besides the system.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DecompositionOptions {
     /// Seed of everything random.
     pub seed: u64,
+    /// Values of the parameters, where the system has some.
+    pub parameters: Vec<Complex64>,
+    /// Dimensions of the components that are wanted; `None`: all. Sets of higher dimension are found then, to
+    /// tell junk, and not split.
+    pub dimensions: Option<RangeInclusive<u32>>,
     /// How paths are tracked.
     pub settings: Settings,
     /// How verdicts are reached.
@@ -26,6 +34,8 @@ impl Default for DecompositionOptions {
     fn default() -> Self {
         Self {
             seed: 0,
+            parameters: Vec::new(),
+            dimensions: None,
             settings: Settings::default(),
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,

@@ -6,12 +6,17 @@ use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
-use cognate_systems::transform::{affine_chart, combine, equilibrate, slice};
+use cognate_systems::transform::{
+    FixError, affine_chart, combine, equilibrate, fix_parameters, slice,
+};
 use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
+use std::borrow::Cow;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Singular values below this part of the largest are 0 at a random point.
@@ -20,9 +25,29 @@ const RANK_AT_RANDOM: f64 = 1e-9;
 /// Why a system cannot be decomposed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProblemError {
-    /// Its parameters have no values.
-    #[error("the system has parameters; a decomposition needs their values")]
-    Parameters,
+    /// Its parameters cannot have the values that are given.
+    #[error("{0}")]
+    Parameters(#[from] FixError),
+    /// A value of a parameter is no number.
+    #[error("parameter {0} has a value that is not finite")]
+    NotFinite(String),
+    /// Nothing is cut out.
+    #[error("every equation is identically 0: every point is a solution")]
+    Everything,
+    /// No set has such a dimension.
+    #[error(
+        "dimensions {lowest} to {highest} are asked; components have dimensions {least} to {most}"
+    )]
+    Dimensions {
+        /// The lowest that is asked.
+        lowest: u32,
+        /// The highest that is asked.
+        highest: u32,
+        /// The lowest that a component can have, by the rank of the Jacobian at a random point.
+        least: u32,
+        /// The highest that a component can have.
+        most: u32,
+    },
     /// It has no degrees.
     #[error("{0}")]
     Degrees(String),
@@ -48,6 +73,10 @@ pub(super) struct Problem {
     /// Rank of the Jacobian at a random point: no component has a smaller dimension than the variables
     /// that it leaves.
     pub levels: usize,
+    /// Levels down to the lowest dimension that is asked.
+    pub asked_levels: usize,
+    /// Dimensions whose components are wanted.
+    pub asked: RangeInclusive<u32>,
     pub tracking: Tracking,
     pub idle_loops: u32,
     pub confirm_junk: bool,
@@ -63,13 +92,11 @@ impl Problem {
         tracking: Tracking,
         options: &DecompositionOptions,
     ) -> Result<Self, ProblemError> {
-        if !system.parameters.is_empty() {
-            return Err(ProblemError::Parameters);
-        }
+        let system = with_values(system, &options.parameters)?;
         let seed = tracking.seed;
         let system = System {
-            scaling: scaling_of(system, &[]),
-            ..system.clone()
+            scaling: scaling_of(&system, &[]),
+            ..system.into_owned()
         };
         let scaling = system.scaling.clone();
         let given = equilibrate(&affine_chart(&system.in_unknowns(), seed), seed);
@@ -77,6 +104,22 @@ impl Problem {
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
         let levels = rank_at_random(&plain, variables, seed).min(given.equation_count());
+        if levels == 0 {
+            return Err(ProblemError::Everything);
+        }
+        let (least, most) = ((variables - levels) as u32, variables as u32 - 1);
+        let asked = options.dimensions.clone().unwrap_or(least..=most);
+        let (lowest, highest) = (*asked.start(), *asked.end());
+        if lowest > highest || highest < least || highest > most {
+            return Err(ProblemError::Dimensions {
+                lowest,
+                highest,
+                least,
+                most,
+            });
+        }
+        let asked = lowest.max(least)..=highest;
+        let asked_levels = variables - *asked.start() as usize;
         let mut staircase = combine(&given, &of_given, levels, seed);
         for v in levels..variables {
             let row = staircase.expressions.variable(v as u32);
@@ -93,6 +136,8 @@ impl Problem {
             staircase: Arc::new(staircase),
             row_degrees,
             levels,
+            asked_levels,
+            asked,
             tracking,
             idle_loops: options.idle_loops,
             confirm_junk: options.confirm_junk,
@@ -196,6 +241,24 @@ pub(super) const SINGULAR: Known = Known {
     distance: 1e-5,
     other_distance: 1e-4,
 };
+
+/// The system with these values of its parameters.
+fn with_values<'a>(
+    system: &'a System,
+    values: &[Complex64],
+) -> Result<Cow<'a, System>, ProblemError> {
+    if system.parameters.is_empty() && values.is_empty() {
+        return Ok(Cow::Borrowed(system));
+    }
+    let mut exact = Vec::with_capacity(values.len());
+    for (place, value) in values.iter().enumerate() {
+        let parts = Rational::from_f64(value.re).zip(Rational::from_f64(value.im));
+        let name = || system.parameters.get(place).cloned();
+        let (re, im) = parts.ok_or_else(|| ProblemError::NotFinite(name().unwrap_or_default()))?;
+        exact.push(ComplexRational::new(re, im));
+    }
+    Ok(Cow::Owned(fix_parameters(system, &exact)?))
+}
 
 fn rank_at_random(equations: &SlicedEquations, variables: usize, seed: u64) -> usize {
     let mut random = RandomStream::new(seed, Purpose::Probe, u64::MAX);

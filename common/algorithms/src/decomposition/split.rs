@@ -6,11 +6,12 @@
 //! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
 //! point comes to one of the same component.
 
-use super::deflated::PureSet;
+use super::deflated::{Deflations, PureSet};
 use super::job::Job;
 use super::problem::Problem;
-use cognate_continuation::bend::{Bend, Number, length, rounded};
+use cognate_continuation::bend::{Bend, Number, RefinedPoint, length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_systems::slices::form;
 use cognate_continuation::work::StageId;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -20,6 +21,7 @@ use cognate_solutions::witness::{
     ComponentId, Dimension, Doubt, Evidence, Irreducible, Trace, WitnessSet,
 };
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A sum is 0 within this many times its error,
@@ -40,7 +42,7 @@ const BACK: f64 = 1e-6;
 const LEGS: usize = 3;
 
 /// Points that belong together.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Class {
     points: Vec<usize>,
     /// What it rests on, once it is a component.
@@ -48,10 +50,11 @@ struct Class {
 }
 
 /// One set on its way to components.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Split {
     set: PureSet,
-    bends: Vec<Bend>,
+    /// How the points move; `None` while that is asked.
+    bends: Option<Vec<Bend>>,
     classes: Vec<Class>,
     smallest_wrong: Option<f64>,
     loops: u32,
@@ -63,24 +66,14 @@ pub(super) struct Split {
 }
 
 impl Split {
-    pub fn new(problem: &Problem, set: PureSet) -> Self {
-        let mut random = RandomStream::new(problem.seed(), Purpose::Detour, set.dimension as u64);
-        let direction: Vec<Complex64> = (0..set.dimension).map(|_| random.unit()).collect();
-        let bends = match set.dimension {
-            0 => Vec::new(),
-            _ => set
-                .points
-                .iter()
-                .map(|point| set.equations.bend(point, &direction))
-                .collect(),
-        };
+    pub fn new(set: PureSet) -> Self {
         let class = |k| Class {
             points: vec![k],
             closed: None,
         };
         Self {
             classes: (0..set.points.len()).map(class).collect(),
-            bends,
+            bends: None,
             set,
             smallest_wrong: None,
             loops: 0,
@@ -92,11 +85,23 @@ impl Split {
     }
 
     /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(&mut self, problem: &Problem, done: Option<&Job>, id: StageId) -> Option<Job> {
+    pub fn advance(
+        &mut self,
+        (problem, deflations): (&Problem, &mut Deflations),
+        done: Option<&Job>,
+        id: StageId,
+    ) -> Option<Job> {
         if self.set.dimension == 0 {
             return None;
         }
         let own = problem.variables();
+        let Some(_) = &self.bends else {
+            let Some(job) = done else {
+                return Some(self.ask_bends(problem, id));
+            };
+            self.bends = Some(self.read_bends(job.results()));
+            return self.next_loop(problem, deflations, id);
+        };
         let mut points = self.travelling();
         if let Some(job) = done {
             let arrived = arrivals(job);
@@ -107,9 +112,50 @@ impl Split {
                 (None, _) => self.give_up_loop(),
             }
             if self.leg > 0 {
-                return Some(self.track(problem, &points, id));
+                return Some(self.track(problem, deflations, &points, id));
             }
         }
+        self.next_loop(problem, deflations, id)
+    }
+
+    /// The stage that asks how the points move when the slices do.
+    fn ask_bends(&self, problem: &Problem, id: StageId) -> Job {
+        let dimension = self.set.dimension;
+        let mut random = RandomStream::new(problem.seed(), Purpose::Detour, dimension as u64);
+        let slices = problem.slices(dimension);
+        let start = slices.concat();
+        let mut moved = slices;
+        for row in &mut moved {
+            row[0] += random.unit();
+        }
+        let ends = [start, moved.concat()];
+        let points = self.set.doubles();
+        Job::bend(id, self.set.whole(), ends, &points, &problem.tracking)
+    }
+
+    /// What workers found; where one found nothing, any error may be in the derivatives.
+    fn read_bends(&self, results: &[PathResult]) -> Vec<Bend> {
+        let found = |(result, point): (&PathResult, &RefinedPoint)| {
+            let length = point.point.len();
+            let known = result.bend.as_deref();
+            let known = known.filter(|bend| bend.acceleration.len() == length);
+            known.cloned().unwrap_or_else(|| Bend {
+                velocity: vec![Number::zero(()); length],
+                acceleration: vec![Number::zero(()); length],
+                error: f64::INFINITY,
+            })
+        };
+        results.iter().zip(&self.set.points).map(found).collect()
+    }
+
+    /// The next loop, where there are classes that it may bring together.
+    fn next_loop(
+        &mut self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        id: StageId,
+    ) -> Option<Job> {
+        let own = problem.variables();
         self.close(own);
         let open = self.open().count();
         let more = self.idle < problem.idle_loops && self.loops < MOST_LOOPS;
@@ -119,7 +165,12 @@ impl Split {
         self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
         self.travellers.sort_unstable();
         let points = self.travelling();
-        Some(self.track(problem, &points, id))
+        Some(self.track(problem, deflations, &points, id))
+    }
+
+    /// How the points move; empty where that was not asked.
+    fn bends(&self) -> &[Bend] {
+        self.bends.as_deref().unwrap_or(&[])
     }
 
     fn open(&self) -> impl Iterator<Item = &Class> {
@@ -144,12 +195,20 @@ impl Split {
         rows.flat_map(|row| form(seed, row, number, n)).collect()
     }
 
-    fn track(&self, problem: &Problem, points: &[Vec<Complex64>], id: StageId) -> Job {
+    fn track(
+        &self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        points: &[Vec<Complex64>],
+        id: StageId,
+    ) -> Job {
         let homotopy = HomotopyKind::Parameter {
             start: self.corner(problem, self.leg),
             targets: vec![self.corner(problem, self.leg + 1)],
         };
-        Job::track(id, &self.set.tracked, homotopy, points, &problem.tracking)
+        let system = deflations.of_stage(problem, &self.set.tracked());
+        let system = (self.set.tracked(), &*system);
+        Job::track(id, system, homotopy, points, &problem.tracking)
     }
 
     fn give_up_loop(&mut self) {
@@ -219,7 +278,7 @@ impl Split {
         let mut sum = vec![Number::zero(()); own];
         let (mut lengths, mut errors) = (0.0, 0.0);
         for k in points {
-            let bend = &self.bends[k];
+            let bend = &self.bends()[k];
             let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
             lengths += length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
             errors += bend.error;
@@ -229,8 +288,8 @@ impl Split {
         }
         let sum: Vec<Complex64> = sum.iter().map(rounded).collect();
         Trace {
-            deviation: length(&sum) / lengths,
-            noise: (errors / lengths).max(LEAST_NOISE),
+            deviation: bounded(length(&sum) / lengths),
+            noise: bounded(errors / lengths).max(LEAST_NOISE),
             precision_bits: 106,
         }
     }
@@ -318,7 +377,7 @@ impl Split {
         let mut sum = vec![Complex64::default(); own];
         let mut lengths = 0.0;
         for &k in points {
-            let bend = &self.bends[k];
+            let bend = &self.bends()[k];
             let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
             let t = of(&bend.acceleration);
             lengths += length(&t) + length(&of(&bend.velocity));
@@ -420,10 +479,22 @@ impl Split {
                 trace,
                 smallest_wrong_union: self.smallest_wrong,
                 loops: self.loops,
-                worst_condition: points.iter().map(condition).fold(0.0, f64::max),
+                worst_condition: points
+                    .iter()
+                    .map(condition)
+                    .fold(0.0, f64::max)
+                    .min(f64::MAX),
                 doubts,
             },
         }
+    }
+}
+
+/// The number, or the largest where it is none.
+fn bounded(x: f64) -> f64 {
+    match x.is_finite() {
+        true => x,
+        false => f64::MAX,
     }
 }
 

@@ -281,6 +281,7 @@ impl MonodromySolve {
     fn stage(&self, from: &[Complex64], to: &[Complex64], seed: u64, points: StartPoints) -> Stage {
         Stage {
             id: self.next_id(),
+            system: None,
             work: Work::Track,
             homotopy: match &self.curve {
                 None => HomotopyKind::Parameter {
@@ -356,6 +357,7 @@ impl MonodromySolve {
                 attempt,
                 ..stage
             },
+            system: None,
             objects,
         }
     }
@@ -635,6 +637,7 @@ impl MonodromySolve {
         let stage = self.stage(here, here, edge_seed(self.seed, FIRST), points.as_start());
         Opening {
             stage,
+            system: None,
             objects: vec![points],
         }
     }

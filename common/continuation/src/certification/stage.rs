@@ -131,6 +131,7 @@ mod tests {
         });
         let stage = Stage {
             id: StageId(4),
+            system: None,
             work: Work::Certify,
             homotopy: HomotopyKind::Parameter {
                 start: real(&[1.0]),

@@ -85,6 +85,7 @@ mod tests {
     fn keys(settings: Settings, attempt: u16) -> Vec<(u64, BoundaryKey)> {
         let stage = Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::StraightLine {
                 parameters: Vec::new(),

@@ -865,6 +865,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 .filter(|_| matches!(outcome, PathOutcome::Singular | PathOutcome::Diverging))
                 .map(Box::new),
             mixed_cells: None,
+            bend: None,
         };
         self.ended.results.push((path.item, result));
     }

@@ -288,6 +288,7 @@ mod tests {
         });
         let stage = Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::Parameter {
                 start: vec![number(4.0)],

@@ -8,13 +8,27 @@
 
 use super::Real;
 use crate::rational::Rational;
+use serde::{Deserialize, Serialize};
 
 /// `hi + lo` with `hi` the sum rounded to a double, in the width of `B`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[repr(C)]
 pub struct DoubleDouble<B> {
     hi: B,
     lo: B,
+}
+
+impl DoubleDouble<f64> {
+    /// The two doubles, whose sum it is, the larger first.
+    pub fn parts(&self) -> [f64; 2] {
+        [self.hi, self.lo]
+    }
+
+    /// The number of these parts, as [`Self::parts`] gave them; `None` where they are not finite or the second
+    /// is no rounding error of the first.
+    pub fn from_parts([hi, lo]: [f64; 2]) -> Option<Self> {
+        (hi.is_finite() && lo.is_finite() && hi + lo == hi).then_some(Self { hi, lo })
+    }
 }
 
 /// `a + b = sum + error`, exactly (TwoSum).

@@ -19,6 +19,7 @@ pub use jet::Jet;
 pub use multiple_precision::MultiplePrecision;
 
 use crate::rational::{ComplexRational, Rational};
+use serde::{Deserialize, Serialize};
 
 /// One truth value per lane.
 pub trait Mask: Copy + Send + Sync + std::fmt::Debug + PartialEq + 'static {
@@ -132,7 +133,7 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
 }
 
 /// A complex number of any rung. At the edges it is `num_complex::Complex64`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Complex<R> {
     /// Real part.

@@ -5,6 +5,7 @@ use super::{digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::v1;
+use cognate_continuation::bend::{Bend, Number};
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{
@@ -22,6 +23,7 @@ use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_numeric::exact_text::read_exact;
 use cognate_numeric::rational::ComplexRational;
+use cognate_numeric::scalar::DoubleDouble;
 use cognate_systems::formats::limits as sizes;
 
 /// A stage.
@@ -41,6 +43,7 @@ pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
             Work::Sharpen { digits: m.digits }
         }
         Ok(v1::Work::CountMixedCells) => Work::CountMixedCells,
+        Ok(v1::Work::Bend) => Work::Bend,
         Ok(v1::Work::Unspecified) | Err(_) => {
             return Err(ProtocolError::invalid(
                 "work",
@@ -51,6 +54,10 @@ pub fn stage(m: &v1::Stage) -> Result<Stage, ProtocolError> {
     };
     let stage = Stage {
         id: StageId(m.id),
+        system: match m.system.is_empty() {
+            true => None,
+            false => Some(digest("system", &m.system)?),
+        },
         work,
         homotopy: homotopy(required("homotopy", m.homotopy.as_ref())?)
             .map_err(|e| e.within("homotopy"))?,
@@ -382,6 +389,45 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             .map(branch_count)
             .transpose()
             .map_err(|e| e.within("mixed_cells"))?,
+        bend: m
+            .bend
+            .as_ref()
+            .map(bend)
+            .transpose()
+            .map_err(|e| e.within("bend"))?,
+    })
+}
+
+fn bend(m: &v1::Bend) -> Result<Box<Bend>, ProtocolError> {
+    let bend = Bend {
+        velocity: numbers("velocity", &m.velocity)?,
+        acceleration: numbers("acceleration", &m.acceleration)?,
+        error: m.error,
+    };
+    if !bend.is_sound() {
+        let expected = "as many numbers as in velocity, and an error of at least 0";
+        return Err(ProtocolError::invalid(
+            "acceleration",
+            format!("{} doubles, error {}", m.acceleration.len(), m.error),
+            expected,
+        ));
+    }
+    Ok(Box::new(bend))
+}
+
+/// Numbers of two doubles each for real and imaginary part.
+fn numbers(field: &str, parts: &[f64]) -> Result<Vec<Number>, ProtocolError> {
+    within_limit(field, parts.len(), limits::BEND_DOUBLES)?;
+    let (numbers, rest) = parts.as_chunks::<4>();
+    let number = |&[a, b, c, d]: &[f64; 4]| {
+        let re = DoubleDouble::from_parts([a, b])?;
+        let im = DoubleDouble::from_parts([c, d])?;
+        Some(Number { re, im })
+    };
+    let numbers: Option<Vec<Number>> = numbers.iter().map(number).collect();
+    numbers.filter(|_| rest.is_empty()).ok_or_else(|| {
+        let expected = "four doubles a number, each second one a rounding error of the one before";
+        ProtocolError::invalid(field, format!("{} doubles", parts.len()), expected)
     })
 }
 

@@ -4,7 +4,8 @@ use super::{digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::submission::{
-    Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+    Decompose, Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions,
+    Submission,
 };
 use crate::v1;
 use cognate_continuation::sharpening::MOST_DIGITS;
@@ -17,6 +18,9 @@ use cognate_systems::scaling::Scaling;
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use num_complex::Complex64;
 use std::collections::BTreeMap;
+
+/// Most loops in a row without anything new in a decomposition.
+const MOST_IDLE_LOOPS: u32 = 200;
 
 /// What a client asks for.
 pub fn submission(message: v1::Problem) -> Result<Submission, ProtocolError> {
@@ -159,6 +163,36 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             true => None,
             false => Some(equation_sets("sets", &m.sets)?),
         },
+        decompose: m.decompose.map(decompose).transpose()?,
+    })
+}
+
+fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
+    let dimensions = match (m.lowest_dimension, m.highest_dimension) {
+        (None, None) => None,
+        (Some(lowest), Some(highest)) if lowest <= highest => Some([lowest, highest]),
+        (Some(lowest), highest) => {
+            return Err(ProtocolError::invalid(
+                "decompose.highest_dimension",
+                highest.map_or("nothing".to_owned(), |n| n.to_string()),
+                format!("a number from {lowest}, the lowest dimension"),
+            ));
+        }
+        (None, Some(_)) => return Err(ProtocolError::missing("decompose.lowest_dimension")),
+    };
+    if let Some(loops) = m.idle_loops
+        && !(1..=MOST_IDLE_LOOPS).contains(&loops)
+    {
+        let expected = format!("1 to {MOST_IDLE_LOOPS}");
+        return Err(ProtocolError::invalid(
+            "decompose.idle_loops",
+            loops,
+            expected,
+        ));
+    }
+    Ok(Decompose {
+        dimensions,
+        idle_loops: m.idle_loops,
     })
 }
 

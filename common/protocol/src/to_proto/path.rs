@@ -4,6 +4,7 @@ use super::problem::equation_sets;
 use super::{complex, complexes, digest, pairs};
 use crate::submission::SettingsChoice;
 use crate::v1;
+use cognate_continuation::bend::Number;
 use cognate_continuation::certification::{Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::{MovedSlice, PathResult};
@@ -25,8 +26,10 @@ pub fn stage(stage: &Stage) -> v1::Stage {
             Work::LocalDimension => v1::Work::LocalDimension,
             Work::Sharpen { .. } => v1::Work::Sharpen,
             Work::CountMixedCells => v1::Work::CountMixedCells,
+            Work::Bend => v1::Work::Bend,
         }
         .into(),
+        system: stage.system.map(digest).unwrap_or_default(),
         homotopy: Some(homotopy(&stage.homotopy)),
         start_points: Some(start_points(&stage.start_points)),
         settings: Some(super::problem::settings(&SettingsChoice::all(
@@ -36,7 +39,11 @@ pub fn stage(stage: &Stage) -> v1::Stage {
         attempt: stage.attempt.into(),
         digits: match stage.work {
             Work::Sharpen { digits } => digits,
-            Work::Track | Work::Certify | Work::LocalDimension | Work::CountMixedCells => 0,
+            Work::Track
+            | Work::Certify
+            | Work::LocalDimension
+            | Work::CountMixedCells
+            | Work::Bend => 0,
         },
     }
 }
@@ -193,7 +200,18 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
         mixed_cells: r.mixed_cells.map(|count| v1::BranchCount {
             outcome: Some(branch_count(count)),
         }),
+        bend: r.bend.as_ref().map(|bend| v1::Bend {
+            velocity: parts(&bend.velocity),
+            acceleration: parts(&bend.acceleration),
+            error: bend.error,
+        }),
     }
+}
+
+/// The four doubles of each number.
+fn parts(numbers: &[Number]) -> Vec<f64> {
+    let parts = numbers.iter().flat_map(|z| [z.re.parts(), z.im.parts()]);
+    parts.flatten().collect()
 }
 
 fn branch_count(count: BranchCount) -> v1::branch_count::Outcome {

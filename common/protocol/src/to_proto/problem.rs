@@ -96,6 +96,11 @@ pub fn options(options: &Options) -> v1::Options {
             .sets
             .as_ref()
             .map_or(Vec::new(), |sets| equation_sets(sets)),
+        decompose: options.decompose.map(|wanted| v1::Decompose {
+            lowest_dimension: wanted.dimensions.map(|[lowest, _]| lowest),
+            highest_dimension: wanted.dimensions.map(|[_, highest]| highest),
+            idle_loops: wanted.idle_loops,
+        }),
     }
 }
 

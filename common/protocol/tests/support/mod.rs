@@ -64,7 +64,7 @@ impl Draw {
         Complex64::new(self.number(), self.number())
     }
 
-    fn digest(&mut self) -> Digest {
+    pub fn digest(&mut self) -> Digest {
         Digest(std::array::from_fn(|_| self.0.bits() as u8))
     }
 
@@ -250,6 +250,7 @@ impl Draw {
             deflate: length > 2,
             warnings: Vec::new(),
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
+            decompose: None,
         }
     }
 
@@ -336,6 +337,7 @@ impl Draw {
             |draw: &mut Self| -> Vec<Complex64> { (0..length).map(|_| draw.complex()).collect() };
         Stage {
             id: StageId(self.index(5)),
+            system: None,
             work: Work::Track,
             homotopy: match self.below(5) {
                 3 => HomotopyKind::Toric,
@@ -469,6 +471,7 @@ impl Draw {
                 })
             }),
             mixed_cells: None,
+            bend: None,
         }
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// What the paths to one dimension came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dimension {
-    /// Which.
+    /// The dimension.
     pub number: u32,
     /// Paths that ended at solutions of the given equations.
     pub superset: u64,
@@ -26,19 +26,47 @@ pub struct Dimension {
     pub doubts: Vec<Doubt>,
 }
 
+/// Paths that were tracked, counted without repetitions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TrackedPaths {
+    /// All of them.
+    pub total: u64,
+    /// ... of which failed.
+    pub failed: u64,
+    /// How often one was tracked again.
+    pub retracked: u64,
+    /// Groups of paths that met.
+    pub crossings_found: u64,
+    /// ... of which came apart when they were tracked again.
+    pub crossings_resolved: u64,
+}
+
+impl TrackedPaths {
+    /// Counts others with these.
+    pub fn add(&mut self, other: &Self) {
+        self.total += other.total;
+        self.failed += other.failed;
+        self.retracked += other.retracked;
+        self.crossings_found += other.crossings_found;
+        self.crossings_resolved += other.crossings_resolved;
+    }
+}
+
 /// All irreducible components of a system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decomposition {
-    /// Number of variables.
-    pub ambient: u32,
+    /// Names of the variables, in the order of the coordinates.
+    pub variables: Vec<String>,
+    /// Lowest and highest dimension of the components that are wanted.
+    pub asked: [u32; 2],
     /// The components: by dimension, degree and multiplicity, largest first.
     pub components: Vec<WitnessSet>,
     /// The dimensions that were asked, highest first.
     pub dimensions: Vec<Dimension>,
     /// Paths that were tracked to the superset.
-    pub paths: u64,
+    pub paths: TrackedPaths,
     /// ... and to tell its points apart.
-    pub paths_of_loops: u64,
+    pub paths_of_loops: TrackedPaths,
 }
 
 impl Decomposition {

@@ -1,6 +1,7 @@
 //! Evidence: what the claim rests on that a witness set is one component.
 
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Second derivatives of all witness points along a moving slice, summed: 0 over a component.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,6 +52,65 @@ pub enum Doubt {
         /// How many loops.
         loops: u64,
     },
+}
+
+impl fmt::Display for Doubt {
+    /// The doubt in words, as a part of a sentence.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let counted = |n: &u64, noun: &str| match n {
+            1 => format!("1 {noun}"),
+            n => format!("{n} {noun}s"),
+        };
+        match self {
+            Self::PointsMissing => {
+                write!(
+                    f,
+                    "second derivatives do not sum to 0: witness points are missing"
+                )
+            }
+            Self::Open { classes: 1 } => write!(
+                f,
+                "whether it is one component is not clear: a wrong union of points has nearly as small a sum"
+            ),
+            Self::Open { classes } => write!(
+                f,
+                "{classes} classes of witness points that loops did not bring together"
+            ),
+            Self::FailedPaths { paths } => {
+                write!(
+                    f,
+                    "{} failed that may have ended here",
+                    counted(paths, "path")
+                )
+            }
+            Self::Junk { points } => write!(
+                f,
+                "{} may lie on a set of higher dimension",
+                counted(points, "end")
+            ),
+            Self::NotDeflated { points } => write!(
+                f,
+                "no deflation made {} regular",
+                counted(points, "multiple point")
+            ),
+            Self::Asked { points } => write!(
+                f,
+                "whether {} solve all equations is not clear",
+                counted(points, "end")
+            ),
+            Self::Multiplicity => write!(
+                f,
+                "the multiplicity is not known: the dual space did not close"
+            ),
+            Self::BrokenLoops { loops } => {
+                write!(
+                    f,
+                    "{} did not permute the witness points",
+                    counted(loops, "loop")
+                )
+            }
+        }
+    }
 }
 
 /// What a witness set rests on.

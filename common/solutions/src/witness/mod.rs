@@ -8,6 +8,6 @@ pub mod decomposition;
 pub mod evidence;
 pub mod witness_set;
 
-pub use decomposition::{Decomposition, Dimension};
+pub use decomposition::{Decomposition, Dimension, TrackedPaths};
 pub use evidence::{Doubt, Evidence, Trace};
 pub use witness_set::{ComponentId, Irreducible, Multiplicity, WitnessSet};

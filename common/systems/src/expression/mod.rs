@@ -79,11 +79,48 @@ pub enum Dependence {
 }
 
 /// The arena. Nodes are only added; two equal nodes have one number.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(into = "Vec<Node>", try_from = "Vec<Node>")]
 pub struct Expressions {
     nodes: Vec<Node>,
     dependence: Vec<Dependence>,
     index: HashMap<Node, NodeId>,
+}
+
+/// Nodes that are no graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("node {0} of a graph of expressions is a repetition, or has a child that is not before it")]
+pub struct NoGraph(usize);
+
+impl From<Expressions> for Vec<Node> {
+    fn from(expressions: Expressions) -> Self {
+        expressions.nodes
+    }
+}
+
+impl TryFrom<Vec<Node>> for Expressions {
+    type Error = NoGraph;
+
+    fn try_from(nodes: Vec<Node>) -> Result<Self, NoGraph> {
+        let mut expressions = Self::new();
+        for (place, node) in nodes.into_iter().enumerate() {
+            let before = |child: &NodeId| (child.0 as usize) < place;
+            let whole = match &node {
+                Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) => true,
+                Node::Add(a, b)
+                | Node::Subtract(a, b)
+                | Node::Multiply(a, b)
+                | Node::Divide(a, b) => before(a) && before(b),
+                Node::Negate(a) | Node::Power(a, _) | Node::Root(a, _) | Node::Function(_, a) => {
+                    before(a)
+                }
+            };
+            if !whole || expressions.insert(node).0 as usize != place {
+                return Err(NoGraph(place));
+            }
+        }
+        Ok(expressions)
+    }
 }
 
 impl PartialEq for Expressions {

@@ -32,8 +32,8 @@ pub fn slice(system: &System, count: usize, own: usize) -> System {
         let form = form(&mut sliced.expressions, first, own);
         sliced.equations.push(form);
         sliced.equation_names.push(format!("slice {}", row + 1));
-        // With a blank in it, it is the name of no variable.
-        let names = (0..=own).map(|k| format!("slice {} {k}", row + 1));
+        // With a colon in it, it is the name of no variable in a file.
+        let names = (0..=own).map(|k| format!("slice:{}:{k}", row + 1));
         sliced.parameters.extend(names);
     }
     sliced

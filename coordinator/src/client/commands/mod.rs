@@ -3,6 +3,7 @@
 pub mod cancel;
 pub mod convert;
 pub mod coordinator;
+pub mod decompose;
 pub mod explain;
 pub mod fleet;
 pub mod info;

@@ -9,7 +9,9 @@ use crate::client::output::files::Folder;
 use crate::client::output::paths::Paths;
 use crate::client::output::table::SOLUTIONS_SHOWN;
 use crate::client::output::text::{Look, counted};
-use crate::client::output::{self, json, summary, table};
+use crate::client::output::{self, decomposition, json, summary, table};
+use crate::results::AnySummary;
+use crate::results::decomposition::DecompositionSummary;
 use cognate_protocol::v1;
 use cognate_solutions::solution::Solution;
 
@@ -40,7 +42,12 @@ pub async fn show(
     output: &OutputArguments,
 ) -> Result<Exit, ClientError> {
     let json = connection.summary(job).await?;
-    let summary = summary::read(&json)?;
+    let summary = match summary::read_any(&json)? {
+        AnySummary::Solve(summary) => *summary,
+        AnySummary::Decomposition(summary) => {
+            return components(connection, job, &json, &summary, output).await;
+        }
+    };
     let mut rows: Vec<Solution> = vec![];
     let wanted = match output.format {
         Format::Table => SOLUTIONS_SHOWN,
@@ -90,4 +97,27 @@ pub async fn show(
     };
     output::print(&text)?;
     Ok(summary::exit(&summary))
+}
+
+/// The same for a decomposition.
+async fn components(
+    connection: &mut Connection,
+    job: &str,
+    json: &str,
+    summary: &DecompositionSummary,
+    output: &OutputArguments,
+) -> Result<Exit, ClientError> {
+    if let Some(folder) = &output.output {
+        let found = connection.decomposition(job).await?;
+        decomposition::write(folder, json, found)?;
+    }
+    let text = match output.format {
+        Format::Json => json::summary(json),
+        Format::Table => {
+            let look = Look::of_standard_output();
+            decomposition::table(summary, output.output.as_deref(), look)
+        }
+    };
+    output::print(&text)?;
+    Ok(decomposition::exit(summary))
 }

@@ -1,7 +1,7 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
 use super::{results, submit, watch};
-use crate::client::arguments::{Format, Solve};
+use crate::client::arguments::{Format, OutputArguments, ProgressArguments, Solve};
 use crate::client::connection::{Connection, Target};
 use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
@@ -13,10 +13,20 @@ use std::time::Instant;
 /// Solves, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
     let prepared = problem::prepare(&a.problem)?;
-    let mut service = Embedded::start(a.workers, a.threads).await?;
+    let service = Embedded::start(a.workers, a.threads).await?;
+    embedded(&a.output, &a.progress, prepared, service).await
+}
+
+/// Has a problem solved by this service, then stops it.
+pub async fn embedded(
+    output: &OutputArguments,
+    progress: &ProgressArguments,
+    prepared: Prepared,
+    mut service: Embedded,
+) -> Result<Exit, ClientError> {
     let target = Target::open_to_all(&service.address());
     let ended = tokio::select! {
-        ended = solve(a, prepared, &target) => ended,
+        ended = follow(output, progress, prepared, &target) => ended,
         error = service.abandoned() => Err(error),
         () = crate::client::interrupted() => Err(ClientError::Interrupted),
     };
@@ -24,9 +34,15 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
     ended
 }
 
-async fn solve(a: &Solve, prepared: Prepared, target: &Target) -> Result<Exit, ClientError> {
-    let quiet = a.output.format == Format::Json;
-    let mut progress = Progress::of(a.progress.progress, quiet, Instant::now());
+/// Submits a problem, follows its job and shows the answer.
+pub async fn follow(
+    output: &OutputArguments,
+    progress: &ProgressArguments,
+    prepared: Prepared,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let quiet = output.format == Format::Json;
+    let mut progress = Progress::of(progress.progress, quiet, Instant::now());
     let mut connection = Connection::open(target).await?;
     let request_id = uuid::Uuid::new_v4().to_string();
     let (job, warnings) = submit::send(&mut connection, &request_id, prepared).await?;
@@ -39,6 +55,6 @@ async fn solve(a: &Solve, prepared: Prepared, target: &Target) -> Result<Exit, C
     match last.state() {
         JobState::Failed => Err(ClientError::GaveUp(last.message)),
         JobState::Cancelled => Err(ClientError::Cancelled),
-        _ => results::show(&mut connection, &job, &a.output).await,
+        _ => results::show(&mut connection, &job, output).await,
     }
 }

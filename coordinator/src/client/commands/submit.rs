@@ -18,7 +18,16 @@ const ATTEMPTS: u32 = 5;
 
 /// Prints the job's id alone on a line.
 pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
-    let prepared = problem::prepare(&a.problem)?;
+    let mut prepared = problem::prepare(&a.problem)?;
+    let components = &a.components;
+    if a.decompose {
+        prepared = problem::for_components(prepared, components);
+    } else if components.dimension.is_some() || components.loops.is_some() {
+        return Err(ClientError::Input {
+            origin: "--dimension, --loops".into(),
+            message: "only go with --decompose".into(),
+        });
+    }
     let mut connection = Connection::open(&a.service.target()?).await?;
     let request_id = match &a.request_id {
         Some(id) => id.clone(),

@@ -5,7 +5,8 @@ use crate::client::connection::{Connection, Target};
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::json;
 use crate::client::output::progress::{Progress, Standing};
-use crate::client::output::{self, summary, table, text};
+use crate::client::output::{self, decomposition, summary, table, text};
+use crate::results::AnySummary;
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
 
@@ -133,7 +134,17 @@ pub async fn verdict(
             format!("given up after {time}: {}", last.message),
         )),
         _ => {
-            let summary = summary::read(&connection.summary(&last.job).await?)?;
+            let json = connection.summary(&last.job).await?;
+            let summary = match summary::read_any(&json)? {
+                AnySummary::Solve(summary) => summary,
+                AnySummary::Decomposition(summary) => {
+                    let mut line = format!("done in {time}: {}", decomposition::answer(&summary));
+                    for doubt in &summary.decomposition.unsettled {
+                        line.push_str(&format!("\nnot settled: {doubt}"));
+                    }
+                    return Ok((decomposition::exit(&summary), line));
+                }
+            };
             let paths = text::counted(summary.paths.total, "path");
             let answer = table::answer(&summary);
             let mut line = format!("done in {time}: {paths}, {answer}");

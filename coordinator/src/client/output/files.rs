@@ -36,6 +36,18 @@ pub(super) fn create(folder: &Path, name: &str) -> Result<Written, ClientError> 
     Written::create(folder, name)
 }
 
+/// Makes the folder where it is not there.
+pub(super) fn make_folder(path: &Path) -> Result<(), ClientError> {
+    std::fs::create_dir_all(path).map_err(|e| cannot_write(path, e))
+}
+
+/// A file in a folder, which is there, with this text.
+pub(super) fn write_file(folder: &Path, name: &str, text: &str) -> Result<(), ClientError> {
+    let mut out = create(folder, name)?;
+    out.write(text)?;
+    out.finish()
+}
+
 impl Written {
     fn create(folder: &Path, name: &str) -> Result<Self, ClientError> {
         let path = folder.join(name);
@@ -126,7 +138,7 @@ fn scientific(x: f64) -> String {
 impl Folder {
     /// Makes the folder where it does not exist, and the files in it.
     pub fn create(path: &Path) -> Result<Self, ClientError> {
-        std::fs::create_dir_all(path).map_err(|e| cannot_write(path, e))?;
+        make_folder(path)?;
         Ok(Self {
             path: path.to_path_buf(),
             lines: Written::create(path, "solutions.jsonl")?,

@@ -1,6 +1,7 @@
 //! The same answers for people and for programs.
 
 pub mod certificates;
+pub mod decomposition;
 pub mod drawing;
 pub mod files;
 pub mod json;

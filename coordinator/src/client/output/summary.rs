@@ -2,11 +2,18 @@
 
 use super::text::counted;
 use crate::client::error::{ClientError, Exit};
+use crate::results::AnySummary;
 use crate::results::summary::Summary;
 
 /// The JSON object that the service gives, typed.
 pub fn read(json: &str) -> Result<Summary, ClientError> {
     serde_json::from_str(json)
+        .map_err(|e| ClientError::GaveUp(format!("its summary is not what was agreed: {e}")))
+}
+
+/// The JSON object of a job of either kind, typed.
+pub fn read_any(json: &str) -> Result<AnySummary, ClientError> {
+    AnySummary::read(json)
         .map_err(|e| ClientError::GaveUp(format!("its summary is not what was agreed: {e}")))
 }
 

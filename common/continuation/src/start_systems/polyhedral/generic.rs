@@ -496,6 +496,7 @@ mod tests {
     ) -> Result<PreparedStage, PrepareError> {
         let stage = Stage {
             id: StageId(0),
+            system: None,
             work: Work::Track,
             homotopy: HomotopyKind::Toric,
             start_points: StartPoints::MixedCells { count, branches },
@@ -523,6 +524,7 @@ mod tests {
     fn counted(system: &System) -> CellBranches {
         let stage = Stage {
             id: StageId(0),
+            system: None,
             work: Work::CountMixedCells,
             homotopy: HomotopyKind::Toric,
             start_points: StartPoints::MixedCells {

@@ -5,12 +5,15 @@
 //! path (Brake, Hauenstein, Liddell: Decomposing solution sets of polynomial systems using derivatives,
 //! ICMS 2016). Both derivatives are linear equations with the Jacobian at the point.
 
+pub mod stage;
+
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::scalar::{Complex, DoubleDouble, Jet, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::system::System;
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 /// A number of about 32 digits.
 pub type Number = Complex<DoubleDouble<f64>>;
@@ -32,10 +35,12 @@ pub struct SlicedEquations {
     variables: usize,
     /// A row each: the constant, then coefficients of the first variables.
     slices: Vec<Vec<Complex64>>,
+    /// Values of the parameters.
+    parameters: Vec<Number>,
 }
 
 /// A witness point with all its digits.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefinedPoint {
     /// The point.
     pub point: Vec<Number>,
@@ -51,7 +56,7 @@ pub struct RefinedPoint {
 }
 
 /// How a witness point moves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bend {
     /// x'.
     pub velocity: Vec<Number>,
@@ -129,6 +134,20 @@ impl SlicedEquations {
             equations: Interpreter::compile(e, equations, variables, 0),
             variables,
             slices,
+            parameters: Vec::new(),
+        }
+    }
+
+    /// The equations of a system at these values of its parameters, with no slices but those that are among
+    /// them.
+    pub fn at_parameters(system: &System, values: &[Complex64]) -> Self {
+        let variables = system.variable_count();
+        let (e, equations) = (&system.expressions, &system.equations);
+        Self {
+            equations: Interpreter::compile(e, equations, variables, values.len()),
+            variables,
+            slices: Vec::new(),
+            parameters: values.iter().map(|&z| exactly(z)).collect(),
         }
     }
 
@@ -140,7 +159,8 @@ impl SlicedEquations {
         let (rows, n) = (self.rows(), self.variables);
         let mut matrix = Matrix::zeros((), rows, n + 2);
         let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.equations, ());
-        self.equations.jacobian(x, &[], &mut matrix, &mut scratch);
+        self.equations
+            .jacobian(x, &self.parameters, &mut matrix, &mut scratch);
         let mut all = Matrix::zeros((), rows + self.slices.len(), n + 1);
         for i in 0..rows {
             for j in 0..=n {
@@ -272,51 +292,64 @@ impl SlicedEquations {
         (y, last)
     }
 
-    /// The second derivative of the equations along x + s u, in s.
-    fn curvature(&self, x: &[Number], u: &[Number]) -> Vec<Number> {
+    /// The first and the second derivative in s of the equations along x + s u, where the parameters change
+    /// by s q.
+    fn derivatives(&self, x: &[Number], u: &[Number], q: &[Number]) -> Vec<[Number; 2]> {
         type Series = Jet<DoubleDouble<f64>>;
         let zero = || DoubleDouble::from_f64((), 0.0);
         let series = |c0: &DoubleDouble<f64>, c1: &DoubleDouble<f64>| -> Series {
             Jet([*c0, *c1, zero(), zero(), zero()])
         };
-        let along: Vec<Complex<Series>> = x
-            .iter()
-            .zip(u)
-            .map(|(x, u)| Complex {
-                re: series(&x.re, &u.re),
-                im: series(&x.im, &u.im),
-            })
-            .collect();
+        let along = |x: &[Number], u: &[Number]| -> Vec<Complex<Series>> {
+            let pairs = x.iter().zip(u);
+            pairs
+                .map(|(x, u)| Complex {
+                    re: series(&x.re, &u.re),
+                    im: series(&x.im, &u.im),
+                })
+                .collect()
+        };
+        let (x, parameters) = (along(x, u), along(&self.parameters, q));
         let mut values = vec![Complex::<Series>::zero(()); self.rows()];
         let mut scratch = Evaluate::<Series>::scratch(&self.equations, ());
-        self.equations.value(&along, &[], &mut values, &mut scratch);
-        let twice = |z: &Complex<Series>| {
-            let mut second = Complex {
-                re: z.re.0[2],
-                im: z.im.0[2],
+        self.equations
+            .value(&x, &parameters, &mut values, &mut scratch);
+        let both = |z: &Complex<Series>| {
+            let coefficient = |k: usize| Complex {
+                re: z.re.0[k],
+                im: z.im.0[k],
             };
-            let same = second;
-            second.add(&same);
-            second
+            let mut second = coefficient(2);
+            second.add(&coefficient(2));
+            [coefficient(1), second]
         };
-        values.iter().map(twice).collect()
+        values.iter().map(both).collect()
     }
 
-    /// How a witness point moves when the constants of the slices move in this direction.
+    /// How a witness point moves when the constants of the slices move in this direction; with
+    /// [`Self::at_parameters`] the parameters, all of them.
     pub fn bend(&self, refined: &RefinedPoint, direction: &[Complex64]) -> Bend {
         let at = self.decompose(&refined.point);
-        let rows = self.rows();
+        let (rows, x) = (self.rows(), &refined.point);
         let mut right = zeros(rows + self.slices.len());
-        for (right, &v) in right[rows..].iter_mut().zip(direction) {
-            right.sub(&exactly(v));
+        let moved: Vec<Number> = direction.iter().map(|&v| exactly(v)).collect();
+        let moved_parameters = &moved[..self.parameters.len()];
+        if moved_parameters.is_empty() {
+            for (right, v) in right[rows..].iter_mut().zip(&moved) {
+                right.sub(v);
+            }
+        } else {
+            let still = zeros(self.variables);
+            let values = self.derivatives(x, &still, moved_parameters);
+            for (right, [first, _]) in right.iter_mut().zip(&values) {
+                right.sub(first);
+            }
         }
         let (velocity, _) = self.solve(&at, &right);
         let mut right = zeros(rows + self.slices.len());
-        for (right, curved) in right
-            .iter_mut()
-            .zip(self.curvature(&refined.point, &velocity))
-        {
-            right.sub(&curved);
+        let curved = self.derivatives(x, &velocity, moved_parameters);
+        for (right, [_, second]) in right.iter_mut().zip(&curved) {
+            right.sub(second);
         }
         let (acceleration, last) = self.solve(&at, &right);
         let size = length(&doubles(&acceleration)) + length(&doubles(&velocity));
@@ -360,5 +393,28 @@ mod tests {
             sum.add(&bend.acceleration[0]);
         }
         assert!(rounded(&sum).norm_sqr().sqrt() < 1e-28);
+    }
+
+    #[test]
+    fn parameters_move_points_as_constants_of_slices_do() {
+        let number = |re: f64| Complex64::new(re, 0.0);
+        let slice = [number(-2.0), number(0.3), number(1.0)];
+        let by_slice = SlicedEquations::new(&parabola(), vec![slice.to_vec()]);
+        let system = cognate_systems::transform::slice(&parabola(), 1, 2);
+        let by_parameters = SlicedEquations::at_parameters(&system, &slice);
+        let near = [number(1.3), number(1.6)].map(exactly);
+        let point = by_slice.refine(&near).unwrap();
+        let direction = Complex64::new(0.6, 0.8);
+        let expected = by_slice.bend(&point, &[direction]);
+        let still = number(0.0);
+        let found = by_parameters.bend(&point, &[direction, still, still]);
+        for (a, b) in [
+            (&expected.velocity, &found.velocity),
+            (&expected.acceleration, &found.acceleration),
+        ] {
+            for (a, b) in a.iter().zip(b) {
+                assert!((rounded(a) - rounded(b)).norm_sqr() < 1e-56, "{a:?} {b:?}");
+            }
+        }
     }
 }

@@ -1,0 +1,115 @@
+//! BendStage: the witness points of a stage, each with its derivatives along a moving slice.
+
+use super::{Bend, Number, SlicedEquations, exactly};
+use crate::homotopies::HomotopyKind;
+use crate::path_result::PathResult;
+use crate::points_at_targets::PointsAtTargets;
+use crate::stage::PrepareError;
+use crate::start_points::{Digest, StoredPoints};
+use crate::work::Stage;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A stage of `Work::Bend`, ready for any of its items in any order.
+#[derive(Debug)]
+pub struct BendStage {
+    points: PointsAtTargets,
+    /// All equations, slices among them, in the unknowns.
+    equations: SlicedEquations,
+    /// How the parameters move.
+    direction: Vec<Complex64>,
+}
+
+impl BendStage {
+    /// Checks that stage and system fit.
+    pub fn new(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<Self, PrepareError> {
+        let points = PointsAtTargets::new(system, stage, objects)?;
+        let HomotopyKind::Parameter { start, targets } = &stage.homotopy else {
+            return Err(PrepareError::StartPoints(
+                "bends are asked along a line of parameters".into(),
+            ));
+        };
+        let expected = system.parameters.len();
+        let [target] = targets.as_slice() else {
+            return Err(PrepareError::StartPoints(
+                "bends are asked along one line of parameters".into(),
+            ));
+        };
+        if start.len() != expected {
+            return Err(PrepareError::Parameters {
+                what: "start parameters",
+                found: start.len(),
+                expected,
+            });
+        }
+        Ok(Self {
+            points,
+            equations: SlicedEquations::at_parameters(&system.in_unknowns(), start),
+            direction: target
+                .iter()
+                .zip(start)
+                .map(|(to, from)| to - from)
+                .collect(),
+        })
+    }
+
+    /// Number of items.
+    pub fn items(&self) -> u64 {
+        self.points.items()
+    }
+
+    /// How these points move; results in item order. Pure, as tracking is.
+    ///
+    /// # Panics
+    /// When `items` reaches beyond the stage.
+    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+        assert!(items.end <= self.items(), "a chunk lies within its stage");
+        items.map(|item| self.item(item)).collect()
+    }
+
+    fn item(&self, item: u64) -> PathResult {
+        let before = self.points.result(item);
+        let unknowns = self
+            .points
+            .scaling()
+            .to_unknowns(self.points.item(item).point);
+        let start: Vec<Number> = unknowns.into_iter().map(exactly).collect();
+        let Some(refined) = self.equations.refine(&start) else {
+            return before;
+        };
+        let bend = self.equations.bend(&refined, &self.direction);
+        PathResult {
+            residual: refined.residual,
+            condition: refined.condition,
+            accuracy: refined.correction,
+            precision_bits: BITS,
+            bend: bend.is_sound().then(|| Box::new(bend)),
+            ..before
+        }
+    }
+}
+
+/// Precision of double-doubles, in bits.
+const BITS: u32 = 106;
+
+impl Bend {
+    /// False where a number is none, or the vectors do not belong together.
+    pub fn is_sound(&self) -> bool {
+        let finite = |v: &[Number]| {
+            v.iter()
+                .flat_map(|z| [z.re, z.im])
+                .flat_map(|x| x.parts())
+                .all(f64::is_finite)
+        };
+        self.velocity.len() == self.acceleration.len()
+            && finite(&self.velocity)
+            && finite(&self.acceleration)
+            && self.error >= 0.0
+    }
+}

@@ -1,0 +1,131 @@
+//! `cognate decompose` as a process: its JSON, its files, its exit codes.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A parabola, a line and a point.
+const UNION: &str = "CONFIG\nEND;\nINPUT\nvariable_group x, y;\nfunction f, g;\n\
+    curves = (y - x^2)*(x + 2*y - 1);\nf = curves*(x - 3);\ng = curves*(y - 5);\nEND;\n";
+
+fn decompose(folder: &Path, text: &str, options: &[&str]) -> Output {
+    let file = folder.join("system.bertini");
+    std::fs::write(&file, text).expect("the folder is writable");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+    command.arg("decompose").arg(&file).args(options);
+    command.output().expect("the program starts")
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).expect("one JSON object")
+}
+
+/// Dimension and degree of each component.
+fn components(summary: &Value) -> Vec<(u64, u64)> {
+    let list = summary["decomposition"]["components"].as_array();
+    let of = |c: &Value| (c["dimension"].as_u64(), c["degree"].as_u64());
+    let list = list.expect("a list").iter();
+    list.map(|c| (of(c).0.expect("a number"), of(c).1.expect("a number")))
+        .collect()
+}
+
+#[test]
+fn components_stand_in_the_answer_and_in_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let here = folder.path().join("here");
+    let files = here.display().to_string();
+    let options = ["--seed", "1", "--format", "json", "--output", &files];
+    let output = decompose(folder.path(), UNION, &options);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let summary = json(&output);
+    assert_eq!(components(&summary), [(1, 2), (1, 1), (0, 1)]);
+    assert_eq!(
+        summary["decomposition"]["by_dimension"]["1"]["complete"],
+        "yes"
+    );
+    assert_eq!(summary["problem"]["seed"], 1);
+    let read = |name: &str| std::fs::read_to_string(here.join(name)).expect(name);
+    let written: Value = serde_json::from_str(&read("summary.json")).expect("JSON");
+    assert_eq!(written, summary);
+    let points = read("witness_points.jsonl");
+    assert_eq!(points.lines().count(), 2 + 1 + 1);
+    for line in points.lines() {
+        let point: Value = serde_json::from_str(line).expect("JSON");
+        let value = |name: &str| -> num_complex::Complex64 {
+            serde_json::from_value(point["variables"][name].clone()).expect("a number")
+        };
+        let (x, y) = (value("x"), value("y"));
+        let distance = match point["component"].as_str().expect("a name") {
+            "1.1" => (y - x * x).norm_sqr(),
+            "1.2" => (x + 2.0 * y - 1.0).norm_sqr(),
+            _ => (x - 3.0).norm_sqr() + (y - 5.0).norm_sqr(),
+        };
+        assert!(distance < 1e-20, "{line}");
+    }
+    let kept: Value = serde_json::from_str(&read("decomposition.json")).expect("JSON");
+    assert_eq!(
+        kept["components"][0]["slice"].as_array().map(Vec::len),
+        Some(1)
+    );
+    // The same with another number of workers, but for who did it.
+    let options = ["--seed", "1", "--format", "json", "--workers", "1"];
+    let mut alone = json(&decompose(folder.path(), UNION, &options));
+    for varies in ["job", "time", "workers"] {
+        alone[varies] = summary[varies].clone();
+    }
+    assert_eq!(alone, summary);
+    let options = ["--seed", "1", "--format", "json", "--dimension", "1"];
+    let lines = json(&decompose(folder.path(), UNION, &options));
+    assert_eq!(components(&lines), [(1, 2), (1, 1)]);
+    assert_eq!(lines["settled"], true);
+}
+
+#[test]
+fn what_cannot_be_decomposed_is_refused_with_its_reason() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let refused = |text: &str, options: &[&str], reason: &str| {
+        let output = decompose(folder.path(), text, options);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains(reason), "{said}");
+        assert!(output.stdout.is_empty(), "{output:?}");
+    };
+    refused(
+        UNION,
+        &["--dimension", "2"],
+        "components have dimensions 0 to 1",
+    );
+    refused(
+        UNION,
+        &["--dimension", "2..1"],
+        "expected a dimension such as 1",
+    );
+    let family =
+        "CONFIG\nEND;\nINPUT\nvariable_group x, y; parameter p; function f; f = x*y - p;\nEND;\n";
+    refused(family, &[], "1 parameters, but 0 values");
+    let nothing = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; f = (x + y)^2 - x^2 - 2*x*y - y^2;\nEND;\n";
+    refused(nothing, &[], "is 0 for all values of the variables");
+}
+
+#[test]
+fn parameters_get_their_values() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let family =
+        "CONFIG\nEND;\nINPUT\nvariable_group x, y; parameter p; function f; f = x*y - p;\nEND;\n";
+    for (value, expected) in [("0", vec![(1, 1), (1, 1)]), ("3", vec![(1, 2)])] {
+        let file = folder.path().join("values");
+        std::fs::write(&file, format!("{{\"p\": {value}}}")).expect("the folder is writable");
+        let file = file.display().to_string();
+        let options = [
+            "--target-parameters",
+            &file,
+            "--format",
+            "json",
+            "--seed",
+            "2",
+        ];
+        let output = decompose(folder.path(), family, &options);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert_eq!(components(&json(&output)), expected);
+    }
+}
