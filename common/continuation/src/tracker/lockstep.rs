@@ -64,6 +64,8 @@ const APART: f64 = 0.05;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
 /// is not for want of digits.
 pub(super) const ENDGAME_BITS: u32 = 212;
+/// This part of all steps that a path may take is enough for its turns in doubles.
+const LABOUR: u32 = 8;
 
 /// Where a path enters a room.
 enum Entry {
@@ -529,6 +531,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
         if self.lanes[lane].effort > u64::from(settings.max_steps) {
             return self.fail_and_refill(lane, t, Failure::TooManySteps);
         }
+        if self.labours(lane) {
+            return self.give_up(lane, t, Failure::StepTooSmall);
+        }
         match phase {
             Phase::Idle => {}
             Phase::Starting => {
@@ -750,6 +755,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
             }
             None => self.leave(lane, t, door),
         }
+    }
+
+    /// Whether a path takes very many steps around 0 in doubles: it is their noise that it follows.
+    fn labours(&self, lane: usize) -> bool {
+        let path = &self.lanes[lane];
+        let around_zero = matches!(path.phase, Phase::Turning | Phase::Inward);
+        let most = u64::from(self.settings.max_steps / LABOUR);
+        around_zero && self.room.bits == DOUBLE && self.room.up && path.effort > most
     }
 
     /// A path that came up a rung from where fewer digits had lost it follows its whole way on
