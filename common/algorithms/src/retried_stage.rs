@@ -846,8 +846,9 @@ mod tests {
         assert_eq!(indices, &[0, 1]);
         let settings = &stages[1].settings;
         assert_eq!(settings, &stages[0].settings.tightened(1).robust());
+        // Once more, since the made-up dual space has 3 functionals where 2 paths end.
         let paths = &sets[0].paths;
-        assert_eq!((paths.finite, paths.singular, paths.retracked), (2, 2, 2));
+        assert_eq!((paths.finite, paths.singular, paths.retracked), (2, 2, 4));
         let singular = sets[0].solutions.iter().find(|s| s.singular).unwrap();
         assert_eq!(singular.cycles, [2]);
         // One that never fits is named.
@@ -873,8 +874,9 @@ mod tests {
             panic!("{again:?}");
         };
         assert_eq!(indices, &[1, 2]);
+        // All four once more, since the made-up dual space has 3 functionals.
         let paths = &sets[0].paths;
-        assert_eq!((paths.singular, paths.failed, paths.retracked), (4, 0, 2));
+        assert_eq!((paths.singular, paths.failed, paths.retracked), (4, 0, 6));
         assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 1));
         // One that stays there is named.
         let (_, sets) = run(&mut solve(), |path, _| fate(path, 0));
