@@ -1,8 +1,10 @@
 //! How joints of a linkage move: elementary turns and shifts between frames, and the frames themselves.
 
+use super::formulation::half_tangent;
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::pose::{Pose, frame};
 use crate::mechanism::{Joint, JointKind, Linkage, Side, Vector};
+use num_complex::Complex64;
 
 /// A vector of doubles.
 pub fn real(v: &Vector) -> [f64; 3] {
@@ -145,4 +147,16 @@ pub fn size(linkage: &Linkage) -> f64 {
         .flat_map(|s| real(&s.point))
         .fold(0.0f64, |m, c| m.max(c.abs()));
     if size > 0.0 { size } else { 1.0 }
+}
+
+/// Parameters of the inputs of a linkage, joints by name: the half-tangent of a turn, the length of a shift.
+pub fn input_parameters(linkage: &Linkage, inputs: &[String], values: &[f64]) -> Vec<Complex64> {
+    let joint = |name: &String| linkage.joints.iter().find(|j| j.name == *name);
+    let pairs = inputs.iter().zip(values);
+    pairs
+        .flat_map(|(name, x)| match joint(name).map(|j| j.kind) {
+            Some(JointKind::R) => half_tangent(*x).to_vec(),
+            _ => vec![(*x).into()],
+        })
+        .collect()
 }

@@ -3,10 +3,12 @@
 //! In space and about a point. Turns are cosine and sine; a body about a point that only rods hold is a quaternion.
 
 use super::formulation::{
-    Configuration, Family, Formulation, Lifted, Problem, Question, Target, half_tangent,
-    overdriven, turn_of, unbalanced,
+    Configuration, Family, Formulation, Lifted, Problem, Question, Target, overdriven, turn_of,
+    unbalanced,
 };
-use super::linkage_pose::{Branch, Elements, elements, real, side_frame, size, spanning_tree};
+use super::linkage_pose::{
+    Branch, Elements, elements, input_parameters, real, side_frame, size, spanning_tree,
+};
 use super::text::{self, Equations, TextPose};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::{Number, double_expression};
@@ -657,20 +659,7 @@ impl Formulation for Loops {
         let Target::Inputs(values) = target else {
             return Err("expected values of the inputs".into());
         };
-        let kind = |name: &String| {
-            self.linkage
-                .joints
-                .iter()
-                .find(|j| j.name == *name)
-                .map(|j| j.kind)
-        };
-        let pairs = self.inputs.iter().zip(values);
-        Ok(pairs
-            .flat_map(|(name, x)| match kind(name) {
-                Some(JointKind::R) => half_tangent(*x).to_vec(),
-                _ => vec![(*x).into()],
-            })
-            .collect())
+        Ok(input_parameters(&self.linkage, &self.inputs, values))
     }
 
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {

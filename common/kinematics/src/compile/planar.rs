@@ -2,10 +2,9 @@
 //! loop; links that a given turn or a shift ties together share one g. Two groups.
 
 use super::formulation::{
-    Configuration, Family, Formulation, Lifted, Problem, Question, Target, half_tangent,
-    overdriven, unbalanced,
+    Configuration, Family, Formulation, Lifted, Problem, Question, Target, overdriven, unbalanced,
 };
-use super::linkage_pose::{real, size};
+use super::linkage_pose::{input_parameters, real, size};
 use super::planar_platform::isotropic_pose;
 use super::text::{self, Equations, complex};
 use crate::mechanism::chain::JointValue;
@@ -468,16 +467,7 @@ impl Formulation for Planar {
                     half.re.into(),
                 ])
             }
-            Target::Inputs(values) => {
-                let joint = |name: &String| self.linkage.joints.iter().find(|j| j.name == *name);
-                let pairs = self.inputs.iter().zip(values);
-                Ok(pairs
-                    .flat_map(|(name, x)| match joint(name).map(|j| j.kind) {
-                        Some(JointKind::R) => half_tangent(*x).to_vec(),
-                        _ => vec![(*x).into()],
-                    })
-                    .collect())
-            }
+            Target::Inputs(values) => Ok(input_parameters(&self.linkage, &self.inputs, values)),
         }
     }
 

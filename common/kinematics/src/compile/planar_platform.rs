@@ -3,7 +3,9 @@
 use super::formulation::{
     Configuration, Family, Formulation, Lifted, Problem, Target, overdriven, unbalanced,
 };
-use super::platform::{given_values, leg_parameters, legs_residual, size, slide_direction};
+use super::platform::{
+    driven_parameters, given_values, legs_residual, random_parameters, slide_direction,
+};
 use super::text::{self, Equations, complex};
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::Pose;
@@ -174,30 +176,12 @@ impl Formulation for Forward {
     }
 
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
-        let Target::Inputs(values) = target else {
-            return Err("expected values of the inputs".into());
-        };
-        let driven = self.platform.legs.iter().filter(|l| l.is_driven());
-        Ok(driven
-            .zip(values)
-            .flat_map(|(leg, x)| leg_parameters(leg, *x))
-            .collect())
+        driven_parameters(&self.platform, target)
     }
 
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
-        if self.inputs.is_empty() {
-            return None;
-        }
-        let size = size(&self.platform);
-        let mut values = Vec::new();
-        for leg in self.platform.legs.iter().filter(|l| l.is_driven()) {
-            match leg.kind {
-                LegKind::Strut { .. } => values.push(draw() * (size * size)),
-                LegKind::Crank { .. } => values.extend([draw(), draw()]),
-                LegKind::Slider { .. } => values.push(draw() * size),
-            }
-        }
-        Some(values)
+        let is_driven = !self.inputs.is_empty();
+        is_driven.then(|| random_parameters(&self.platform, draw))
     }
 
     fn lift(

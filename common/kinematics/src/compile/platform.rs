@@ -190,12 +190,42 @@ pub fn slide_direction(leg: &Leg) -> [f64; 3] {
 }
 
 /// Parameters of a leg's input: the squared length, the half-tangent, the shift.
-pub fn leg_parameters(leg: &Leg, value: f64) -> Vec<Complex64> {
+fn leg_parameters(leg: &Leg, value: f64) -> Vec<Complex64> {
     match &leg.kind {
         LegKind::Strut { .. } => vec![(value * value).into()],
         LegKind::Crank { .. } => half_tangent(value).to_vec(),
         LegKind::Slider { .. } => vec![value.into()],
     }
+}
+
+/// Parameters of all legs that are driven, by the values of their inputs.
+///
+/// # Errors
+/// When the target is a pose.
+pub fn driven_parameters(platform: &Platform, target: &Target) -> Result<Vec<Complex64>, String> {
+    let Target::Inputs(values) = target else {
+        return Err("expected values of the inputs".into());
+    };
+    let driven = platform.legs.iter().filter(|l| l.is_driven());
+    let pairs = driven.zip(values);
+    Ok(pairs.flat_map(|(leg, x)| leg_parameters(leg, *x)).collect())
+}
+
+/// The same at random, as large as the platform makes them.
+pub fn random_parameters(
+    platform: &Platform,
+    draw: &mut dyn FnMut() -> Complex64,
+) -> Vec<Complex64> {
+    let size = size(platform);
+    let mut values = Vec::new();
+    for leg in platform.legs.iter().filter(|l| l.is_driven()) {
+        match leg.kind {
+            LegKind::Strut { .. } => values.push(draw() * (size * size)),
+            LegKind::Crank { .. } => values.extend([draw(), draw()]),
+            LegKind::Slider { .. } => values.push(draw() * size),
+        }
+    }
+    values
 }
 
 /// Where the rod of a leg begins, and the square of its length, at parameters; takes its own from the front.
@@ -376,30 +406,12 @@ impl Formulation for Forward {
     }
 
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
-        let Target::Inputs(values) = target else {
-            return Err("expected values of the inputs".into());
-        };
-        let driven = self.platform.legs.iter().filter(|l| l.is_driven());
-        Ok(driven
-            .zip(values)
-            .flat_map(|(leg, x)| leg_parameters(leg, *x))
-            .collect())
+        driven_parameters(&self.platform, target)
     }
 
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
-        if !self.all_driven || self.inputs.is_empty() {
-            return None;
-        }
-        let size = size(&self.platform);
-        let mut values = Vec::new();
-        for leg in self.platform.legs.iter().filter(|l| l.is_driven()) {
-            match leg.kind {
-                LegKind::Strut { .. } => values.push(draw() * (size * size)),
-                LegKind::Crank { .. } => values.extend([draw(), draw()]),
-                LegKind::Slider { .. } => values.push(draw() * size),
-            }
-        }
-        Some(values)
+        let is_driven = self.all_driven && !self.inputs.is_empty();
+        is_driven.then(|| random_parameters(&self.platform, draw))
     }
 
     fn lift(
