@@ -248,7 +248,7 @@ fn systems_of_stages_survive_the_wire() {
         let mut solve = solve.expect("it can be decomposed");
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
         let mut systems = BTreeSet::new();
-        let driven = drive::<PrepareError>(&mut solve, &mut |opening| {
+        let driven = drive::<PrepareError, _>(&mut solve, &mut |opening| {
             let made = opening.objects.iter();
             objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let system = opening.system.as_deref();

@@ -12,6 +12,7 @@ use crate::regeneration_solve::RegenerationSolve;
 use crate::sharpened_solve::SharpenedSolve;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Next, PathAlgorithm, Progress};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::solution_set::SolutionSet;
@@ -20,7 +21,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 13;
+const VERSION: u8 = 14;
 
 /// Every algorithm that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -209,7 +210,7 @@ impl PathAlgorithm for AnyAlgorithm {
     fn next(&mut self) -> Next {
         self.get_mut().next()
     }
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         self.get_mut().absorb(stage, results);
     }
     fn failure(&self) -> Option<String> {

@@ -7,7 +7,7 @@
 use crate::any_algorithm::AnyAlgorithm;
 use crate::closing_stage::{ClosingStage, FiniteEndpoints};
 use crate::{Completeness, Next, PathAlgorithm, Progress};
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::points_at_targets::parameters_at_targets;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::certificates::{Attempt, certify};
@@ -67,9 +67,9 @@ impl PathAlgorithm for CertifiedSolve {
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         match &mut self.certification {
-            Some(own) => own.absorb(stage, results, |result| result.certification),
+            Some(own) => own.absorb(stage, results, attempt),
             None => self.solve.absorb(stage, results),
         }
     }
@@ -112,6 +112,14 @@ impl PathAlgorithm for CertifiedSolve {
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         self.solve.finite_endpoints()
+    }
+}
+
+/// What a worker says of one solution.
+fn attempt(result: ItemResult) -> Attempt {
+    match result {
+        ItemResult::Certify(point) => point.into_fact(),
+        other => unreachable!("a stage that certifies has no {other:?}"),
     }
 }
 

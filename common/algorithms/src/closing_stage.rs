@@ -2,7 +2,7 @@
 
 use crate::{Next, Opening, Progress, StageProgress};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
@@ -131,8 +131,8 @@ impl<Fact> ClosingStage<Fact> {
     pub fn absorb(
         &mut self,
         stage: StageId,
-        results: &mut dyn Iterator<Item = PathResult>,
-        fact: impl Fn(PathResult) -> Fact,
+        results: &mut dyn Iterator<Item = ItemResult>,
+        fact: impl Fn(ItemResult) -> Fact,
     ) {
         let own = self
             .stage

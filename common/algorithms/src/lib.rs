@@ -59,7 +59,7 @@ pub use plan::{Plan, PlanOptions, plan};
 pub use plan_error::PlanError;
 pub use progress::{Progress, StageProgress, VerdictCounts};
 
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -80,7 +80,7 @@ pub trait PathAlgorithm: Send {
     /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
     fn next(&mut self) -> Next;
     /// Takes the results of one stage, complete and in item order.
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>);
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
     /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
     fn failure(&self) -> Option<String> {
         None

@@ -16,6 +16,7 @@ use crate::progress::{StageProgress, VerdictCounts};
 use crate::retried_stage::RetriedStage;
 use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{PathIndex, PathResult};
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::start_systems::polyhedral::branches::{
@@ -102,7 +103,7 @@ impl PolyhedralSolve {
 
     /// Takes the counts of all branches: the first leg has as many paths, or another lifting is
     /// counted, or it ends here.
-    fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         let counting = self.counting.as_mut().expect("it is counting");
         let own = counting
             .stages
@@ -110,7 +111,7 @@ impl PolyhedralSolve {
             .find(|own| own.id == stage && !own.absorbed)
             .expect("only an open stage is absorbed");
         own.absorbed = true;
-        let counts: Vec<Option<BranchCount>> = results.map(|result| result.mixed_cells).collect();
+        let counts: Vec<Option<BranchCount>> = results.map(count_of).collect();
         assert_eq!(
             counts.len() as u64,
             own.items,
@@ -242,6 +243,14 @@ impl Counting {
     }
 }
 
+/// What a worker says of one branch.
+fn count_of(result: ItemResult) -> Option<BranchCount> {
+    match result {
+        ItemResult::CountMixedCells(branch) => branch.into_fact(),
+        other => unreachable!("a stage that counts mixed cells has no {other:?}"),
+    }
+}
+
 /// The mixed volume and its branches by the counts of all; `None` where the lifting is not generic,
 /// and the next one is to be counted.
 fn sum(
@@ -297,7 +306,7 @@ impl PathAlgorithm for PolyhedralSolve {
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         if self.counting.as_ref().is_some_and(|c| c.outcome.is_none()) {
             return self.counted(stage, results);
         }
@@ -386,6 +395,7 @@ mod tests {
     use crate::plan::StartChoice;
     use crate::run_locally::run_locally;
     use crate::{Plan, PlanOptions, plan};
+    use cognate_continuation::item_result::PointResult;
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_systems::polyhedral::branches::CountedCells;
     use cognate_systems::named::cyclic;
@@ -419,10 +429,22 @@ mod tests {
     }
 
     /// The results of a stage, as a worker has them.
-    fn worked(system: &System, opening: &Opening, width: usize) -> Vec<PathResult> {
+    fn worked(system: &System, opening: &Opening, width: usize) -> Vec<ItemResult> {
         let find = |wanted| opening.object(wanted);
         let prepared = PreparedWork::new(system, &opening.stage, &find).expect("a stage");
         prepared.run(0..prepared.items(), width)
+    }
+
+    /// What a worker says of this branch, or nothing where it ended every worker.
+    fn branch(number: u64, count: Option<BranchCount>) -> ItemResult {
+        let origin = PathIndex(number);
+        match count {
+            Some(count) => {
+                let point = vec![Complex64::default()];
+                ItemResult::CountMixedCells(PointResult::new(origin, 0, point, Some(count)))
+            }
+            None => ItemResult::killed_its_worker(Work::CountMixedCells, origin, 0),
+        }
     }
 
     fn next_opening(algorithm: &mut AnyAlgorithm) -> Box<Opening> {
@@ -497,7 +519,7 @@ mod tests {
         } = counted_by_workers(&cyclic(5).system);
         let first = next_opening(&mut algorithm);
         let mut results = worked(&system, &first, 1);
-        results[77].mixed_cells = Some(BranchCount::Tie);
+        results[77] = branch(77, Some(BranchCount::Tie));
         algorithm.absorb(first.stage.id, &mut results.into_iter());
         let second = next_opening(&mut algorithm);
         let StartPoints::MixedCells { count: 0, branches } = &second.stage.start_points else {
@@ -510,7 +532,7 @@ mod tests {
         let toric = next_opening(&mut algorithm);
         assert_eq!((toric.stage.id.0, toric.stage.items()), (2, Some(70)));
         let results = worked(&system, &toric, 8);
-        assert!(results.iter().all(regular));
+        assert!(results.iter().filter_map(ItemResult::path).all(regular));
         algorithm.absorb(toric.stage.id, &mut results.into_iter());
         let generic = next_opening(&mut algorithm);
         assert_eq!((generic.stage.id.0, generic.stage.items()), (3, Some(70)));
@@ -532,16 +554,21 @@ mod tests {
         let lost = [3usize, 40, 41, 155];
         let mut failed = results.clone();
         for path in lost {
-            failed[path].outcome = PathOutcome::Failed(Failure::TooManySteps);
+            let ItemResult::Track(path) = &mut failed[path] else {
+                panic!("{:?}", failed[path]);
+            };
+            path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
         algorithm.absorb(toric.stage.id, &mut failed.into_iter());
         let again = next_opening(&mut algorithm);
         assert_eq!((again.stage.id.0, again.stage.attempt), (2, 1));
         let found = worked(&system, &again, 8);
         assert_eq!(found.len(), lost.len());
-        for (path, result) in lost.into_iter().zip(&found) {
+        let paths = found.iter().filter_map(ItemResult::path);
+        for (path, result) in lost.into_iter().zip(paths) {
             assert_eq!(result.origin.0, path as u64);
-            let (a, b) = (&results[path].endpoint, &result.endpoint);
+            let before = results[path].path().expect("a path");
+            let (a, b) = (&before.endpoint, &result.endpoint);
             let apart = a.to_double().iter().zip(b.to_double());
             let apart: f64 = apart.map(|(a, b)| (a - b).norm_sqr()).sum();
             assert!(regular(result) && apart < 1e-16, "path {path}: {apart}");
@@ -553,7 +580,7 @@ mod tests {
     #[test]
     fn what_cannot_be_followed_ends_the_solve_with_its_reason() {
         let system = cyclic(5).system;
-        let told = |change: &dyn Fn(&mut Vec<PathResult>)| {
+        let told = |change: &dyn Fn(&mut Vec<ItemResult>)| {
             let mut options = options(10);
             options.certify = true;
             let mut algorithm = plan(&system, &options).expect("a plan").algorithm;
@@ -577,8 +604,10 @@ mod tests {
             (stages, algorithm.failure().expect("a reason"))
         };
         let all = |count: Option<BranchCount>| {
-            move |results: &mut Vec<PathResult>| {
-                results.iter_mut().for_each(|r| r.mixed_cells = count);
+            move |results: &mut Vec<ItemResult>| {
+                for (number, result) in (0..).zip(results) {
+                    *result = branch(number, count);
+                }
             }
         };
         let of_volume = |volume| {
@@ -593,8 +622,8 @@ mod tests {
             ("ties", told(&all(Some(BranchCount::Tie)))),
             (
                 "large",
-                told(&|results: &mut Vec<PathResult>| {
-                    results[9].mixed_cells = Some(BranchCount::TooLarge);
+                told(&|results: &mut Vec<ItemResult>| {
+                    results[9] = branch(9, Some(BranchCount::TooLarge));
                 }),
             ),
             ("sum", told(&of_volume(u64::MAX / 2))),
@@ -602,8 +631,8 @@ mod tests {
             ("none", told(&of_volume(0))),
             (
                 "killed",
-                told(&|results: &mut Vec<PathResult>| {
-                    results[9].mixed_cells = None;
+                told(&|results: &mut Vec<ItemResult>| {
+                    results[9] = branch(9, None);
                 }),
             ),
         ]);

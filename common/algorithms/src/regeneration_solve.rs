@@ -14,6 +14,7 @@ use crate::progress::{StageProgress, VerdictCounts};
 use crate::retried_stage::RetriedStage;
 use crate::{Next, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{PathIndex, PathResult};
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -281,7 +282,7 @@ impl PathAlgorithm for RegenerationSolve {
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         self.stage.absorb(stage, results);
     }
 

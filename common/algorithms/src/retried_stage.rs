@@ -8,6 +8,7 @@
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::{FiniteEndpoint, FiniteEndpoints, Next, Opening};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{self, Candidate};
 use cognate_continuation::path_result::PathResult;
@@ -389,7 +390,7 @@ impl RetriedStage {
     ///
     /// # Panics
     /// When the stage is not open, or the results are not its own, complete and in order.
-    pub fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    pub fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         let stage = self
             .stages
             .iter_mut()
@@ -403,9 +404,12 @@ impl RetriedStage {
                 let point = usize::try_from(taken).unwrap_or(usize::MAX);
                 let paths = self.singular_points.get(point).map_or(&[][..], |p| &p[..]);
                 let places: Vec<usize> = paths.iter().filter_map(|&p| self.place(p)).collect();
+                let ItemResult::LocalDimension(found) = result else {
+                    unreachable!("a stage that looks at endpoints has no {result:?}")
+                };
                 for place in places {
                     let known = &mut self.results[place].local_dimension;
-                    known.clone_from(&result.local_dimension);
+                    *known = found.fact().cloned();
                 }
                 taken += 1;
             }
@@ -414,7 +418,7 @@ impl RetriedStage {
             self.wanted = self.unconfirmed();
             return;
         }
-        for result in results {
+        for result in results.map(ItemResult::into_path) {
             let origin = result.origin.0;
             if attempt == 0 {
                 let last = self.results.last().map(|r| r.origin.0);

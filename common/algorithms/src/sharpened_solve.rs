@@ -6,7 +6,7 @@
 use crate::any_algorithm::AnyAlgorithm;
 use crate::closing_stage::{ClosingStage, FiniteEndpoints};
 use crate::{Completeness, Next, PathAlgorithm, Progress};
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::sharpened::{Attempt, DIGITS_OF_DOUBLES, sharpen};
 use cognate_solutions::solution_set::SolutionSet;
@@ -81,9 +81,9 @@ impl PathAlgorithm for SharpenedSolve {
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         match &mut self.sharpening {
-            Some(own) => own.absorb(stage, results, |result| result.sharpening),
+            Some(own) => own.absorb(stage, results, attempt),
             None => self.solve.absorb(stage, results),
         }
     }
@@ -125,6 +125,14 @@ impl PathAlgorithm for SharpenedSolve {
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         self.solve.finite_endpoints()
+    }
+}
+
+/// What a worker says of one solution.
+fn attempt(result: ItemResult) -> Attempt {
+    match result {
+        ItemResult::Sharpen(point) => point.into_fact(),
+        other => unreachable!("a stage that sharpens has no {other:?}"),
     }
 }
 

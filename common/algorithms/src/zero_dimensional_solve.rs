@@ -4,7 +4,7 @@ use crate::any_algorithm::AnyAlgorithm;
 use crate::retried_stage::RetriedStage;
 use crate::{FiniteEndpoints, Next, PathAlgorithm, Progress};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::plain::Sieve;
@@ -89,7 +89,7 @@ impl PathAlgorithm for ZeroDimensionalSolve {
         self.paths.next_stage()
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         self.paths.absorb(stage, results);
     }
 

@@ -8,6 +8,7 @@
 
 pub mod digest;
 pub mod error;
+mod flat_result;
 pub mod from_proto;
 pub mod limits;
 pub mod records;

@@ -1,4 +1,4 @@
-//! Records: path results as bytes that are stored and hashed.
+//! Records: results as bytes that are stored and hashed.
 //!
 //! One layout, written by hand so that it is the same for ever: magic with the
 //! version, number of records, then each record with its length before it; all
@@ -7,8 +7,10 @@
 //! agree. The hash is over these bytes before any compression; neither time nor
 //! worker is in them.
 
+use crate::flat_result::FlatResult;
 use cognate_continuation::bend::{Bend, Number};
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{
     AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, NUMBERS, PathIndex,
     PathResult,
@@ -17,6 +19,7 @@ use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, CountedCells};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::work::Work;
 use cognate_numeric::exact_text::{exact_text, read_exact};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::DoubleDouble;
@@ -50,7 +53,7 @@ pub struct DamagedRecords {
 }
 
 /// The records of these results.
-pub fn encode<'a>(results: impl IntoIterator<Item = &'a PathResult>) -> Vec<u8> {
+pub fn encode<'a>(results: impl IntoIterator<Item = &'a ItemResult>) -> Vec<u8> {
     let mut w = Writer(Vec::with_capacity(4096));
     w.0.extend_from_slice(MAGIC);
     w.u64(0);
@@ -58,7 +61,7 @@ pub fn encode<'a>(results: impl IntoIterator<Item = &'a PathResult>) -> Vec<u8> 
     for result in results {
         let start = w.0.len();
         w.u32(0);
-        w.record(result);
+        w.record(&result.into());
         let length = u32::try_from(w.0.len() - start - 4)
             .expect("a path has far fewer than 2^28 coordinates");
         w.0[start..start + 4].copy_from_slice(&length.to_le_bytes());
@@ -73,8 +76,8 @@ pub fn hash(records: &[u8]) -> Digest {
     crate::digest::of_bytes(records)
 }
 
-/// Reads what [`encode`] wrote.
-pub fn decode(records: &[u8]) -> Result<Vec<PathResult>, DamagedRecords> {
+/// Reads what [`encode`] wrote of items of this kind of work.
+pub fn decode(records: &[u8], work: Work) -> Result<Vec<ItemResult>, DamagedRecords> {
     let mut r = Reader {
         bytes: records,
         at: 0,
@@ -90,10 +93,12 @@ pub fn decode(records: &[u8]) -> Result<Vec<PathResult>, DamagedRecords> {
         if end > records.len() {
             return Err(r.damaged("a record is longer than what is there"));
         }
-        results.push(r.record(end)?);
+        let result = r.record(end)?;
         if r.at != end {
             return Err(r.damaged("a record has another length than it says"));
         }
+        let of_another = r.damaged("a result of another kind of work");
+        results.push(result.into_item(work).map_err(|_| of_another)?);
     }
     if r.at != records.len() {
         return Err(r.damaged("there is more than the records"));
@@ -138,7 +143,14 @@ impl Writer {
         self.u32(u32::try_from(length).expect("a path has far fewer than 2^32 coordinates"));
     }
 
-    fn record(&mut self, result: &PathResult) {
+    fn record(&mut self, result: &FlatResult) {
+        let FlatResult {
+            path,
+            certification,
+            sharpening,
+            mixed_cells,
+            bend,
+        } = result;
         let PathResult {
             origin,
             attempt,
@@ -153,13 +165,9 @@ impl Writer {
             precision_bits,
             counts,
             asked,
-            certification,
             local_dimension,
-            sharpening,
             boundary,
-            mixed_cells,
-            bend,
-        } = result;
+        } = path;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
         self.0.push(match outcome {
@@ -434,7 +442,7 @@ impl<'a> Reader<'a> {
     }
 
     /// One record, which ends there.
-    fn record(&mut self, end: usize) -> Result<PathResult, DamagedRecords> {
+    fn record(&mut self, end: usize) -> Result<FlatResult, DamagedRecords> {
         let origin = PathIndex(self.u64()?);
         let attempt = self.array().map(u16::from_le_bytes)?;
         let outcome = match self.array::<1>()?[0] {
@@ -462,7 +470,7 @@ impl<'a> Reader<'a> {
         let infinity_turns = (0..groups)
             .map(|_| self.array().map(i32::from_le_bytes))
             .collect::<Result<_, _>>()?;
-        let mut result = PathResult {
+        let mut result = FlatResult::from(PathResult {
             origin,
             attempt,
             outcome,
@@ -482,13 +490,9 @@ impl<'a> Reader<'a> {
                 turns: self.u32()?,
             },
             asked: None,
-            certification: None,
             local_dimension: None,
-            sharpening: None,
             boundary: None,
-            mixed_cells: None,
-            bend: None,
-        };
+        });
         let mut last = 0;
         while self.at < end {
             let [next] = self.array()?;
@@ -498,7 +502,7 @@ impl<'a> Reader<'a> {
             last = next;
             match next {
                 tag::ASKED => {
-                    result.asked = Some(AskedFit {
+                    result.path.asked = Some(AskedFit {
                         residual: self.f64()?,
                         correction: self.f64()?,
                     });
@@ -520,7 +524,7 @@ impl<'a> Reader<'a> {
                 }
                 tag::LOCAL_DIMENSION => {
                     let orders = self.length(4)?;
-                    result.local_dimension = Some(LocalDimension {
+                    result.path.local_dimension = Some(LocalDimension {
                         dual_dimensions: (0..orders)
                             .map(|_| self.u32())
                             .collect::<Result<_, _>>()?,
@@ -540,7 +544,7 @@ impl<'a> Reader<'a> {
                     };
                     let slices: Vec<MovedSlice> =
                         (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
-                    let Some(found) = &mut result.local_dimension else {
+                    let Some(found) = &mut result.path.local_dimension else {
                         return Err(self.damaged("moved slices without a dual space"));
                     };
                     if !slices.iter().all(MovedSlice::is_sound) {
@@ -575,7 +579,7 @@ impl<'a> Reader<'a> {
                         *number = self.f64()?;
                     }
                     let margin = self.f64()?;
-                    result.boundary = Some(BoundaryKey { numbers, margin })
+                    result.path.boundary = Some(BoundaryKey { numbers, margin })
                         .filter(BoundaryKey::is_sound)
                         .map(|key| Some(Box::new(key)))
                         .ok_or_else(|| self.damaged("a key that is none"))?;

@@ -11,10 +11,10 @@ use crate::results::decomposition::DECOMPOSITION;
 use crate::results::summary::SOLUTIONS;
 use cognate_algorithms::AnyAlgorithm;
 use cognate_algorithms::monodromy::estimate::percent;
-use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
-use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
@@ -51,19 +51,14 @@ pub struct Explanation {
     pub json: String,
 }
 
-/// What a stage is for, in words.
-fn purpose(stage: &Stage) -> String {
-    match (stage.work, stage.attempt) {
-        (Work::Certify, _) => "certifying".to_owned(),
-        (Work::Sharpen { digits }, _) => format!("bringing solutions to {digits} digits"),
-        (Work::LocalDimension, _) => "whether singular endpoints are isolated".to_owned(),
-        (Work::CountMixedCells, _) => "counting mixed cells".to_owned(),
-        (Work::Bend, _) => "derivatives of witness points".to_owned(),
-        (Work::Track, 0) if stage.homotopy == HomotopyKind::Toric => {
-            "tracking to a generic system".to_owned()
-        }
-        (Work::Track, 0) => "tracking".to_owned(),
-        (Work::Track, attempt) => format!("tracking again, more carefully ({attempt})"),
+/// The mixed cells of a branch, where they were counted.
+fn cells_of(result: &ItemResult) -> u64 {
+    match result {
+        ItemResult::CountMixedCells(branch) => match branch.fact() {
+            Some(BranchCount::Counted(counted)) => counted.cells,
+            Some(BranchCount::Tie | BranchCount::TooLarge) | None => 0,
+        },
+        _ => 0,
     }
 }
 
@@ -79,7 +74,7 @@ impl Coordinator {
                 Work::CountMixedCells => Some(self.cells_so_far(job, stage.stage).await?),
                 _ => None,
             };
-            purposes.insert(stage.stage, (purpose(&definition), cells));
+            purposes.insert(stage.stage, (definition.purpose(), cells));
         }
         let now = self.ledger.now().await?;
         Ok(JobProgress::new(&row, &stages, now, |stage: &StageRow| {
@@ -100,11 +95,8 @@ impl Coordinator {
                 if counts.contains_key(&object.items.first) {
                     continue;
                 }
-                let results = self.store.results(&object).await?;
-                let cells = results.iter().map(|result| match result.mixed_cells {
-                    Some(BranchCount::Counted(counted)) => counted.cells,
-                    Some(BranchCount::Tie | BranchCount::TooLarge) | None => 0,
-                });
+                let results = self.store.results(&object, Work::CountMixedCells).await?;
+                let cells = results.iter().map(cells_of);
                 counts.insert(object.items.first, cells.sum());
             }
         }
@@ -287,7 +279,7 @@ impl Coordinator {
                     else {
                         continue;
                     };
-                    for result in self.store.results(&result).await? {
+                    for result in self.store.paths(&result).await? {
                         if first {
                             results.push(result);
                         } else if let Ok(place) = usize::try_from(result.origin.0)

@@ -11,6 +11,7 @@ use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::Store;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -367,7 +368,12 @@ impl Cluster {
         self.tracked += lease.items.len();
         let mut results = prepared.run(items, self.workers[worker].width);
         if self.workers[worker].wrong {
-            results[0].endpoint = Coordinates::Double(vec![Complex64::new(1.0, 2.0); 3]);
+            let wrong = vec![Complex64::new(1.0, 2.0); 3];
+            match &mut results[0] {
+                ItemResult::Track(path) => path.endpoint = Coordinates::Double(wrong),
+                ItemResult::LocalDimension(point) => point.point = wrong,
+                other => panic!("a solve of this simulation has no {other:?}"),
+            }
         }
         let report = Report {
             lease: lease.lease,

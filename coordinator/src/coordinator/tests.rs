@@ -518,12 +518,15 @@ async fn a_running_coordinator_needs_nobody_to_drive_it() {
                         .stage(id.chunk.job, id.chunk.stage)
                         .await
                         .unwrap();
-                    let prepared =
-                        cognate_continuation::stage::PreparedStage::new(&system, &stage, &|_| None)
-                            .unwrap();
+                    let prepared = cognate_continuation::prepared_work::PreparedWork::new(
+                        &system,
+                        &stage,
+                        &|_| None,
+                    )
+                    .unwrap();
                     let report = Report {
                         lease: id,
-                        results: prepared.track(lease.items.first..lease.items.last, 8),
+                        results: prepared.run(lease.items.first..lease.items.last, 8),
                         cpu_micros: 1000,
                     };
                     coordinator.complete(report).await.unwrap();
@@ -634,7 +637,7 @@ async fn a_panic_ends_the_job_and_not_the_service() {
         .collect();
     let (store, ledger) = (coordinator.store(), coordinator.ledger());
     let object = store
-        .put_results(stage.work, lease.lease, lease.items, results, 1)
+        .put_results(lease.lease, lease.items, results, 1)
         .await
         .unwrap();
     ledger.complete(lease.lease, object).await.unwrap();

@@ -3,6 +3,7 @@
 use crate::retried_stage::RetriedStage;
 use crate::{Next, Opening};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Settings;
@@ -58,7 +59,7 @@ enum Doing {
     Asked {
         stage: Box<Stage>,
         opened: bool,
-        results: Option<Vec<PathResult>>,
+        results: Option<Vec<ItemResult>>,
     },
 }
 
@@ -180,17 +181,25 @@ impl Job {
     }
 
     /// Takes the results of an open stage.
-    pub fn absorb(&mut self, id: StageId, taken: &mut dyn Iterator<Item = PathResult>) {
+    pub fn absorb(&mut self, id: StageId, taken: &mut dyn Iterator<Item = ItemResult>) {
         match &mut self.work {
             Doing::Tracked(stages) => stages.absorb(id, taken),
             Doing::Asked { results, .. } => *results = Some(taken.collect()),
         }
     }
 
-    /// The last results of all items, in their order.
+    /// The last results of its paths, in the order of its items; none where it asks about points.
     pub fn results(&self) -> &[PathResult] {
         match &self.work {
             Doing::Tracked(stages) => stages.results(),
+            Doing::Asked { .. } => &[],
+        }
+    }
+
+    /// What was said about its points, in their order; none where it tracks paths.
+    pub fn answers(&self) -> &[ItemResult] {
+        match &self.work {
+            Doing::Tracked(_) => &[],
             Doing::Asked { results, .. } => results.as_deref().unwrap_or(&[]),
         }
     }

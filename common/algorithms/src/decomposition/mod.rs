@@ -20,7 +20,7 @@ use crate::progress::{StageProgress, VerdictCounts};
 use crate::run_locally;
 use crate::{Next, PathAlgorithm, Progress};
 use cascade::Cascade;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
@@ -282,7 +282,7 @@ impl PathAlgorithm for DecompositionSolve {
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         let job = self.state.job.as_mut();
         job.expect("only an open stage is absorbed")
             .absorb(stage, results);
@@ -353,6 +353,7 @@ mod tests {
     use super::*;
     use crate::AnyAlgorithm;
     use crate::run_locally::drive;
+    use cognate_continuation::path_result::{Coordinates, PathResult};
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_points::{Digest, StoredPoints};
     use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -360,7 +361,7 @@ mod tests {
     use std::collections::HashMap;
 
     /// Decomposes with a tracker that spoils the results of each stage of the cascade.
-    fn decompose(text: &str, spoil: impl Fn(&mut Vec<PathResult>)) -> Decomposition {
+    fn decompose(text: &str, spoil: impl Fn(&mut PathResult)) -> Decomposition {
         let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
         let system = formats::read("test", text.as_bytes()).unwrap().system;
         let options = DecompositionOptions {
@@ -377,7 +378,11 @@ mod tests {
             let system = opening.system.as_deref().unwrap_or(&system);
             let prepared = PreparedWork::new(system, &opening.stage, &find)?;
             let mut results = prepared.run(0..prepared.items(), 8);
-            spoil(&mut results);
+            for result in &mut results {
+                if let ItemResult::Track(path) = result {
+                    spoil(path);
+                }
+            }
             Ok(results)
         });
         assert_eq!(done, Ok(()));
@@ -408,9 +413,9 @@ mod tests {
     #[test]
     fn a_lost_path_leaves_nothing_settled() {
         // Four paths end at the four witness points: the last of them is lost, however often it is tracked.
-        let lost = |results: &mut Vec<PathResult>| {
-            for result in results.iter_mut().filter(|r| r.origin.0 == 3) {
-                result.outcome = PathOutcome::Failed(Failure::TooManySteps);
+        let lost = |path: &mut PathResult| {
+            if path.origin.0 == 3 {
+                path.outcome = PathOutcome::Failed(Failure::TooManySteps);
             }
         };
         let found = decompose(CURVES, lost);
@@ -430,10 +435,11 @@ mod tests {
     #[test]
     fn a_point_that_is_no_solution_is_not_taken() {
         // The first path's end is moved away.
-        let moved = |results: &mut Vec<PathResult>| {
-            let cognate_continuation::path_result::Coordinates::Double(end) =
-                &mut results[0].endpoint;
-            end[1] += 0.3;
+        let moved = |path: &mut PathResult| {
+            if path.origin.0 == 0 {
+                let Coordinates::Double(end) = &mut path.endpoint;
+                end[1] += 0.3;
+            }
         };
         let found = decompose(CURVES, moved);
         assert!(!found.settled(), "{found:?}");

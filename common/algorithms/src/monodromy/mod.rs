@@ -24,6 +24,7 @@ use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::{MAX_RETRIES, can_be_helped};
 use crate::{Completeness, FiniteEndpoints, Next, Opening, PathAlgorithm};
 use cognate_continuation::homotopies::{HomotopyKind, way_back};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
@@ -835,7 +836,7 @@ impl PathAlgorithm for MonodromySolve {
         }
     }
 
-    fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         if let Phase::Arrive(solve) = &mut self.phase {
             solve.absorb(id, results);
             return;
@@ -850,7 +851,7 @@ impl PathAlgorithm for MonodromySolve {
             .find(|stage| stage.id == id && !stage.absorbed)
             .expect("only an open stage is absorbed");
         stage.absorbed = true;
-        let results: Vec<PathResult> = results.collect();
+        let results: Vec<PathResult> = results.map(ItemResult::into_path).collect();
         assert_eq!(
             results.len() as u64,
             stage.items,

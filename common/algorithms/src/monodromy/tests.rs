@@ -4,6 +4,7 @@ use super::completeness::probability_of_hiding;
 use super::*;
 use crate::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use crate::run_locally::{drive, run_locally};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PreparedStage;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -269,7 +270,8 @@ fn a_restored_solve_goes_on_to_the_same_answer() {
                 let find = |digest: Digest| objects.get(&digest).cloned();
                 let prepared = PreparedStage::new(&system, &stage, &find).unwrap();
                 let results = prepared.track(0..prepared.items(), 1);
-                plan.algorithm.absorb(stage.id, &mut results.into_iter());
+                let mut results = results.into_iter().map(ItemResult::from);
+                plan.algorithm.absorb(stage.id, &mut results);
             }
             Next::Done => break,
         }
@@ -303,7 +305,8 @@ fn the_order_of_stages_does_not_matter() {
                 let find = |digest: Digest| objects.get(&digest).cloned();
                 let prepared = PreparedStage::new(&system, &stage, &find).unwrap();
                 let results = prepared.track(0..prepared.items(), 8);
-                plan.algorithm.absorb(stage.id, &mut results.into_iter());
+                let mut results = results.into_iter().map(ItemResult::from);
+                plan.algorithm.absorb(stage.id, &mut results);
             }
             Next::Done => break,
         }
