@@ -6,7 +6,7 @@ use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::monodromy::counts::Stop;
 use cognate_algorithms::plan::{GivenStart, StartChoice};
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{Complete, PathAlgorithm, PlanOptions, plan};
+use cognate_algorithms::{Complete, PlanOptions, plan};
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_systems::formats;
 use cognate_systems::formats::points::{read_parameters, read_solutions};

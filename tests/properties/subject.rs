@@ -3,7 +3,7 @@
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::plan::GivenStart;
 use cognate_algorithms::run_locally::drive;
-use cognate_algorithms::{PathAlgorithm, PlanOptions, plan};
+use cognate_algorithms::{PathAlgorithm, PlanOptions, Root, plan};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
@@ -76,8 +76,8 @@ impl Subject {
             ..DecompositionOptions::default()
         };
         let solve = DecompositionSolve::new(system, &options);
-        let mut solve = solve.expect("it can be decomposed");
-        Self::on_the_way(system, &mut solve, HashMap::new(), wanted)
+        let mut root = Root::new(solve.expect("it can be decomposed"));
+        Self::on_the_way(system, &mut root, HashMap::new(), wanted)
     }
 
     fn on_the_way(

@@ -7,21 +7,17 @@
 //! does not arrive in the first is named as failed in the end, so that the
 //! counts add up to the mixed volume.
 
-use crate::any_algorithm::AnyAlgorithm;
-use crate::closing_stage::FiniteEndpoints;
+use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
-use crate::plan::checked_volume;
-use crate::plan_error::PlanError;
-use crate::progress::{StageProgress, VerdictCounts};
+use crate::plan_error::{PlanError, checked_volume};
+use crate::progress::{self, Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::RetriedStage;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{PathIndex, PathResult};
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
-use cognate_continuation::start_systems::polyhedral::branches::{
-    BRANCHES, BranchCount, CellBranches,
-};
+use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, CellBranches};
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{
     MOST_LIFTINGS, MixedCellsError,
 };
@@ -105,12 +101,7 @@ impl PolyhedralSolve {
     /// counted, or it ends here.
     fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         let counting = self.counting.as_mut().expect("it is counting");
-        let own = counting
-            .stages
-            .iter_mut()
-            .find(|own| own.id == stage && !own.absorbed)
-            .expect("only an open stage is absorbed");
-        own.absorbed = true;
+        let own = progress::absorb(&mut counting.stages, stage);
         let counts: Vec<Option<BranchCount>> = results.map(count_of).collect();
         assert_eq!(
             counts.len() as u64,
@@ -121,7 +112,6 @@ impl PolyhedralSolve {
             Ok(Some((count, branches))) => {
                 counting.outcome = Some(Ok(()));
                 let first = Stage {
-                    id: StageId(stage.0 + 1),
                     start_points: StartPoints::MixedCells {
                         count,
                         branches: Some(branches),
@@ -135,8 +125,8 @@ impl PolyhedralSolve {
         }
     }
 
-    /// The second leg, from what the first one found; `None` where it found nothing.
-    fn second_leg(&mut self) -> Option<Opening> {
+    /// Begins the second leg from what the first one found; `None` where it found nothing.
+    fn second_leg(&mut self) -> Option<&mut RetriedStage> {
         let mut coordinates = Vec::new();
         for (result, decision) in self.generic.results().iter().zip(self.generic.decisions()) {
             // The generic system has regular finite solutions only.
@@ -157,24 +147,20 @@ impl PolyhedralSolve {
             dimension: coordinates.len() / self.arrived.len(),
             coordinates,
         });
-        let first = Stage {
+        let stage = Stage {
             homotopy: HomotopyKind::Generic {
                 parameters: self.parameters.clone(),
             },
             start_points: points.as_start(),
             ..self.generic.first().clone()
         };
+        let first = Opening {
+            stage,
+            system: None,
+            objects: vec![points],
+        };
         let lost = (self.generic.results().len() - self.arrived.len()) as u64;
-        let mut target = self.generic.followed_by(first, lost);
-        let next = target.next_stage();
-        self.target = Some(target);
-        match next {
-            Next::Open(mut opening) => {
-                opening.objects.push(points);
-                Some(*opening)
-            }
-            Next::Wait | Next::Done => None,
-        }
+        Some(self.target.insert(self.generic.followed_by(first, lost)))
     }
 
     /// The last result of every path of the whole, by its index in the first leg.
@@ -212,7 +198,7 @@ fn regular(result: &PathResult) -> bool {
 
 impl Counting {
     /// What is wanted next; `None` when all is counted.
-    fn next(&mut self, first: &Stage) -> Option<Next> {
+    fn next(&mut self, first: &Stage, numbers: &mut StageNumbers) -> Option<Next> {
         match &self.outcome {
             Some(Ok(())) => return None,
             Some(Err(_)) => return Some(Next::Done),
@@ -220,7 +206,6 @@ impl Counting {
             None => {}
         }
         let stage = Stage {
-            id: StageId(first.id.0 + self.stages.len() as u32),
             work: Work::CountMixedCells,
             start_points: StartPoints::MixedCells {
                 count: 0,
@@ -228,14 +213,7 @@ impl Counting {
             },
             ..first.clone()
         };
-        self.stages.push(StageProgress {
-            id: stage.id,
-            work: stage.work,
-            attempt: stage.attempt,
-            items: BRANCHES,
-            absorbed: false,
-        });
-        Some(Next::Open(Box::new(stage.into())))
+        Some(numbers.open(stage.into(), &mut self.stages))
     }
 
     fn failure(&self) -> Option<&String> {
@@ -287,19 +265,19 @@ fn sum(
     Ok(Some((volume, branches)))
 }
 
-impl PathAlgorithm for PolyhedralSolve {
-    fn next(&mut self) -> Next {
+impl Solve for PolyhedralSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         if let Some(counting) = &mut self.counting
-            && let Some(next) = counting.next(self.generic.first())
+            && let Some(next) = counting.next(self.generic.first(), numbers)
         {
             return next;
         }
         if let Some(target) = &mut self.target {
-            return target.next_stage();
+            return target.next_stage(numbers);
         }
-        match self.generic.next_stage() {
+        match self.generic.next_stage(numbers) {
             Next::Done => match self.second_leg() {
-                Some(opening) => Next::Open(Box::new(opening)),
+                Some(target) => target.next_stage(numbers),
                 None => Next::Done,
             },
             other => other,
@@ -352,10 +330,6 @@ impl PathAlgorithm for PolyhedralSolve {
         }
     }
 
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::Polyhedral(Box::new(self.clone())).to_bytes()
-    }
-
     fn failure(&self) -> Option<String> {
         self.counting.as_ref()?.failure().cloned()
     }
@@ -392,12 +366,14 @@ impl PathAlgorithm for PolyhedralSolve {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::any_algorithm::AnyAlgorithm;
     use crate::plan::StartChoice;
     use crate::run_locally::run_locally;
+    use crate::solve::PathAlgorithm;
     use crate::{Plan, PlanOptions, plan};
     use cognate_continuation::item_result::PointResult;
     use cognate_continuation::prepared_work::PreparedWork;
-    use cognate_continuation::start_systems::polyhedral::branches::CountedCells;
+    use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CountedCells};
     use cognate_systems::named::cyclic;
     use std::collections::HashMap;
 

@@ -134,8 +134,8 @@ mod tests {
         fn progress(&self) -> Progress {
             unreachable!("nobody asks")
         }
-        fn snapshot(&self) -> Vec<u8> {
-            unreachable!("nobody asks")
+        fn failure(&self) -> Option<String> {
+            None
         }
         fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
             Vec::new()

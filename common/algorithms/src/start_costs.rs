@@ -1,8 +1,9 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
-use crate::plan::{MAX_PATHS, MAX_PLAIN_PATHS};
+use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
 use crate::plan_error::PlanError;
 use crate::set_structures::{given, guessed, set_names};
+pub use crate::start_kind::StartKind;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::start_systems::grouping::best_grouping;
@@ -17,43 +18,6 @@ use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// How paths begin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StartKind {
-    /// As many paths as the product of the degrees.
-    TotalDegree,
-    /// As many as the multihomogeneous Bezout number of the variable groups.
-    Multihomogeneous,
-    /// Given start solutions.
-    Given,
-    /// Loops in the space of parameters.
-    Monodromy,
-    /// Twice as many as the mixed volume: from mixed cells to a generic system, and on.
-    Polyhedral,
-    /// As many as products of linear forms, each in a set of variables, have regular solutions.
-    LinearProduct,
-    /// Equation by equation: numbers are known when they are found.
-    Regeneration,
-    /// Equation by equation, for components of all dimensions.
-    Cascade,
-}
-
-impl std::fmt::Display for StartKind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::TotalDegree => "total-degree",
-            Self::Multihomogeneous => "multihomogeneous",
-            Self::Given => "given",
-            Self::Monodromy => "monodromy",
-            Self::Polyhedral => "polyhedral",
-            Self::LinearProduct => "linear-product",
-            Self::Regeneration => "regeneration",
-            Self::Cascade => "cascade",
-        })
-    }
-}
 
 /// A start by the variable groups.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -95,7 +95,7 @@ impl Coordinator {
         let solve = algorithm
             .large()
             .ok_or_else(|| unreadable("it is of another kind".into()))?;
-        let first = solve.paths().first().id;
+        let first = solve.paths().first_id();
         let mut teller = Teller {
             sieve: solve.sieve(&system),
             again: self.tracked_again(job, first).await?,

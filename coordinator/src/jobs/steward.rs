@@ -83,7 +83,7 @@ impl Steward {
     /// The stage whose paths are those of the job, where they need not all be held.
     pub fn first_stage(&self) -> StageId {
         let large = self.algorithm.large();
-        large.map_or(StageId(0), |solve| solve.paths().first().id)
+        large.map_or(StageId(0), |solve| solve.paths().first_id())
     }
 
     /// True where plain paths need not be held (see `solutions::plain`).

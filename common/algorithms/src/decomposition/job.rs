@@ -1,7 +1,8 @@
 //! Job: one stage of a decomposition with its repetitions, and the system that it is of.
 
+use crate::opening::Opening;
 use crate::retried_stage::RetriedStage;
-use crate::{Next, Opening};
+use crate::solve::{Next, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
@@ -57,8 +58,8 @@ enum Doing {
     Tracked(Box<RetriedStage>),
     /// Points about which something is asked once.
     Asked {
-        stage: Box<Stage>,
-        opened: bool,
+        /// The stage that asks, until it is open.
+        opening: Option<Box<Opening>>,
         results: Option<Vec<ItemResult>>,
     },
 }
@@ -68,7 +69,6 @@ enum Doing {
 pub(super) struct Job {
     pub system: StageSystem,
     work: Doing,
-    unsent: Option<Arc<StoredPoints>>,
 }
 
 fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
@@ -89,12 +89,11 @@ impl Job {
     ) -> Self {
         let points = stored(points);
         let targets = homotopy.targets();
-        let first = stage(id, Work::Track, homotopy, &points, with);
+        let first = opening(id, Work::Track, homotopy, points, with);
         let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
         Self {
             system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
-            unsent: Some(points),
         }
     }
 
@@ -143,40 +142,25 @@ impl Job {
         points: Arc<StoredPoints>,
         with: &Tracking,
     ) -> Self {
-        let stage = stage(id, work, homotopy, &points, with);
+        let opening = opening(id, work, homotopy, points, with);
         Self {
             system,
             work: Doing::Asked {
-                stage: Box::new(stage),
-                opened: false,
+                opening: Some(Box::new(opening)),
                 results: None,
             },
-            unsent: Some(points),
         }
     }
 
     /// What is wanted next.
-    pub fn next(&mut self) -> Next {
-        let next = match &mut self.work {
-            Doing::Tracked(stages) => stages.next_stage(),
-            Doing::Asked {
-                stage,
-                opened: opened @ false,
-                ..
-            } => {
-                *opened = true;
-                Next::Open(Box::new((**stage).clone().into()))
-            }
-            Doing::Asked { results: None, .. } => Next::Wait,
-            Doing::Asked { .. } => Next::Done,
-        };
-        match next {
-            Next::Open(mut opening) => {
-                let Opening { objects, .. } = &mut *opening;
-                objects.extend(self.unsent.take());
-                Next::Open(opening)
-            }
-            other => other,
+    pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
+        match &mut self.work {
+            Doing::Tracked(stages) => stages.next_stage(numbers),
+            Doing::Asked { opening, results } => match (opening.take(), results) {
+                (Some(opening), _) => numbers.open(*opening, &mut Vec::new()),
+                (None, None) => Next::Wait,
+                (None, Some(_)) => Next::Done,
+            },
         }
     }
 
@@ -246,21 +230,25 @@ impl Job {
     }
 }
 
-fn stage(
+fn opening(
     id: StageId,
     work: Work,
     homotopy: HomotopyKind,
-    points: &Arc<StoredPoints>,
+    points: Arc<StoredPoints>,
     with: &Tracking,
-) -> Stage {
-    Stage {
-        id,
+) -> Opening {
+    Opening {
+        stage: Stage {
+            id,
+            system: None,
+            work,
+            homotopy,
+            start_points: points.as_start(),
+            settings: with.settings.clone(),
+            seed: with.seed,
+            attempt: 0,
+        },
         system: None,
-        work,
-        homotopy,
-        start_points: points.as_start(),
-        settings: with.settings.clone(),
-        seed: with.seed,
-        attempt: 0,
+        objects: vec![points],
     }
 }

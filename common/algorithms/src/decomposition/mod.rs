@@ -16,9 +16,9 @@ mod options;
 mod problem;
 mod split;
 
-use crate::progress::{StageProgress, VerdictCounts};
+use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::solve::{Next, Root, Solve, StageNumbers};
 use cascade::Cascade;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
@@ -250,11 +250,11 @@ impl DecompositionSolve {
     }
 }
 
-impl PathAlgorithm for DecompositionSolve {
-    fn next(&mut self) -> Next {
+impl Solve for DecompositionSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         loop {
             if let Some(job) = &mut self.state.job {
-                match job.next() {
+                match job.next(numbers) {
                     Next::Open(mut opening) => {
                         let system = self.deflations.of_stage(&self.problem, &job.system);
                         opening.system = Some(system);
@@ -305,10 +305,6 @@ impl PathAlgorithm for DecompositionSolve {
         }
     }
 
-    fn snapshot(&self) -> Vec<u8> {
-        postcard::to_stdvec(&self.state).expect("memory takes every byte")
-    }
-
     /// None: its answer is [`DecompositionSolve::decomposition`].
     fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
         Vec::new()
@@ -338,21 +334,19 @@ fn grid(point: &[num_complex::Complex64]) -> Vec<i64> {
 /// assert!(found.settled());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn run_locally(
-    mut solve: DecompositionSolve,
-    width: usize,
-) -> Result<Decomposition, PrepareError> {
+pub fn run_locally(solve: DecompositionSolve, width: usize) -> Result<Decomposition, PrepareError> {
     let system = Arc::clone(&solve.state.system);
-    run_locally::run_locally(&system, &mut solve, &|_| None, width)?;
-    let found = solve.decomposition().cloned();
+    let mut root = Root::new(solve);
+    run_locally::run_locally(&system, &mut root, &|_| None, width)?;
+    let found = root.solve.decomposition().cloned();
     Ok(found.expect("it says what it found when it is done"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::AnyAlgorithm;
     use crate::run_locally::drive;
+    use crate::{AnyAlgorithm, AnySolve, PathAlgorithm};
     use cognate_continuation::path_result::{Coordinates, PathResult};
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -369,9 +363,9 @@ mod tests {
             max_retries: 0,
             ..DecompositionOptions::default()
         };
-        let mut solve = DecompositionSolve::new(&system, &options).unwrap();
+        let mut root = Root::new(DecompositionSolve::new(&system, &options).unwrap());
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-        let done: Result<(), PrepareError> = drive(&mut solve, &mut |opening| {
+        let done: Result<(), PrepareError> = drive(&mut root, &mut |opening| {
             let made = opening.objects.iter();
             objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let find = |digest: Digest| objects.get(&digest).cloned();
@@ -386,7 +380,7 @@ mod tests {
             Ok(results)
         });
         assert_eq!(done, Ok(()));
-        solve.decomposition().unwrap().clone()
+        root.solve.decomposition().unwrap().clone()
     }
 
     /// A parabola and a circle.
@@ -452,7 +446,7 @@ mod tests {
         let system = formats::read("test", text.as_bytes()).unwrap().system;
         let solve = || DecompositionSolve::new(&system, &DecompositionOptions::default()).unwrap();
         let lived = run_locally(solve(), 8).unwrap();
-        let mut solve = AnyAlgorithm::Decomposition(Box::new(solve()));
+        let mut solve = AnyAlgorithm::from(AnySolve::Decomposition(Box::new(solve())));
         let mut open: Option<Box<crate::Opening>> = None;
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
         loop {
