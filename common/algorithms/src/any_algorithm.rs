@@ -1,7 +1,7 @@
 //! AnyAlgorithm: a job, whatever solves it, which can be written down and read back.
 
 use crate::closings::Closing;
-use crate::completeness::{Complete, Completeness};
+use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
@@ -14,6 +14,7 @@ use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
@@ -216,19 +217,19 @@ impl AnyAlgorithm {
 
     /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
     /// say all that is known of that.
-    pub fn completeness(&self) -> Option<Completeness> {
+    pub fn completeness(&self) -> Option<CompletenessClaim> {
         self.solve.get().completeness()
     }
 }
 
 /// Whether loops found all: what a trace test says, or `known`, what the loops say of themselves.
-fn judge_loops(loops: &LoopCounts, known: Option<&Completeness>, set: &mut SolutionSet) {
+fn judge_loops(loops: &LoopCounts, known: Option<&CompletenessClaim>, set: &mut SolutionSet) {
     let settled = set.settled();
     let counts = &mut set.counts;
     let (complete, why) = match (&loops.trace_test, known) {
         (Some(test), _) if !test.complete => {
             let why = "a trace test says that some are missing";
-            (Complete::No, why.to_string())
+            (Completeness::No, why.to_string())
         }
         (_, Some(known)) if settled => (known.complete, known.reason.clone()),
         _ => return,

@@ -30,12 +30,13 @@
 pub mod any_algorithm;
 pub mod closings;
 mod coefficient_family;
-pub mod completeness;
+pub mod completeness_claim;
 pub mod decomposition;
 pub mod finite_endpoints;
 mod given_start;
 pub mod limits;
 pub mod monodromy;
+mod monomials;
 pub mod opening;
 pub mod parameter_solve;
 pub mod plan;
@@ -53,7 +54,7 @@ pub mod start_pair;
 pub mod zero_dimensional_solve;
 
 pub use any_algorithm::{AnyAlgorithm, AnySolve, RestoreError};
-pub use completeness::{Complete, Completeness};
+pub use completeness_claim::CompletenessClaim;
 pub use finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
 pub use opening::Opening;
 pub use plan::{Plan, PlanOptions, plan};

@@ -1,7 +1,7 @@
 //! Solve: a plan that asks for stages and learns from their results. Solves stand inside others, and one of
 //! them inside whatever drives it, which numbers the stages.
 
-use crate::completeness::Completeness;
+use crate::completeness_claim::CompletenessClaim;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::{Progress, StageProgress};
@@ -70,7 +70,7 @@ pub trait Solve: Send {
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
     /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
     /// say all that is known of that.
-    fn completeness(&self) -> Option<Completeness> {
+    fn completeness(&self) -> Option<CompletenessClaim> {
         None
     }
     /// Its finite endpoints when it is done; `None` where it does not say.

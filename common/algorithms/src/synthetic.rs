@@ -31,6 +31,19 @@ pub fn system() -> System {
     system
 }
 
+/// The system of this input for Bertini.
+pub fn written(text: &str) -> System {
+    match cognate_systems::formats::read("test", text.as_bytes()) {
+        Ok(problem) => problem.system,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// The system of these declarations, as they stand in an input for Bertini.
+pub fn declared(text: &str) -> System {
+    written(&format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n"))
+}
+
 /// All four paths.
 pub fn first_stage(homotopy: HomotopyKind) -> Stage {
     Stage {

@@ -262,7 +262,7 @@ impl Coordinator {
         };
         let stages = self.ledger.stages(job).await?.into_iter();
         for stage in stages.filter(|stage| stage.stage >= counted) {
-            if self.stage_of(stage.definition).await?.work != Work::Track {
+            if !self.stage_of(stage.definition).await?.work.tracks_paths() {
                 continue; // its items are no paths
             }
             let (mut from, first) = (0, results.is_empty());

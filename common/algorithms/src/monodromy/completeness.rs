@@ -5,7 +5,7 @@ use super::estimate;
 use super::graph::Known;
 use super::trace::{Curve, MOST_DEVIATION, Pencil, Test, deviation};
 use super::{BASE, LoopStart, MonodromySolve, Phase, edge_seed};
-use crate::completeness::Completeness;
+use crate::completeness_claim::CompletenessClaim;
 use crate::limits::MAX_PATHS;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::symmetry::SymmetryGroup;
@@ -310,22 +310,22 @@ impl MonodromySolve {
     }
 
     /// Whether all solutions that loops can connect are known: `None` while loops are made.
-    pub fn completeness(&self) -> Option<Completeness> {
+    pub fn completeness(&self) -> Option<CompletenessClaim> {
         let found = self.counts.solutions;
         Some(match self.counts.stop? {
-            Stop::Count => Completeness::yes(format!("{found} solutions were asked for")),
-            Stop::TraceTest => Completeness::yes(format!(
+            Stop::Count => CompletenessClaim::yes(format!("{found} solutions were asked for")),
+            Stop::TraceTest => CompletenessClaim::yes(format!(
                 "the trace test says that loops connect no others with these {found}"
             )),
-            Stop::IdleLoops | Stop::Confidence => Completeness::not_known(format!(
+            Stop::IdleLoops | Stop::Confidence => CompletenessClaim::not_known(format!(
                 "loops found {found} solutions at generic parameters, and nothing proves that they \
                  reach all; --trace-test asks, --expect says how many there are"
             )),
-            Stop::PathLimit => {
-                Completeness::not_known(format!("loops ended at the limit of {MAX_PATHS} paths"))
-            }
+            Stop::PathLimit => CompletenessClaim::not_known(format!(
+                "loops ended at the limit of {MAX_PATHS} paths"
+            )),
             Stop::NoStart => {
-                Completeness::not_known("no start solution could be followed".to_string())
+                CompletenessClaim::not_known("no start solution could be followed".to_string())
             }
         })
     }

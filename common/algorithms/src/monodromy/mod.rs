@@ -16,7 +16,7 @@ pub(crate) mod graph;
 mod places;
 pub mod trace;
 
-use crate::completeness::Completeness;
+use crate::completeness_claim::CompletenessClaim;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::limits::MAX_PATHS;
 use crate::opening::Opening;
@@ -875,7 +875,7 @@ impl Solve for MonodromySolve {
         progress
     }
 
-    fn completeness(&self) -> Option<Completeness> {
+    fn completeness(&self) -> Option<CompletenessClaim> {
         Self::completeness(self)
     }
 

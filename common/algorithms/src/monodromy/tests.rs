@@ -6,19 +6,13 @@ use crate::any_algorithm::{AnyAlgorithm, AnySolve};
 use crate::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use crate::run_locally::{drive, run_locally};
 use crate::solve::PathAlgorithm;
+use crate::synthetic::written;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PreparedStage;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use counts::TraceForm;
 use std::collections::HashMap;
-
-fn written(text: &str) -> System {
-    match cognate_systems::formats::read("test", text.as_bytes()) {
-        Ok(problem) => problem.system,
-        Err(error) => panic!("{error}"),
-    }
-}
 
 /// Two general cubics: 9 solutions.
 const CUBICS: &str = "CONFIG END; INPUT variable_group x, y;
