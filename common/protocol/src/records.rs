@@ -144,13 +144,12 @@ impl Writer {
     }
 
     fn record(&mut self, result: &FlatResult) {
-        let FlatResult {
-            path,
-            certification,
-            sharpening,
-            mixed_cells,
-            bend,
-        } = result;
+        self.path(&result.path);
+        self.facts(result);
+    }
+
+    /// What every result has.
+    fn path(&mut self, path: &PathResult) {
         let PathResult {
             origin,
             attempt,
@@ -164,9 +163,9 @@ impl Writer {
             infinity_turns,
             precision_bits,
             counts,
-            asked,
-            local_dimension,
-            boundary,
+            asked: _,
+            local_dimension: _,
+            boundary: _,
         } = path;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
@@ -206,10 +205,21 @@ impl Writer {
         for count in [steps, rejections, evaluations, exchanges, turns] {
             self.u32(*count);
         }
+    }
+
+    /// What only some results have.
+    fn facts(&mut self, result: &FlatResult) {
+        let FlatResult {
+            path,
+            certification,
+            sharpening,
+            mixed_cells,
+            bend,
+        } = result;
         if let Some(AskedFit {
             residual,
             correction,
-        }) = asked
+        }) = &path.asked
         {
             self.0.push(tag::ASKED);
             self.f64(*residual);
@@ -234,7 +244,7 @@ impl Writer {
             bound,
             margin,
             moved_slices: _,
-        }) = local_dimension
+        }) = &path.local_dimension
         {
             self.0.push(tag::LOCAL_DIMENSION);
             self.length(dual_dimensions.len());
@@ -266,7 +276,7 @@ impl Writer {
                 });
             }
         }
-        if let Some(BoundaryKey { numbers, margin }) = boundary.as_deref() {
+        if let Some(BoundaryKey { numbers, margin }) = path.boundary.as_deref() {
             self.0.push(tag::BOUNDARY);
             numbers.iter().for_each(|&number| self.f64(number));
             self.f64(*margin);
@@ -287,7 +297,8 @@ impl Writer {
             Some(BranchCount::Tie) => self.0.extend_from_slice(&[tag::UNCOUNTED, 1]),
             Some(BranchCount::TooLarge) => self.0.extend_from_slice(&[tag::UNCOUNTED, 2]),
         }
-        let slices = local_dimension.as_ref().map(|found| &found.moved_slices);
+        let slices = path.local_dimension.as_ref();
+        let slices = slices.map(|found| &found.moved_slices);
         if let Some(slices) = slices.filter(|slices| !slices.is_empty()) {
             self.0.push(tag::MOVED_SLICES);
             self.length(slices.len());
@@ -443,6 +454,21 @@ impl<'a> Reader<'a> {
 
     /// One record, which ends there.
     fn record(&mut self, end: usize) -> Result<FlatResult, DamagedRecords> {
+        let mut result = FlatResult::from(self.path()?);
+        let mut last = 0;
+        while self.at < end {
+            let [next] = self.array()?;
+            if next <= last {
+                return Err(self.damaged("facts that do not ascend"));
+            }
+            last = next;
+            self.fact(next, &mut result)?;
+        }
+        Ok(result)
+    }
+
+    /// What every record has.
+    fn path(&mut self) -> Result<PathResult, DamagedRecords> {
         let origin = PathIndex(self.u64()?);
         let attempt = self.array().map(u16::from_le_bytes)?;
         let outcome = match self.array::<1>()?[0] {
@@ -470,7 +496,7 @@ impl<'a> Reader<'a> {
         let infinity_turns = (0..groups)
             .map(|_| self.array().map(i32::from_le_bytes))
             .collect::<Result<_, _>>()?;
-        let mut result = FlatResult::from(PathResult {
+        Ok(PathResult {
             origin,
             attempt,
             outcome,
@@ -492,126 +518,120 @@ impl<'a> Reader<'a> {
             asked: None,
             local_dimension: None,
             boundary: None,
-        });
-        let mut last = 0;
-        while self.at < end {
-            let [next] = self.array()?;
-            if next <= last {
-                return Err(self.damaged("facts that do not ascend"));
+        })
+    }
+
+    /// What stands behind a tag.
+    fn fact(&mut self, tag: u8, result: &mut FlatResult) -> Result<(), DamagedRecords> {
+        match tag {
+            tag::ASKED => {
+                result.path.asked = Some(AskedFit {
+                    residual: self.f64()?,
+                    correction: self.f64()?,
+                });
             }
-            last = next;
-            match next {
-                tag::ASKED => {
-                    result.path.asked = Some(AskedFit {
-                        residual: self.f64()?,
-                        correction: self.f64()?,
-                    });
-                }
-                tag::CERTIFIED => {
-                    let certificate = Box::new(self.certificate()?);
-                    result.certification = Some(Certification::Certified(certificate));
-                }
-                tag::UNCERTIFIED => {
-                    let reason = match self.array::<1>()?[0] {
-                        1 => Uncertified::DamagedPoint,
-                        2 => Uncertified::NoEnclosure,
-                        3 => Uncertified::NewtonLeaves,
-                        4 => Uncertified::Singular,
-                        5 => Uncertified::NoContraction,
-                        _ => return Err(self.damaged("a reason that this version does not know")),
-                    };
-                    result.certification = Some(Certification::Uncertified(reason));
-                }
-                tag::LOCAL_DIMENSION => {
-                    let orders = self.length(4)?;
-                    result.path.local_dimension = Some(LocalDimension {
-                        dual_dimensions: (0..orders)
-                            .map(|_| self.u32())
-                            .collect::<Result<_, _>>()?,
-                        bound: self.u64()?,
-                        margin: self.f64()?,
-                        moved_slices: Vec::new(),
-                    });
-                }
-                tag::MOVED_SLICES => {
-                    let count = self.length(24)?;
-                    let slice = |reader: &mut Self| {
-                        Ok(MovedSlice {
-                            distance: reader.f64()?,
-                            residual: reader.f64()?,
-                            reached: reader.f64()?,
-                        })
-                    };
-                    let slices: Vec<MovedSlice> =
-                        (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
-                    let Some(found) = &mut result.path.local_dimension else {
-                        return Err(self.damaged("moved slices without a dual space"));
-                    };
-                    if !slices.iter().all(MovedSlice::is_sound) {
-                        return Err(self.damaged("a moved slice that is none"));
-                    }
-                    found.moved_slices = slices;
-                }
-                tag::SHARPENED => {
-                    let found = Sharpened {
-                        values: self.exact_parts()?,
-                        accuracy: self.f64()?,
-                        deflations: self.u32()?,
-                        precision_bits: self.u32()?,
-                    };
-                    if !found.is_sound() {
-                        return Err(self.damaged("an accuracy that is none"));
-                    }
-                    result.sharpening = Some(Sharpening::Sharpened(Box::new(found)));
-                }
-                tag::UNSHARPENED => {
-                    let reason = match self.array::<1>()?[0] {
-                        1 => Unsharpened::DamagedPoint,
-                        2 => Unsharpened::NotRegular,
-                        3 => Unsharpened::NewtonLeaves,
-                        _ => return Err(self.damaged("a reason that this version does not know")),
-                    };
-                    result.sharpening = Some(Sharpening::Unsharpened(reason));
-                }
-                tag::BOUNDARY => {
-                    let mut numbers = [0.0; NUMBERS];
-                    for number in &mut numbers {
-                        *number = self.f64()?;
-                    }
-                    let margin = self.f64()?;
-                    result.path.boundary = Some(BoundaryKey { numbers, margin })
-                        .filter(BoundaryKey::is_sound)
-                        .map(|key| Some(Box::new(key)))
-                        .ok_or_else(|| self.damaged("a key that is none"))?;
-                }
-                tag::MIXED_CELLS => {
-                    result.mixed_cells = Some(BranchCount::Counted(CountedCells {
-                        cells: self.u64()?,
-                        volume: self.u64()?,
-                        time_exponent: self.u32()?,
-                    }));
-                }
-                tag::UNCOUNTED => {
-                    result.mixed_cells = Some(match self.array::<1>()?[0] {
-                        1 => BranchCount::Tie,
-                        2 => BranchCount::TooLarge,
-                        _ => return Err(self.damaged("a reason that this version does not know")),
-                    });
-                }
-                tag::BEND => {
-                    let bend = Bend {
-                        velocity: self.numbers()?,
-                        acceleration: self.numbers()?,
-                        error: self.f64()?,
-                    };
-                    if !bend.is_sound() {
-                        return Err(self.damaged("derivatives that do not belong together"));
-                    }
-                    result.bend = Some(Box::new(bend));
-                }
-                _ => return Err(self.damaged("a fact that this version does not know")),
+            tag::CERTIFIED => {
+                let certificate = Box::new(self.certificate()?);
+                result.certification = Some(Certification::Certified(certificate));
             }
+            tag::UNCERTIFIED => {
+                let reason = match self.array::<1>()?[0] {
+                    1 => Uncertified::DamagedPoint,
+                    2 => Uncertified::NoEnclosure,
+                    3 => Uncertified::NewtonLeaves,
+                    4 => Uncertified::Singular,
+                    5 => Uncertified::NoContraction,
+                    _ => return Err(self.damaged("a reason that this version does not know")),
+                };
+                result.certification = Some(Certification::Uncertified(reason));
+            }
+            tag::LOCAL_DIMENSION => {
+                let orders = self.length(4)?;
+                result.path.local_dimension = Some(LocalDimension {
+                    dual_dimensions: (0..orders).map(|_| self.u32()).collect::<Result<_, _>>()?,
+                    bound: self.u64()?,
+                    margin: self.f64()?,
+                    moved_slices: Vec::new(),
+                });
+            }
+            tag::MOVED_SLICES => {
+                let count = self.length(24)?;
+                let slice = |reader: &mut Self| {
+                    Ok(MovedSlice {
+                        distance: reader.f64()?,
+                        residual: reader.f64()?,
+                        reached: reader.f64()?,
+                    })
+                };
+                let slices: Vec<MovedSlice> =
+                    (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
+                let Some(found) = &mut result.path.local_dimension else {
+                    return Err(self.damaged("moved slices without a dual space"));
+                };
+                if !slices.iter().all(MovedSlice::is_sound) {
+                    return Err(self.damaged("a moved slice that is none"));
+                }
+                found.moved_slices = slices;
+            }
+            tag::SHARPENED => {
+                let found = Sharpened {
+                    values: self.exact_parts()?,
+                    accuracy: self.f64()?,
+                    deflations: self.u32()?,
+                    precision_bits: self.u32()?,
+                };
+                if !found.is_sound() {
+                    return Err(self.damaged("an accuracy that is none"));
+                }
+                result.sharpening = Some(Sharpening::Sharpened(Box::new(found)));
+            }
+            tag::UNSHARPENED => {
+                let reason = match self.array::<1>()?[0] {
+                    1 => Unsharpened::DamagedPoint,
+                    2 => Unsharpened::NotRegular,
+                    3 => Unsharpened::NewtonLeaves,
+                    _ => return Err(self.damaged("a reason that this version does not know")),
+                };
+                result.sharpening = Some(Sharpening::Unsharpened(reason));
+            }
+            tag::BOUNDARY => {
+                let mut numbers = [0.0; NUMBERS];
+                for number in &mut numbers {
+                    *number = self.f64()?;
+                }
+                let margin = self.f64()?;
+                result.path.boundary = Some(BoundaryKey { numbers, margin })
+                    .filter(BoundaryKey::is_sound)
+                    .map(|key| Some(Box::new(key)))
+                    .ok_or_else(|| self.damaged("a key that is none"))?;
+            }
+            tag::MIXED_CELLS => {
+                result.mixed_cells = Some(BranchCount::Counted(CountedCells {
+                    cells: self.u64()?,
+                    volume: self.u64()?,
+                    time_exponent: self.u32()?,
+                }));
+            }
+            tag::UNCOUNTED => {
+                result.mixed_cells = Some(match self.array::<1>()?[0] {
+                    1 => BranchCount::Tie,
+                    2 => BranchCount::TooLarge,
+                    _ => return Err(self.damaged("a reason that this version does not know")),
+                });
+            }
+            tag::BEND => {
+                let bend = Bend {
+                    velocity: self.numbers()?,
+                    acceleration: self.numbers()?,
+                    error: self.f64()?,
+                };
+                if !bend.is_sound() {
+                    return Err(self.damaged("derivatives that do not belong together"));
+                }
+                result.bend = Some(Box::new(bend));
+            }
+            _ => return Err(self.damaged("a fact that this version does not know")),
         }
-        Ok(result)
+        Ok(())
     }
 }
