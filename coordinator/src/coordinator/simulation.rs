@@ -4,10 +4,12 @@
 
 use super::{Coordinator, CoordinatorError, NewProblem, Pull, Report};
 use crate::chunks::leasing::Policy;
+use crate::chunks::sizing::Sizing;
 use crate::jobs::drive::{Drive, Driven};
 use crate::jobs::tools::Tools;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::identity::*;
+use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::Store;
@@ -33,6 +35,67 @@ impl Dice {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         (z ^ (z >> 31)) % sides
+    }
+}
+
+/// Chunks of so many items, and a clock that is soon over.
+pub fn policy(most_items: u64) -> Policy {
+    Policy {
+        lease_ms: 3000,
+        steward_ms: 2000,
+        sizing: Sizing {
+            first_items: most_items,
+            most_items,
+            ..Sizing::default()
+        },
+        ..Policy::default()
+    }
+}
+
+/// A cluster without faults, whose chunks have so many items.
+pub fn cluster(most_items: u64, seed: u64) -> Cluster {
+    let clock = Arc::new(ManualClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    Cluster::new(ledger, Store::in_memory(), clock, policy(most_items), seed)
+}
+
+/// The reference of a problem: one coordinator and one worker solve it, and nothing happens to them.
+pub async fn undisturbed(problem: &NewProblem) -> (Cluster, JobRow) {
+    let mut cluster = cluster(1000, 1);
+    cluster.start_coordinator();
+    cluster.start_worker();
+    cluster.submit(problem).await;
+    for _ in 0..200 {
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        cluster.report(0, 0).await;
+    }
+    let row = cluster.row().await;
+    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    (cluster, row)
+}
+
+/// Whether clusters of all sizes, in which chance decides who does what, find what the reference is.
+pub async fn check_any_cluster(
+    problem: &NewProblem,
+    reference: &JobRow,
+    sizes: &[u64],
+    seeds: u64,
+) {
+    for seed in 0..seeds {
+        let mut cluster = cluster(sizes[seed as usize % sizes.len()], seed);
+        // Here workers die by chance, and no path is at fault.
+        cluster.policy.suspicion_limit = 1000;
+        for _ in 0..=seed % 2 {
+            cluster.start_coordinator();
+        }
+        for _ in 0..=seed % 3 {
+            cluster.start_worker();
+        }
+        cluster.submit(problem).await;
+        let row = cluster.run().await;
+        assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
     }
 }
 
