@@ -23,7 +23,7 @@ use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
 use crate::predictor::hermite::{POINTS, weights};
 use crate::refine::Refiner;
 use crate::stage::PreparedStage;
-use crate::step_control::next_step;
+use crate::step_control::{largest_error, next_step};
 use cognate_machine_code::Evaluator;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
@@ -430,7 +430,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .and(first.less_equal(&control(START_ERROR)))
             .and(batch.refine);
         let accepted = moved.or(refined);
-        let wanted = next_step(&batch.h, first, &limit, &counts, moved, batch.may_grow);
+        let noise = control(limits.settled);
+        let largest = largest_error(first, second, &limit, &tolerance, &noise);
+        let wanted = next_step(&batch.h, first, &largest, &counts, moved, batch.may_grow);
         // A step that only reached its target says little about longer ones: keep the wish.
         let mut h = wanted;
         h.min(&control(settings.max_step));

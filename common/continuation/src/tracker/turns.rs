@@ -19,6 +19,10 @@ use num_complex::Complex64;
 /// The first point of turns is where they may begin again on another rung if its last Newton
 /// correction is below this.
 const FIRM: f64 = 1e-10;
+/// Part of the largest first correction on the way that is the largest around 0. The tangent is that of the
+/// point before its last correction; where the Jacobian is nearly singular, its error times the next
+/// step is the next prediction's error, so that steps get the longer, the smaller corrections are.
+const AROUND_ZERO: f64 = 0.01;
 /// Valuations are compared when t has become this part of what it was.
 const ZONE: f64 = 0.5;
 
@@ -97,7 +101,7 @@ impl<R: Real> Lockstep<'_, R> {
                 let to = self.circle[(vertex % VERTICES) as usize] * radius;
                 let h = self.batch.h.lane(lane).min(radius);
                 let h = if vertex == 1 { h.max(0.1 * radius) } else { h };
-                self.batch.follow(lane, to, h);
+                self.follow_around_zero(lane, to, h);
                 self.lanes[lane].phase = Phase::Turning;
             }
             cauchy::Next::Inward(radius) => {
@@ -122,8 +126,7 @@ impl<R: Real> Lockstep<'_, R> {
                 }
                 let from = self.lanes[lane].cauchy.radius();
                 self.batch.return_to_anchor(lane, from);
-                self.batch
-                    .follow(lane, Complex64::new(radius, 0.0), 0.1 * from);
+                self.follow_around_zero(lane, Complex64::new(radius, 0.0), 0.1 * from);
                 self.lanes[lane].phase = Phase::Inward;
             }
             cauchy::Next::Settled(settled) => {
@@ -196,6 +199,13 @@ impl<R: Real> Lockstep<'_, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
+    }
+
+    /// The lane's next steps lead to `target`, the first at most `h` long.
+    fn follow_around_zero(&mut self, lane: usize, target: Complex64, h: f64) {
+        self.batch.follow(lane, target, h);
+        let limit = AROUND_ZERO * self.settings.predictor_tolerance;
+        self.batch.restrict(lane, h, limit);
     }
 
     /// The endgame's generic form of how far a path is from where its turns began: on the higher
