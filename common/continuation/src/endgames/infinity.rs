@@ -279,6 +279,8 @@ mod tests {
             );
         }
         assert_eq!(found(2, 1e-18, 1e-3, 1e-15), Infinity::BelowNoise);
+        // A solution of norm 2e11, below the noise of the samples.
+        assert_eq!(found(1, 5e-12, 1e-3, 1e-13), Infinity::BelowNoise);
     }
 
     #[test]
