@@ -9,7 +9,7 @@ use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_numeric::precision::{DOUBLE, rungs};
 use cognate_protocol::submission::{
-    Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+    Options, PrecisionChoice, SettingsChoice, Source, StartSolutions, Submission,
 };
 use cognate_protocol::{digest, from_proto, to_proto};
 use cognate_systems::formats::{self, FileSettings, PrecisionHint};
@@ -149,79 +149,8 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
             "precision of {bits} bits; paths are tracked with {MOST_BITS} at most"
         )));
     }
-    if options.decompose.is_some() {
-        return check_decomposition(options);
-    }
-    match (options.start, &options.start_solutions) {
-        (StartKind::Given, None) => Err(ApiError::Problem(
-            "options.start_solutions: start kind \"given\" needs start solutions".to_owned(),
-        )),
-        (
-            StartKind::TotalDegree
-            | StartKind::Multihomogeneous
-            | StartKind::Polyhedral
-            | StartKind::LinearProduct
-            | StartKind::Regeneration,
-            Some(_),
-        ) => Err(ApiError::Problem(
-            "options.start_solutions: they go with start kind \"given\" or \"auto\" only"
-                .to_owned(),
-        )),
-        (start, _)
-            if options.sets.is_some()
-                && !matches!(start, StartKind::LinearProduct | StartKind::Auto) =>
-        {
-            Err(ApiError::Problem(
-                "options.sets: they go with start kind \"linear-product\" or \"auto\" only"
-                    .to_owned(),
-            ))
-        }
-        (StartKind::Monodromy, _)
-            if options.idle_loops.is_some() && options.confidence.is_some() =>
-        {
-            Err(ApiError::Problem(
-                "options.idle_loops, options.confidence: they are two rules for when loops end; \
-                 give one"
-                    .to_owned(),
-            ))
-        }
-        (StartKind::Monodromy, _) => Ok(()),
-        _ if options.idle_loops.is_some()
-            || options.expected_solutions.is_some()
-            || options.trace_test
-            || options.confidence.is_some() =>
-        {
-            Err(ApiError::Problem(
-                "options.idle_loops, options.expected_solutions, options.trace_test, \
-                 options.confidence: they go with start kind \"monodromy\" only"
-                    .to_owned(),
-            ))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// A decomposition has a start of its own, and no isolated solutions to do something with.
-fn check_decomposition(options: &Options) -> Result<(), ApiError> {
-    let refused = [
-        (options.start != StartKind::Auto, "start"),
-        (options.start_solutions.is_some(), "start_solutions"),
-        (!options.start_parameters.is_empty(), "start_parameters"),
-        (options.sets.is_some(), "sets"),
-        (options.idle_loops.is_some(), "idle_loops"),
-        (options.expected_solutions.is_some(), "expected_solutions"),
-        (options.confidence.is_some(), "confidence"),
-        (options.trace_test, "trace_test"),
-        (options.certify, "certify"),
-        (options.digits.is_some(), "digits"),
-        (options.deflate, "deflate"),
-    ];
-    match refused.iter().find(|(given, _)| *given) {
-        Some((_, field)) => Err(ApiError::Problem(format!(
-            "options.{field}: does not go with options.decompose"
-        ))),
-        None => Ok(()),
-    }
+    let fits = options.check();
+    fits.map_err(|misfit| ApiError::Problem(misfit.to_string()))
 }
 
 /// Start solutions have a coordinate for each variable.
@@ -245,6 +174,7 @@ pub fn check_points(points: &StoredPoints, system: &System) -> Result<(), ApiErr
 mod tests {
     use super::*;
     use cognate_continuation::tracker::settings::Preset;
+    use cognate_protocol::submission::StartKind;
 
     fn text(content: &str, options: Options) -> Result<NewProblem, ApiError> {
         take(Submission {

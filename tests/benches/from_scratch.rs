@@ -154,7 +154,7 @@ const CHUNK: u64 = 64;
 fn whole(planned: &mut Plan, solutions: Option<&String>) -> Result<(), Failure> {
     let begun = Instant::now();
     let system = &planned.system;
-    drive::<Failure>(&mut planned.algorithm, &mut |opening| {
+    drive::<Failure, _>(&mut planned.algorithm, &mut |opening| {
         let made = |wanted: Digest| {
             let mut objects = opening.objects.iter();
             objects.find(|points| points.digest() == wanted).cloned()

@@ -10,7 +10,7 @@ use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::run_locally::{drive, run_locally};
 use cognate_algorithms::{Opening, PathAlgorithm, PlanOptions, plan};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::{Stage, Work};
@@ -52,7 +52,7 @@ fn purpose(stage: &Stage) -> String {
 }
 
 /// All items of a stage; one line about them.
-fn track(system: &System, opening: &Opening, made: &Objects) -> Result<Vec<PathResult>, Failure> {
+fn track(system: &System, opening: &Opening, made: &Objects) -> Result<Vec<ItemResult>, Failure> {
     let stage = &opening.stage;
     let find = |wanted: Digest| made.get(&wanted).cloned();
     let before = cpu_seconds()?;
@@ -66,7 +66,7 @@ fn track(system: &System, opening: &Opening, made: &Objects) -> Result<Vec<PathR
         longest = longest.max(seconds);
         if seconds > LONG {
             println!("  {seconds:.1} s for {}:", purpose(stage));
-            for r in &chunk {
+            for r in chunk.iter().filter_map(ItemResult::path) {
                 println!(
                     "    path {}: {:?} at |t| = {:.1e}, {} bits, {} evaluations, {} turns",
                     r.origin.0,
@@ -82,7 +82,7 @@ fn track(system: &System, opening: &Opening, made: &Objects) -> Result<Vec<PathR
         first = last;
     }
     let mut bits: BTreeMap<u32, u64> = BTreeMap::new();
-    for result in &results {
+    for result in results.iter().filter_map(ItemResult::path) {
         *bits.entry(result.precision_bits).or_default() += 1;
     }
     println!(
@@ -116,7 +116,7 @@ fn compare(seed: u64, max_retries: u16) -> Result<bool, Failure> {
     let begun = cpu_seconds()?;
     let mut planned = plan(&as_a_loop(), &options(StartChoice::Regeneration))?;
     let mut made = Objects::new();
-    drive::<Failure>(&mut planned.algorithm, &mut |opening| {
+    drive::<Failure, _>(&mut planned.algorithm, &mut |opening| {
         let objects = opening.objects.iter();
         made.extend(objects.map(|points| (points.digest(), Arc::clone(points))));
         track(&planned.system, opening, &made)

@@ -2,6 +2,7 @@
 //!
 //! `SEEDS=30 cargo test -p cognate-tests --test decomposition` takes more seeds than the three of every run.
 
+use cognate_algorithms::Root;
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
 use cognate_algorithms::run_locally::drive;
 use cognate_continuation::prepared_work::PreparedWork;
@@ -245,10 +246,10 @@ fn systems_of_stages_survive_the_wire() {
     for name in ["twisted_cubic", "conic_p1p2", "double_line", "jets_a3"] {
         let system = instance(name);
         let solve = DecompositionSolve::new(&system, &DecompositionOptions::default());
-        let mut solve = solve.expect("it can be decomposed");
+        let mut root = Root::new(solve.expect("it can be decomposed"));
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
         let mut systems = BTreeSet::new();
-        let driven = drive::<PrepareError>(&mut solve, &mut |opening| {
+        let driven = drive::<PrepareError, _>(&mut root, &mut |opening| {
             let made = opening.objects.iter();
             objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let system = opening.system.as_deref();

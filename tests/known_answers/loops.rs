@@ -6,8 +6,9 @@ use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::monodromy::counts::Stop;
 use cognate_algorithms::plan::{GivenStart, StartChoice};
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{Complete, PathAlgorithm, PlanOptions, plan};
+use cognate_algorithms::{PlanOptions, plan};
 use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_solutions::completeness::Completeness;
 use cognate_systems::formats;
 use cognate_systems::formats::points::{read_parameters, read_solutions};
 use std::path::Path;
@@ -49,7 +50,7 @@ fn all_six_revolute_arms_from_one_far_posture() {
         let loops = plan.algorithm.loops().expect("loops were made");
         assert_eq!(sets[0].counts.nonsingular, 16, "seed {seed}: {loops:?}");
         let said = plan.algorithm.completeness().expect("loops have ended");
-        assert_eq!(said.complete, Complete::NotKnown, "{}", said.reason);
+        assert_eq!(said.complete, Completeness::NotKnown, "{}", said.reason);
     }
 }
 
@@ -72,7 +73,7 @@ fn an_expected_number_makes_an_answer_complete() {
     let loops = plan.algorithm.loops().expect("loops were made");
     assert_eq!(loops.stop, Some(Stop::Count));
     let said = plan.algorithm.completeness().expect("loops have ended");
-    assert_eq!(said.complete, Complete::Yes);
+    assert_eq!(said.complete, Completeness::Yes);
 }
 
 /// x^7 = p has one branch point: loops turn the solutions in a circle or leave all where they are, more

@@ -3,8 +3,8 @@
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::plan::GivenStart;
 use cognate_algorithms::run_locally::drive;
-use cognate_algorithms::{PathAlgorithm, PlanOptions, plan};
-use cognate_continuation::path_result::PathResult;
+use cognate_algorithms::{PathAlgorithm, PlanOptions, Root, plan};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -28,7 +28,7 @@ pub struct Subject {
 }
 
 /// Hash of the records of these results: what an audit compares. An unknown number (NaN) equals itself.
-pub fn hash(results: &[PathResult]) -> String {
+pub fn hash(results: &[ItemResult]) -> String {
     records::hash(&records::encode(results)).to_string()
 }
 
@@ -76,8 +76,8 @@ impl Subject {
             ..DecompositionOptions::default()
         };
         let solve = DecompositionSolve::new(system, &options);
-        let mut solve = solve.expect("it can be decomposed");
-        Self::on_the_way(system, &mut solve, HashMap::new(), wanted)
+        let mut root = Root::new(solve.expect("it can be decomposed"));
+        Self::on_the_way(system, &mut root, HashMap::new(), wanted)
     }
 
     fn on_the_way(
@@ -87,7 +87,7 @@ impl Subject {
         wanted: &dyn Fn(&Stage) -> bool,
     ) -> Self {
         let mut found = None;
-        let ended = drive::<()>(algorithm, &mut |opening| {
+        let ended = drive::<(), _>(algorithm, &mut |opening| {
             let brought = opening.objects.iter();
             points.extend(brought.map(|object| (object.digest(), Arc::clone(object))));
             let system = opening.system.as_deref().unwrap_or(system);
@@ -139,10 +139,11 @@ impl Subject {
         let expected = prepared.run(0..end, 16);
         assert_eq!(expected.len() as u64, end);
         for (item, result) in (0..).zip(&expected) {
-            assert_eq!(result.origin.0, self.stage.origin(item), "item {item}");
-            assert_eq!(result.attempt, self.stage.attempt, "item {item}");
+            assert_eq!(result.origin().0, self.stage.origin(item), "item {item}");
+            assert_eq!(result.attempt(), self.stage.attempt, "item {item}");
+            assert!(result.is_of(self.stage.work), "item {item}");
         }
-        let check = |what: &str, found: Vec<PathResult>| {
+        let check = |what: &str, found: Vec<ItemResult>| {
             assert!(
                 hash(&found) == hash(&expected),
                 "{what} changes the results"
@@ -166,7 +167,7 @@ impl Subject {
             check(set.name(), there);
         }
         check("preparing again", self.prepared().0.run(0..end, 16));
-        let read = records::decode(&records::encode(&expected));
+        let read = records::decode(&records::encode(&expected), self.stage.work);
         check("a record", read.expect("records are read"));
     }
 }

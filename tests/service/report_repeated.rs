@@ -1,6 +1,7 @@
 //! Reports and pulls that are sent again: a lost reply changes nothing.
 
 use crate::tracking_by_hand::HandWorker;
+use cognate_continuation::item_result::ItemResult;
 use cognate_protocol::v1::Verdict;
 use cognate_tests::builders::katsura;
 use cognate_tests::client::{Submission, accepted};
@@ -41,7 +42,10 @@ fn a_report_counts_once_and_another_one_is_noticed() {
         assert_eq!(worker.report(&lease, &results), Verdict::AlreadyAccepted);
     }
     let mut others = results.clone();
-    others[0].residual *= 1.5;
+    let ItemResult::Track(path) = &mut others[0] else {
+        panic!("{:?}", others[0]);
+    };
+    path.residual *= 1.5;
     assert_eq!(worker.report(&lease, &others), Verdict::HashDiffers);
     assert!(!worker.renew(&lease), "a finished chunk is nobody's");
     assert_eq!(done(), lease.count, "counted once");
@@ -52,7 +56,7 @@ fn a_report_counts_once_and_another_one_is_noticed() {
     assert_eq!(answer.counts.solutions_distinct, 16);
     for (index, result) in results.iter().enumerate() {
         let path = &answer.paths[lease.first as usize + index];
-        let reported = cognate_protocol::to_proto::path::path_result(result);
+        let reported = cognate_protocol::to_proto::path::item_result(result);
         assert_eq!(
             path.result.as_ref(),
             Some(&reported),

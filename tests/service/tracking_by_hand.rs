@@ -1,6 +1,6 @@
 //! A worker made of single calls, so that a test decides when each of them happens.
 
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PreparedStage;
 use cognate_protocol::v1::worker_api_client::WorkerApiClient;
 use cognate_protocol::{PROTOCOL_VERSION, from_proto, to_proto, v1};
@@ -79,7 +79,7 @@ impl<'a> HandWorker<'a> {
     }
 
     /// The results of a chunk, tracked here.
-    pub fn track(&self, lease: &v1::Lease) -> Vec<PathResult> {
+    pub fn track(&self, lease: &v1::Lease) -> Vec<ItemResult> {
         let id = lease.id.clone().expect("a lease has an id");
         let digest = lease.problem.clone();
         let call = |mut calls: Calls| async move {
@@ -95,16 +95,17 @@ impl<'a> HandWorker<'a> {
         let system = from_proto::problem::system(&system).expect("a system");
         let stage = from_proto::path::stage(&stage).expect("a stage");
         let prepared = PreparedStage::new(&system, &stage, &|_| None).expect("a stage to track");
-        prepared.track(lease.first..lease.first + lease.count, 8)
+        let paths = prepared.track(lease.first..lease.first + lease.count, 8);
+        paths.into_iter().map(ItemResult::Track).collect()
     }
 
     /// Reports results for a lease.
-    pub fn report(&self, lease: &v1::Lease, results: &[PathResult]) -> v1::Verdict {
+    pub fn report(&self, lease: &v1::Lease, results: &[ItemResult]) -> v1::Verdict {
         let request = v1::ReportRequest {
             identity: Some(self.identity.clone()),
             chunks: vec![v1::ChunkReport {
                 lease: lease.id.clone(),
-                results: results.iter().map(to_proto::path::path_result).collect(),
+                results: results.iter().map(to_proto::path::item_result).collect(),
                 cpu_nanoseconds: 1_000_000,
                 wall_nanoseconds: 1_000_000,
             }],

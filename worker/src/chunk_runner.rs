@@ -4,7 +4,7 @@
 //! first served; pieces of a later chunk follow, so that no core idles at a
 //! chunk's end. Paths are pure, so neither cut nor thread shows in the results.
 
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// Something that tracks the items of one stage; pure and blocking.
 pub trait ChunkTracker: Send + Sync {
     /// One result for each item, in order; the same at every width.
-    fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult>;
+    fn track(&self, items: Range<u64>, width: usize) -> Vec<ItemResult>;
     /// How many items there are; a chunk is a range below it.
     fn items(&self) -> u64;
     /// The width that suits the size of the stage's program and matrix.
@@ -41,7 +41,7 @@ impl Abandonment {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackedChunk {
     /// One result for each item, in order.
-    pub results: Vec<PathResult>,
+    pub results: Vec<ItemResult>,
     /// Processor time that it took, of all threads together.
     pub cpu: Duration,
     /// Time from its first piece's beginning to its last piece's end.
@@ -101,7 +101,7 @@ struct Running {
 }
 
 struct Progress {
-    results: Vec<Option<Vec<PathResult>>>,
+    results: Vec<Option<Vec<ItemResult>>>,
     open: usize,
     first_begin: Option<Instant>,
     cpu: Duration,
@@ -257,19 +257,19 @@ fn thread_cpu_time() -> Duration {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use cognate_continuation::path_result::PathIndex;
+    use cognate_continuation::path_result::{PathIndex, PathResult};
     use cognate_continuation::tracker::outcome::PathOutcome;
     use num_complex::Complex64;
 
     /// A result that is a function of its item alone.
-    pub(crate) fn result_of(item: u64) -> PathResult {
+    pub(crate) fn result_of(item: u64) -> ItemResult {
         let point = vec![Complex64::new(item as f64, 0.5)];
-        PathResult {
+        ItemResult::Track(PathResult {
             residual: 0.0,
             condition: 1.0,
             accuracy: 1e-15,
             ..PathResult::untracked(item, 0, PathOutcome::Regular, point)
-        }
+        })
     }
 
     /// Knows nothing but the items; breaks at one of them if told.
@@ -279,7 +279,7 @@ pub(crate) mod tests {
     }
 
     impl ChunkTracker for Echo {
-        fn track(&self, items: Range<u64>, _: usize) -> Vec<PathResult> {
+        fn track(&self, items: Range<u64>, _: usize) -> Vec<ItemResult> {
             std::thread::sleep(self.slow);
             assert!(
                 !self.breaks_at.is_some_and(|item| items.contains(&item)),
@@ -399,7 +399,7 @@ pub(crate) mod tests {
                 panic!("chunk {number} must be tracked");
             };
             assert_eq!(chunk.results.len(), 100);
-            assert_eq!(chunk.results[0].origin, PathIndex(number * 100));
+            assert_eq!(chunk.results[0].origin(), PathIndex(number * 100));
             numbers.push(number);
         }
         numbers.sort_unstable();

@@ -5,7 +5,7 @@
 
 use crate::chunk_runner::ChunkTracker;
 use crate::transport::{Lease, Transport, TransportError};
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_systems::system::System;
@@ -134,12 +134,8 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Unknowns up to which sixteen lanes of program and matrix fit in about 64 KB: n (n + 2)
-/// complex numbers of 16 bytes for the matrix alone are 31 KB at n = 10.
-const SIXTEEN_LANES_UP_TO: usize = 10;
-
 impl ChunkTracker for PreparedWork {
-    fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
+    fn track(&self, items: Range<u64>, width: usize) -> Vec<ItemResult> {
         self.run(items, width)
     }
 
@@ -148,16 +144,7 @@ impl ChunkTracker for PreparedWork {
     }
 
     fn preferred_width(&self) -> usize {
-        match self {
-            Self::Track(stage) if stage.homotopy().dimension() <= SIXTEEN_LANES_UP_TO => 16,
-            Self::Track(_) => 8,
-            // One point or branch after the other.
-            Self::Certify(_)
-            | Self::LocalDimension(_)
-            | Self::Sharpen(_)
-            | Self::CountMixedCells(_)
-            | Self::Bend(_) => 1,
-        }
+        PreparedWork::preferred_width(self)
     }
 }
 

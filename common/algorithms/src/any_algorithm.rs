@@ -1,46 +1,62 @@
-//! AnyAlgorithm: one type for every algorithm, which can be written down and read back.
+//! AnyAlgorithm: a job, whatever solves it, which can be written down and read back.
 
-use crate::certified_solve::CertifiedSolve;
-use crate::closing_stage::FiniteEndpoints;
-use crate::completeness::{Complete, Completeness};
+use crate::closings::Closing;
+use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
+use crate::progress::Progress;
 use crate::regeneration_solve::RegenerationSolve;
-use crate::sharpened_solve::SharpenedSolve;
+use crate::solve::{Next, PathAlgorithm, Solve, StageNumbers};
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
-use crate::{Next, PathAlgorithm, Progress};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 13;
+const VERSION: u8 = 14;
 
-/// Every algorithm that a plan can choose.
+/// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum AnyAlgorithm {
+pub enum AnySolve {
     /// All isolated solutions of one system.
     ZeroDimensional(ZeroDimensionalSolve),
     /// From solved parameters to others.
     Parameter(ParameterSolve),
     /// From one solution of a family to all.
     Monodromy(Box<MonodromySolve>),
-    /// Any of them, and the proof of what it found.
-    Certified(Box<CertifiedSolve>),
-    /// Any of them, and its solutions with more digits.
-    Sharpened(Box<SharpenedSolve>),
     /// All isolated solutions of one system, from mixed cells.
     Polyhedral(Box<PolyhedralSolve>),
     /// All regular solutions of one system, equation by equation.
     Regeneration(Box<RegenerationSolve>),
     /// All components of one system.
     Decomposition(Box<DecompositionSolve>),
+}
+
+/// A job: a solve, what is done with its endpoints afterwards, and the numbers of its stages.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AnyAlgorithm {
+    solve: AnySolve,
+    /// In the order in which they come.
+    closings: Vec<Closing>,
+    numbers: StageNumbers,
+}
+
+impl From<AnySolve> for AnyAlgorithm {
+    fn from(solve: AnySolve) -> Self {
+        Self {
+            solve,
+            closings: Vec::new(),
+            numbers: StageNumbers::default(),
+        }
+    }
 }
 
 /// Why a snapshot cannot be read.
@@ -57,8 +73,45 @@ pub enum RestoreError {
     Damaged(String),
 }
 
+impl AnySolve {
+    fn with_max_retries(self, most: u16) -> Self {
+        match self {
+            Self::ZeroDimensional(solve) => Self::ZeroDimensional(solve.with_max_retries(most)),
+            Self::Parameter(solve) => Self::Parameter(solve.with_max_retries(most)),
+            Self::Monodromy(solve) => Self::Monodromy(Box::new(solve.with_max_retries(most))),
+            Self::Polyhedral(solve) => Self::Polyhedral(Box::new(solve.with_max_retries(most))),
+            Self::Regeneration(solve) => Self::Regeneration(Box::new(solve.with_max_retries(most))),
+            Self::Decomposition(solve) => {
+                Self::Decomposition(Box::new(solve.with_max_retries(most)))
+            }
+        }
+    }
+
+    fn get(&self) -> &dyn Solve {
+        match self {
+            Self::ZeroDimensional(solve) => solve,
+            Self::Parameter(solve) => solve,
+            Self::Monodromy(solve) => &**solve,
+            Self::Polyhedral(solve) => &**solve,
+            Self::Regeneration(solve) => &**solve,
+            Self::Decomposition(solve) => &**solve,
+        }
+    }
+
+    fn get_mut(&mut self) -> &mut dyn Solve {
+        match self {
+            Self::ZeroDimensional(solve) => solve,
+            Self::Parameter(solve) => solve,
+            Self::Monodromy(solve) => &mut **solve,
+            Self::Polyhedral(solve) => &mut **solve,
+            Self::Regeneration(solve) => &mut **solve,
+            Self::Decomposition(solve) => &mut **solve,
+        }
+    }
+}
+
 impl AnyAlgorithm {
-    /// The state that [`PathAlgorithm::snapshot`] wrote.
+    /// The state that [`Self::snapshot`] wrote.
     pub fn restore(snapshot: &[u8]) -> Result<Self, RestoreError> {
         match snapshot.split_first() {
             None => Err(RestoreError::Damaged("it is empty".into())),
@@ -68,71 +121,51 @@ impl AnyAlgorithm {
         }
     }
 
-    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+    /// The whole state, to be restored where another process goes on (see [`Self::restore`]).
+    pub fn snapshot(&self) -> Vec<u8> {
         postcard::to_extend(self, vec![VERSION]).expect("memory takes every byte")
+    }
+
+    /// Closes the solve with this, too, after the closings that there are.
+    pub fn close_with(&mut self, closing: Closing) {
+        self.closings.push(closing);
     }
 
     /// The same with another limit of repetitions.
     #[must_use]
     pub fn with_max_retries(self, max_retries: u16) -> Self {
-        match self {
-            Self::ZeroDimensional(solve) => {
-                Self::ZeroDimensional(solve.with_max_retries(max_retries))
-            }
-            Self::Parameter(solve) => Self::Parameter(solve.with_max_retries(max_retries)),
-            Self::Monodromy(solve) => {
-                Self::Monodromy(Box::new(solve.with_max_retries(max_retries)))
-            }
-            Self::Certified(solve) => {
-                Self::Certified(Box::new(solve.with_max_retries(max_retries)))
-            }
-            Self::Sharpened(solve) => {
-                Self::Sharpened(Box::new(solve.with_max_retries(max_retries)))
-            }
-            Self::Polyhedral(solve) => {
-                Self::Polyhedral(Box::new(solve.with_max_retries(max_retries)))
-            }
-            Self::Regeneration(solve) => {
-                Self::Regeneration(Box::new(solve.with_max_retries(max_retries)))
-            }
-            Self::Decomposition(solve) => {
-                Self::Decomposition(Box::new(solve.with_max_retries(max_retries)))
-            }
+        Self {
+            solve: self.solve.with_max_retries(max_retries),
+            ..self
         }
     }
 
-    fn get(&self) -> &dyn PathAlgorithm {
-        match self {
-            Self::ZeroDimensional(solve) => solve,
-            Self::Parameter(solve) => solve,
-            Self::Monodromy(solve) => &**solve,
-            Self::Certified(solve) => &**solve,
-            Self::Sharpened(solve) => &**solve,
-            Self::Polyhedral(solve) => &**solve,
-            Self::Regeneration(solve) => &**solve,
-            Self::Decomposition(solve) => &**solve,
-        }
+    /// The solve, without what is done afterwards.
+    pub fn solve(&self) -> &AnySolve {
+        &self.solve
     }
 
-    /// The solve by monodromy, if it is one, certified or not.
+    /// The solve by monodromy, if it is one.
     pub fn monodromy(&self) -> Option<&MonodromySolve> {
-        match self {
-            Self::Monodromy(solve) => Some(&**solve),
-            Self::Certified(solve) => solve.solve().monodromy(),
-            Self::Sharpened(solve) => solve.solve().monodromy(),
-            Self::ZeroDimensional(_)
-            | Self::Parameter(_)
-            | Self::Polyhedral(_)
-            | Self::Regeneration(_)
-            | Self::Decomposition(_) => None,
+        match &self.solve {
+            AnySolve::Monodromy(solve) => Some(&**solve),
+            AnySolve::ZeroDimensional(_)
+            | AnySolve::Parameter(_)
+            | AnySolve::Polyhedral(_)
+            | AnySolve::Regeneration(_)
+            | AnySolve::Decomposition(_) => None,
         }
     }
 
     /// The decomposition that was found, where it is one and `next` has said `Done`.
     pub fn decomposition(&self) -> Option<&Decomposition> {
-        match self {
-            Self::Decomposition(solve) => solve.decomposition(),
-            _ => None,
+        match &self.solve {
+            AnySolve::Decomposition(solve) => solve.decomposition(),
+            AnySolve::ZeroDimensional(_)
+            | AnySolve::Parameter(_)
+            | AnySolve::Polyhedral(_)
+            | AnySolve::Regeneration(_)
+            | AnySolve::Monodromy(_) => None,
         }
     }
 
@@ -144,13 +177,11 @@ impl AnyAlgorithm {
     /// The last results of all paths by the numbers that people see, where a stage counts its
     /// paths by others, or not all of them.
     pub fn renumbered_results(&self) -> Option<Vec<PathResult>> {
-        match self {
-            Self::Polyhedral(solve) => Some(solve.results()),
-            Self::Regeneration(solve) => Some(solve.results()),
-            Self::Certified(solve) => solve.solve().renumbered_results(),
-            Self::Sharpened(solve) => solve.solve().renumbered_results(),
-            Self::ZeroDimensional(solve) => solve.paths().results_with_images(),
-            Self::Parameter(_) | Self::Monodromy(_) | Self::Decomposition(_) => None,
+        match &self.solve {
+            AnySolve::Polyhedral(solve) => Some(solve.results()),
+            AnySolve::Regeneration(solve) => Some(solve.results()),
+            AnySolve::ZeroDimensional(solve) => solve.paths().results_with_images(),
+            AnySolve::Parameter(_) | AnySolve::Monodromy(_) | AnySolve::Decomposition(_) => None,
         }
     }
 
@@ -162,42 +193,43 @@ impl AnyAlgorithm {
 
     /// The solve whose plain paths need not be held (see `solutions::plain`), where it is such a one.
     pub fn large(&self) -> Option<&ZeroDimensionalSolve> {
-        match self {
-            Self::ZeroDimensional(solve) if solve.paths().can_leave_out() => Some(solve),
+        match &self.solve {
+            AnySolve::ZeroDimensional(solve)
+                if self.closings.is_empty() && solve.paths().can_leave_out() =>
+            {
+                Some(solve)
+            }
             _ => None,
         }
     }
 
     /// The same, to tell it about them.
     pub fn large_mut(&mut self) -> Option<&mut ZeroDimensionalSolve> {
-        match self {
-            Self::ZeroDimensional(solve) if solve.paths().can_leave_out() => Some(solve),
+        match &mut self.solve {
+            AnySolve::ZeroDimensional(solve)
+                if self.closings.is_empty() && solve.paths().can_leave_out() =>
+            {
+                Some(solve)
+            }
             _ => None,
         }
     }
 
-    fn get_mut(&mut self) -> &mut dyn PathAlgorithm {
-        match self {
-            Self::ZeroDimensional(solve) => solve,
-            Self::Parameter(solve) => solve,
-            Self::Monodromy(solve) => &mut **solve,
-            Self::Certified(solve) => &mut **solve,
-            Self::Sharpened(solve) => &mut **solve,
-            Self::Polyhedral(solve) => &mut **solve,
-            Self::Regeneration(solve) => &mut **solve,
-            Self::Decomposition(solve) => &mut **solve,
-        }
+    /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
+    /// say all that is known of that.
+    pub fn completeness(&self) -> Option<CompletenessClaim> {
+        self.solve.get().completeness()
     }
 }
 
 /// Whether loops found all: what a trace test says, or `known`, what the loops say of themselves.
-fn judge_loops(loops: &LoopCounts, known: Option<&Completeness>, set: &mut SolutionSet) {
+fn judge_loops(loops: &LoopCounts, known: Option<&CompletenessClaim>, set: &mut SolutionSet) {
     let settled = set.settled();
     let counts = &mut set.counts;
     let (complete, why) = match (&loops.trace_test, known) {
         (Some(test), _) if !test.complete => {
             let why = "a trace test says that some are missing";
-            (Complete::No, why.to_string())
+            (Completeness::No, why.to_string())
         }
         (_, Some(known)) if settled => (known.complete, known.reason.clone()),
         _ => return,
@@ -207,22 +239,52 @@ fn judge_loops(loops: &LoopCounts, known: Option<&Completeness>, set: &mut Solut
 
 impl PathAlgorithm for AnyAlgorithm {
     fn next(&mut self) -> Next {
-        self.get_mut().next()
+        let solve = self.solve.get_mut();
+        match solve.next(&mut self.numbers) {
+            Next::Done => {}
+            other => return other,
+        }
+        for closing in &mut self.closings {
+            let next = match closing.next() {
+                Some(next) => next,
+                // A solve without an answer has no endpoints either.
+                None => match solve
+                    .finite_endpoints()
+                    .filter(|_| solve.failure().is_none())
+                {
+                    Some(endpoints) => closing.open(endpoints, &mut self.numbers),
+                    None => Next::Done,
+                },
+            };
+            if next != Next::Done {
+                return next;
+            }
+        }
+        Next::Done
     }
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
-        self.get_mut().absorb(stage, results);
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+        match self.closings.iter_mut().find(|closing| closing.is_open()) {
+            Some(closing) => closing.absorb(stage, results),
+            None => self.solve.get_mut().absorb(stage, results),
+        }
     }
     fn failure(&self) -> Option<String> {
-        self.get().failure()
+        self.solve.get().failure()
     }
     fn progress(&self) -> Progress {
-        self.get().progress()
-    }
-    fn snapshot(&self) -> Vec<u8> {
-        self.to_bytes()
+        let solve = self.solve.get();
+        let before = solve.progress();
+        if solve.failure().is_some() {
+            return before; // nothing is looked at
+        }
+        let closings = self.closings.iter();
+        closings.fold(before, |progress, closing| closing.progress(progress))
     }
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        let mut sets = self.get().solution_sets(system);
+        let mut sets = self.solve.get().solution_sets(system);
+        for closing in &self.closings {
+            closing.apply(&mut sets, system);
+        }
         if let Some(loops) = self.loops() {
             let known = self.completeness();
             for set in &mut sets {
@@ -230,11 +292,5 @@ impl PathAlgorithm for AnyAlgorithm {
             }
         }
         sets
-    }
-    fn completeness(&self) -> Option<Completeness> {
-        self.get().completeness()
-    }
-    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
-        self.get().finite_endpoints()
     }
 }

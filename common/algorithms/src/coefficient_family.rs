@@ -89,14 +89,7 @@ mod tests {
     use crate::plan::{PlanOptions, StartChoice, plan};
     use crate::run_locally::run_locally;
     use crate::start_costs::cell_supports;
-
-    fn written(text: &str) -> System {
-        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
-        match cognate_systems::formats::read("test", text.as_bytes()) {
-            Ok(problem) => problem.system,
-            Err(error) => panic!("{error}"),
-        }
-    }
+    use crate::synthetic::declared;
 
     #[test]
     fn sizes_are_powers_of_two() {
@@ -111,7 +104,7 @@ mod tests {
     #[test]
     fn a_system_without_parameters_is_solved_by_loops() {
         let system =
-            written("variable_group x, y; function f, g; f = x^2 - 100000000/3; g = x*y - y - 7;");
+            declared("variable_group x, y; function f, g; f = x^2 - 100000000/3; g = x*y - y - 7;");
         let supports = cell_supports(&system).unwrap();
         let (family, values) = coefficient_family(&system, &supports).unwrap();
         assert_eq!((family.parameters.len(), values.len()), (5, 5));

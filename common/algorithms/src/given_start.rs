@@ -1,8 +1,8 @@
 //! Start solutions that a client gives, and whether they fit a system.
 
-use crate::plan::MAX_PATHS;
+use crate::limits::MAX_PATHS;
 use crate::plan_error::PlanError;
-use crate::start_costs::StartKind;
+use crate::start_kind::StartKind;
 use cognate_continuation::start_points::Digest;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};

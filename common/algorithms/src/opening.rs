@@ -3,12 +3,13 @@
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::Stage;
 use cognate_systems::system::System;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A stage to open. Whoever carries it out keeps the objects first, under
 /// their digests, and only then lets workers know of the stage: objects are
 /// written once, so doing it again after a crash changes nothing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Opening {
     /// The stage.
     pub stage: Stage,

@@ -1,10 +1,12 @@
 //! From solved generic parameters to the wanted ones, one solution set for each target.
 
-use crate::any_algorithm::AnyAlgorithm;
+use crate::finite_endpoints::FiniteEndpoints;
+use crate::opening::Opening;
+use crate::progress::Progress;
 use crate::retried_stage::RetriedStage;
-use crate::{FiniteEndpoints, Next, Opening, PathAlgorithm, Progress};
+use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::work::{Stage, StageId};
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -51,8 +53,13 @@ impl ParameterSolve {
     ///
     /// # Panics
     /// As [`Self::new`].
-    pub fn with_shape(first: Stage, shape: &PointShape, tolerances: Tolerances) -> Self {
-        let HomotopyKind::Parameter { targets, .. } = &first.homotopy else {
+    pub fn with_shape(
+        first: impl Into<Opening>,
+        shape: &PointShape,
+        tolerances: Tolerances,
+    ) -> Self {
+        let first = first.into();
+        let HomotopyKind::Parameter { targets, .. } = &first.stage.homotopy else {
             panic!("a parameter solve has a parameter homotopy");
         };
         let count = targets.len() as u64;
@@ -151,15 +158,15 @@ impl ParameterSolve {
     }
 }
 
-impl PathAlgorithm for ParameterSolve {
-    fn next(&mut self) -> Next {
+impl Solve for ParameterSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         loop {
-            match self.paths.next_stage() {
+            match self.paths.next_stage(numbers) {
                 Next::Done if self.completed < self.targets().len() => {
                     let target = self.completed;
                     self.completed += 1;
                     if let Some(opening) = self.completion(target) {
-                        return self.paths.open_last(opening);
+                        return self.paths.open_last(opening, numbers);
                     }
                 }
                 next => return next,
@@ -167,16 +174,12 @@ impl PathAlgorithm for ParameterSolve {
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         self.paths.absorb(stage, results);
     }
 
     fn progress(&self) -> Progress {
         self.paths.progress("parameter homotopy")
-    }
-
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::Parameter(self.clone()).to_bytes()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
@@ -196,6 +199,7 @@ impl PathAlgorithm for ParameterSolve {
 mod tests {
     use super::*;
     use crate::run_locally::drive;
+    use crate::solve::{PathAlgorithm, Root};
     use cognate_continuation::path_result::PathResult;
     use cognate_continuation::stage::PreparedStage;
     use cognate_continuation::start_points::Digest;
@@ -241,10 +245,11 @@ mod tests {
 
     /// Runs it with a tracker that loses these paths whenever they are followed from the start.
     fn run(lost: &[u64]) -> (Vec<SolutionSet>, usize) {
-        let (system, mut solve, points) = solve();
+        let (system, solve, points) = solve();
+        let mut root = Root::new(solve);
         let mut objects = HashMap::from([(points.digest(), Arc::clone(&points))]);
         let mut stages = 0;
-        let done: Result<(), std::convert::Infallible> = drive(&mut solve, &mut |opening| {
+        let done: Result<(), std::convert::Infallible> = drive(&mut root, &mut |opening| {
             let made = opening.objects.iter();
             objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let find = |digest: Digest| objects.get(&digest).cloned();
@@ -259,7 +264,7 @@ mod tests {
             Ok(results)
         });
         assert_eq!(done, Ok(()));
-        (solve.solution_sets(&system), stages)
+        (root.solution_sets(&system), stages)
     }
 
     #[test]

@@ -1,18 +1,20 @@
 //! From a system and options to an algorithm that solves it, or to a clear reason why not.
 
-use crate::any_algorithm::AnyAlgorithm;
-use crate::certified_solve::CertifiedSolve;
+use crate::any_algorithm::{AnyAlgorithm, AnySolve};
+use crate::closings::Closing;
+use crate::closings::certificates::Certificates;
+use crate::closings::digits::Digits;
 use crate::coefficient_family::coefficient_family;
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
+pub use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
-use crate::plan_error::PlanError;
+use crate::plan_error::{PlanError, checked_volume};
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::{Levels, RegenerationSolve};
 use crate::retried_stage::MAX_RETRIES;
 use crate::set_structures::set_names;
-use crate::sharpened_solve::SharpenedSolve;
 use crate::start_costs::{
     HALVED, SETS_ARE_GIVEN, StartKind, Starts, cell_supports, check_equations, checked_degrees,
 };
@@ -34,11 +36,6 @@ use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-
-/// Most paths of one solve where all results are held in memory, about 300 bytes a path.
-pub const MAX_PATHS: u64 = 4_000_000;
-/// ... and where those of plain paths need not be (see `solutions::plain`), of which 24 bytes are.
-pub const MAX_PLAIN_PATHS: u64 = 40_000_000;
 
 /// Most operations that choosing a start spends on a mixed volume: about a second.
 const CHOOSING_OPERATIONS: u64 = 500_000_000;
@@ -168,8 +165,8 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         (false, choice) => plan_start_system(system, choice, options),
     }?;
     if options.digits > DIGITS_OF_DOUBLES || options.deflate {
-        let solve = SharpenedSolve::new(plan.algorithm, options.digits, options.deflate);
-        plan.algorithm = AnyAlgorithm::Sharpened(Box::new(solve));
+        let digits = Digits::new(options.digits, options.deflate);
+        plan.algorithm.close_with(Closing::Digits(digits));
     }
     if options.certify {
         if plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
@@ -179,7 +176,9 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
                 instead: String::new(),
             });
         }
-        plan.algorithm = AnyAlgorithm::Certified(Box::new(CertifiedSolve::new(plan.algorithm)));
+        let certificates = Certificates::default();
+        plan.algorithm
+            .close_with(Closing::Certificates(certificates));
     }
     Ok(plan)
 }
@@ -396,7 +395,8 @@ fn plan_polyhedral(
     let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
     Ok(Plan {
         system: system.clone(),
-        algorithm: AnyAlgorithm::Polyhedral(Box::new(solve)).with_max_retries(options.max_retries),
+        algorithm: AnyAlgorithm::from(AnySolve::Polyhedral(Box::new(solve)))
+            .with_max_retries(options.max_retries),
         start: StartKind::Polyhedral,
         paths: volume,
         why: match volume {
@@ -404,23 +404,6 @@ fn plan_polyhedral(
             None => format!("{why}; the mixed cells are counted by workers"),
         },
     })
-}
-
-/// A mixed volume, where as many paths can be followed.
-pub(crate) fn checked_volume(volume: u64) -> Result<u64, PlanError> {
-    match volume {
-        0 => {
-            let why = "the mixed volume is 0: a system with these monomials has no isolated \
-                       solution unless its coefficients are special";
-            Err(PlanError::NoMixedCells(why.into()))
-        }
-        number if number > MAX_PATHS => Err(PlanError::TooManyPaths {
-            start: StartKind::Polyhedral,
-            number: Some(number),
-            instead: String::new(),
-        }),
-        number => Ok(number),
-    }
 }
 
 /// Equation by equation, the lower degrees first.
@@ -451,7 +434,7 @@ fn plan_regeneration(
     let solve = RegenerationSolve::new(levels, point, &tracked, tolerances);
     Ok(Plan {
         system: tracked,
-        algorithm: AnyAlgorithm::Regeneration(Box::new(solve))
+        algorithm: AnyAlgorithm::from(AnySolve::Regeneration(Box::new(solve)))
             .with_max_retries(options.max_retries),
         start: StartKind::Regeneration,
         paths: Some(paths),
@@ -577,7 +560,8 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
     )?;
     Ok(Plan {
         system: system.clone(),
-        algorithm: AnyAlgorithm::Monodromy(Box::new(solve.with_max_retries(options.max_retries))),
+        algorithm: AnySolve::Monodromy(Box::new(solve.with_max_retries(options.max_retries)))
+            .into(),
         start: StartKind::Monodromy,
         paths,
         why,
@@ -632,9 +616,13 @@ fn finish(
     assert!(paths.is_some(), "the number of paths is under the limit");
     let tolerances = options.tolerances.clone();
     let algorithm = if several {
-        AnyAlgorithm::Parameter(ParameterSolve::new(first, &system, tolerances))
+        AnyAlgorithm::from(AnySolve::Parameter(ParameterSolve::new(
+            first, &system, tolerances,
+        )))
     } else {
-        AnyAlgorithm::ZeroDimensional(ZeroDimensionalSolve::new(first, &system, tolerances))
+        AnyAlgorithm::from(AnySolve::ZeroDimensional(ZeroDimensionalSolve::new(
+            first, &system, tolerances,
+        )))
     };
     Plan {
         system,

@@ -1,8 +1,8 @@
 //! PlanError: why there is no plan, in words for the person who gave the system.
 
+use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
 use crate::monodromy::trace::NoTraceTest;
-use crate::plan::{MAX_PATHS, MAX_PLAIN_PATHS};
-use crate::start_costs::StartKind;
+use crate::start_kind::StartKind;
 use crate::start_pair::StartPairError;
 use cognate_solutions::symmetry::SymmetryError;
 use cognate_systems::polynomial::PolynomialError;
@@ -156,4 +156,21 @@ pub enum PlanError {
          solution, or the groups are not meant"
     )]
     NoPaths,
+}
+
+/// A mixed volume, where as many paths can be followed.
+pub(crate) fn checked_volume(volume: u64) -> Result<u64, PlanError> {
+    match volume {
+        0 => {
+            let why = "the mixed volume is 0: a system with these monomials has no isolated \
+                       solution unless its coefficients are special";
+            Err(PlanError::NoMixedCells(why.into()))
+        }
+        number if number > MAX_PATHS => Err(PlanError::TooManyPaths {
+            start: StartKind::Polyhedral,
+            number: Some(number),
+            instead: String::new(),
+        }),
+        number => Ok(number),
+    }
 }

@@ -7,20 +7,17 @@
 //! does not arrive in the first is named as failed in the end, so that the
 //! counts add up to the mixed volume.
 
-use crate::any_algorithm::AnyAlgorithm;
-use crate::closing_stage::FiniteEndpoints;
+use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
-use crate::plan::checked_volume;
-use crate::plan_error::PlanError;
-use crate::progress::{StageProgress, VerdictCounts};
+use crate::plan_error::{PlanError, checked_volume};
+use crate::progress::{self, Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::RetriedStage;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{PathIndex, PathResult};
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
-use cognate_continuation::start_systems::polyhedral::branches::{
-    BRANCHES, BranchCount, CellBranches,
-};
+use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, CellBranches};
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{
     MOST_LIFTINGS, MixedCellsError,
 };
@@ -102,15 +99,10 @@ impl PolyhedralSolve {
 
     /// Takes the counts of all branches: the first leg has as many paths, or another lifting is
     /// counted, or it ends here.
-    fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         let counting = self.counting.as_mut().expect("it is counting");
-        let own = counting
-            .stages
-            .iter_mut()
-            .find(|own| own.id == stage && !own.absorbed)
-            .expect("only an open stage is absorbed");
-        own.absorbed = true;
-        let counts: Vec<Option<BranchCount>> = results.map(|result| result.mixed_cells).collect();
+        let own = progress::absorb(&mut counting.stages, stage);
+        let counts: Vec<Option<BranchCount>> = results.map(count_of).collect();
         assert_eq!(
             counts.len() as u64,
             own.items,
@@ -120,7 +112,6 @@ impl PolyhedralSolve {
             Ok(Some((count, branches))) => {
                 counting.outcome = Some(Ok(()));
                 let first = Stage {
-                    id: StageId(stage.0 + 1),
                     start_points: StartPoints::MixedCells {
                         count,
                         branches: Some(branches),
@@ -134,8 +125,8 @@ impl PolyhedralSolve {
         }
     }
 
-    /// The second leg, from what the first one found; `None` where it found nothing.
-    fn second_leg(&mut self) -> Option<Opening> {
+    /// Begins the second leg from what the first one found; `None` where it found nothing.
+    fn second_leg(&mut self) -> Option<&mut RetriedStage> {
         let mut coordinates = Vec::new();
         for (result, decision) in self.generic.results().iter().zip(self.generic.decisions()) {
             // The generic system has regular finite solutions only.
@@ -156,24 +147,20 @@ impl PolyhedralSolve {
             dimension: coordinates.len() / self.arrived.len(),
             coordinates,
         });
-        let first = Stage {
+        let stage = Stage {
             homotopy: HomotopyKind::Generic {
                 parameters: self.parameters.clone(),
             },
             start_points: points.as_start(),
             ..self.generic.first().clone()
         };
+        let first = Opening {
+            stage,
+            system: None,
+            objects: vec![points],
+        };
         let lost = (self.generic.results().len() - self.arrived.len()) as u64;
-        let mut target = self.generic.followed_by(first, lost);
-        let next = target.next_stage();
-        self.target = Some(target);
-        match next {
-            Next::Open(mut opening) => {
-                opening.objects.push(points);
-                Some(*opening)
-            }
-            Next::Wait | Next::Done => None,
-        }
+        Some(self.target.insert(self.generic.followed_by(first, lost)))
     }
 
     /// The last result of every path of the whole, by its index in the first leg.
@@ -211,7 +198,7 @@ fn regular(result: &PathResult) -> bool {
 
 impl Counting {
     /// What is wanted next; `None` when all is counted.
-    fn next(&mut self, first: &Stage) -> Option<Next> {
+    fn next(&mut self, first: &Stage, numbers: &mut StageNumbers) -> Option<Next> {
         match &self.outcome {
             Some(Ok(())) => return None,
             Some(Err(_)) => return Some(Next::Done),
@@ -219,7 +206,6 @@ impl Counting {
             None => {}
         }
         let stage = Stage {
-            id: StageId(first.id.0 + self.stages.len() as u32),
             work: Work::CountMixedCells,
             start_points: StartPoints::MixedCells {
                 count: 0,
@@ -227,18 +213,19 @@ impl Counting {
             },
             ..first.clone()
         };
-        self.stages.push(StageProgress {
-            id: stage.id,
-            work: stage.work,
-            attempt: stage.attempt,
-            items: BRANCHES,
-            absorbed: false,
-        });
-        Some(Next::Open(Box::new(stage.into())))
+        Some(numbers.open(stage.into(), &mut self.stages))
     }
 
     fn failure(&self) -> Option<&String> {
         self.outcome.as_ref()?.as_ref().err()
+    }
+}
+
+/// What a worker says of one branch.
+fn count_of(result: ItemResult) -> Option<BranchCount> {
+    match result {
+        ItemResult::CountMixedCells(branch) => branch.into_fact(),
+        other => unreachable!("a stage that counts mixed cells has no {other:?}"),
     }
 }
 
@@ -278,26 +265,26 @@ fn sum(
     Ok(Some((volume, branches)))
 }
 
-impl PathAlgorithm for PolyhedralSolve {
-    fn next(&mut self) -> Next {
+impl Solve for PolyhedralSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         if let Some(counting) = &mut self.counting
-            && let Some(next) = counting.next(self.generic.first())
+            && let Some(next) = counting.next(self.generic.first(), numbers)
         {
             return next;
         }
         if let Some(target) = &mut self.target {
-            return target.next_stage();
+            return target.next_stage(numbers);
         }
-        match self.generic.next_stage() {
+        match self.generic.next_stage(numbers) {
             Next::Done => match self.second_leg() {
-                Some(opening) => Next::Open(Box::new(opening)),
+                Some(target) => target.next_stage(numbers),
                 None => Next::Done,
             },
             other => other,
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         if self.counting.as_ref().is_some_and(|c| c.outcome.is_none()) {
             return self.counted(stage, results);
         }
@@ -343,10 +330,6 @@ impl PathAlgorithm for PolyhedralSolve {
         }
     }
 
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::Polyhedral(Box::new(self.clone())).to_bytes()
-    }
-
     fn failure(&self) -> Option<String> {
         self.counting.as_ref()?.failure().cloned()
     }
@@ -383,11 +366,14 @@ impl PathAlgorithm for PolyhedralSolve {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::any_algorithm::AnyAlgorithm;
     use crate::plan::StartChoice;
     use crate::run_locally::run_locally;
+    use crate::solve::PathAlgorithm;
     use crate::{Plan, PlanOptions, plan};
+    use cognate_continuation::item_result::PointResult;
     use cognate_continuation::prepared_work::PreparedWork;
-    use cognate_continuation::start_systems::polyhedral::branches::CountedCells;
+    use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CountedCells};
     use cognate_systems::named::cyclic;
     use std::collections::HashMap;
 
@@ -419,10 +405,22 @@ mod tests {
     }
 
     /// The results of a stage, as a worker has them.
-    fn worked(system: &System, opening: &Opening, width: usize) -> Vec<PathResult> {
+    fn worked(system: &System, opening: &Opening, width: usize) -> Vec<ItemResult> {
         let find = |wanted| opening.object(wanted);
         let prepared = PreparedWork::new(system, &opening.stage, &find).expect("a stage");
         prepared.run(0..prepared.items(), width)
+    }
+
+    /// What a worker says of this branch, or nothing where it ended every worker.
+    fn branch(number: u64, count: Option<BranchCount>) -> ItemResult {
+        let origin = PathIndex(number);
+        match count {
+            Some(count) => {
+                let point = vec![Complex64::default()];
+                ItemResult::CountMixedCells(PointResult::new(origin, 0, point, Some(count)))
+            }
+            None => ItemResult::killed_its_worker(Work::CountMixedCells, origin, 0),
+        }
     }
 
     fn next_opening(algorithm: &mut AnyAlgorithm) -> Box<Opening> {
@@ -497,7 +495,7 @@ mod tests {
         } = counted_by_workers(&cyclic(5).system);
         let first = next_opening(&mut algorithm);
         let mut results = worked(&system, &first, 1);
-        results[77].mixed_cells = Some(BranchCount::Tie);
+        results[77] = branch(77, Some(BranchCount::Tie));
         algorithm.absorb(first.stage.id, &mut results.into_iter());
         let second = next_opening(&mut algorithm);
         let StartPoints::MixedCells { count: 0, branches } = &second.stage.start_points else {
@@ -510,7 +508,7 @@ mod tests {
         let toric = next_opening(&mut algorithm);
         assert_eq!((toric.stage.id.0, toric.stage.items()), (2, Some(70)));
         let results = worked(&system, &toric, 8);
-        assert!(results.iter().all(regular));
+        assert!(results.iter().filter_map(ItemResult::path).all(regular));
         algorithm.absorb(toric.stage.id, &mut results.into_iter());
         let generic = next_opening(&mut algorithm);
         assert_eq!((generic.stage.id.0, generic.stage.items()), (3, Some(70)));
@@ -532,16 +530,21 @@ mod tests {
         let lost = [3usize, 40, 41, 155];
         let mut failed = results.clone();
         for path in lost {
-            failed[path].outcome = PathOutcome::Failed(Failure::TooManySteps);
+            let ItemResult::Track(path) = &mut failed[path] else {
+                panic!("{:?}", failed[path]);
+            };
+            path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
         algorithm.absorb(toric.stage.id, &mut failed.into_iter());
         let again = next_opening(&mut algorithm);
         assert_eq!((again.stage.id.0, again.stage.attempt), (2, 1));
         let found = worked(&system, &again, 8);
         assert_eq!(found.len(), lost.len());
-        for (path, result) in lost.into_iter().zip(&found) {
+        let paths = found.iter().filter_map(ItemResult::path);
+        for (path, result) in lost.into_iter().zip(paths) {
             assert_eq!(result.origin.0, path as u64);
-            let (a, b) = (&results[path].endpoint, &result.endpoint);
+            let before = results[path].path().expect("a path");
+            let (a, b) = (&before.endpoint, &result.endpoint);
             let apart = a.to_double().iter().zip(b.to_double());
             let apart: f64 = apart.map(|(a, b)| (a - b).norm_sqr()).sum();
             assert!(regular(result) && apart < 1e-16, "path {path}: {apart}");
@@ -553,7 +556,7 @@ mod tests {
     #[test]
     fn what_cannot_be_followed_ends_the_solve_with_its_reason() {
         let system = cyclic(5).system;
-        let told = |change: &dyn Fn(&mut Vec<PathResult>)| {
+        let told = |change: &dyn Fn(&mut Vec<ItemResult>)| {
             let mut options = options(10);
             options.certify = true;
             let mut algorithm = plan(&system, &options).expect("a plan").algorithm;
@@ -577,8 +580,10 @@ mod tests {
             (stages, algorithm.failure().expect("a reason"))
         };
         let all = |count: Option<BranchCount>| {
-            move |results: &mut Vec<PathResult>| {
-                results.iter_mut().for_each(|r| r.mixed_cells = count);
+            move |results: &mut Vec<ItemResult>| {
+                for (number, result) in (0..).zip(results) {
+                    *result = branch(number, count);
+                }
             }
         };
         let of_volume = |volume| {
@@ -593,8 +598,8 @@ mod tests {
             ("ties", told(&all(Some(BranchCount::Tie)))),
             (
                 "large",
-                told(&|results: &mut Vec<PathResult>| {
-                    results[9].mixed_cells = Some(BranchCount::TooLarge);
+                told(&|results: &mut Vec<ItemResult>| {
+                    results[9] = branch(9, Some(BranchCount::TooLarge));
                 }),
             ),
             ("sum", told(&of_volume(u64::MAX / 2))),
@@ -602,8 +607,8 @@ mod tests {
             ("none", told(&of_volume(0))),
             (
                 "killed",
-                told(&|results: &mut Vec<PathResult>| {
-                    results[9].mixed_cells = None;
+                told(&|results: &mut Vec<ItemResult>| {
+                    results[9] = branch(9, None);
                 }),
             ),
         ]);

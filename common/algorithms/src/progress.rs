@@ -51,3 +51,19 @@ pub struct Progress {
     /// True when all is known.
     pub done: bool,
 }
+
+/// Marks a stage as absorbed; what is known of it.
+///
+/// # Panics
+/// When the stage is not open.
+pub(crate) fn absorb(stages: &mut [StageProgress], id: StageId) -> StageProgress {
+    let open = stages.iter_mut().find(|own| own.id == id && !own.absorbed);
+    let stage = open.expect("only an open stage is absorbed");
+    stage.absorbed = true;
+    *stage
+}
+
+/// The number of the first of these stages; 0 before it is open.
+pub(crate) fn first_id(stages: &[StageProgress]) -> StageId {
+    stages.first().map_or(StageId(0), |stage| stage.id)
+}

@@ -7,13 +7,13 @@
 //! beginning of a regular solution and is left behind; what fails is named as
 //! failed in the end. (Hauenstein, Sommese, Wampler 2011.)
 
-use crate::any_algorithm::AnyAlgorithm;
-use crate::closing_stage::FiniteEndpoints;
+use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
-use crate::progress::{StageProgress, VerdictCounts};
+use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::RetriedStage;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{PathIndex, PathResult};
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -49,8 +49,6 @@ pub struct RegenerationSolve {
     stage: RetriedStage,
     /// The points that the open level began with, one after the other.
     points: Vec<Complex64>,
-    /// Points of the stage that have to be stored before it can be opened.
-    unsent: Option<Vec<Complex64>>,
     variables: usize,
     /// Paths that failed on the levels before.
     lost: Vec<PathResult>,
@@ -82,22 +80,14 @@ impl RegenerationSolve {
             "a level for each equation"
         );
         let variables = point.len();
-        let (first, sent) = open(
-            &levels,
-            0,
-            slides(&levels, 0),
-            &point,
-            variables,
-            StageId(0),
-        );
-        let targets = targets(&first);
+        let first = open(&levels, 0, slides(&levels, 0), &point, variables);
+        let targets = targets(&first.stage);
         Self {
             stage: RetriedStage::new(first, system, tolerances, targets),
             last: levels.order.len() == 1 && !slides(&levels, 0),
             levels,
             level: 0,
             points: point,
-            unsent: Some(sent),
             variables,
             lost: Vec::new(),
             behind: Vec::new(),
@@ -148,18 +138,15 @@ impl RegenerationSolve {
             return false;
         }
         let slide = !slid && slides(&self.levels, self.level);
-        let progress = self.stage.progress("").stages;
-        let id = progress.last().map_or(StageId(0), |s| StageId(s.id.0 + 1));
-        self.behind.extend(progress);
+        self.behind.extend(self.stage.progress("").stages);
         for target in 0..targets(self.stage.first()) as usize {
             let history = self.stage.history(target, true);
             self.repeated[0] += history.retracked;
             self.repeated[1] += history.crossings_found;
             self.repeated[2] += history.crossings_resolved;
         }
-        let (first, sent) = open(&self.levels, self.level, slide, &found, self.variables, id);
+        let first = open(&self.levels, self.level, slide, &found, self.variables);
         self.stage = self.stage.followed_by(first, 0);
-        self.unsent = Some(sent);
         self.last = self.level + 1 == number && !slide;
         true
     }
@@ -220,15 +207,14 @@ fn targets(stage: &Stage) -> u64 {
     stage.homotopy.targets()
 }
 
-/// A stage of a level and the points where it begins.
+/// A stage of a level, with the points where it begins.
 fn open(
     levels: &Levels,
     level: u32,
     slide: bool,
     points: &[Complex64],
     variables: usize,
-    id: StageId,
-) -> (Stage, Vec<Complex64>) {
+) -> Opening {
     let parameters = levels.parameters.clone();
     let order = levels.order.clone();
     let homotopy = match slide {
@@ -244,12 +230,12 @@ fn open(
             level,
         },
     };
-    let stored = StoredPoints {
+    let stored = Arc::new(StoredPoints {
         dimension: variables,
         coordinates: points.to_vec(),
-    };
+    });
     let stage = Stage {
-        id,
+        id: StageId(0),
         system: None,
         work: Work::Track,
         homotopy,
@@ -258,30 +244,24 @@ fn open(
         seed: levels.seed,
         attempt: 0,
     };
-    (stage, stored.coordinates)
+    Opening {
+        stage,
+        system: None,
+        objects: vec![stored],
+    }
 }
 
-impl PathAlgorithm for RegenerationSolve {
-    fn next(&mut self) -> Next {
+impl Solve for RegenerationSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         loop {
-            match self.stage.next_stage() {
-                Next::Open(mut opening) => {
-                    if let Some(coordinates) = self.unsent.take() {
-                        let Opening { objects, .. } = &mut *opening;
-                        objects.push(Arc::new(StoredPoints {
-                            dimension: self.variables,
-                            coordinates,
-                        }));
-                    }
-                    return Next::Open(opening);
-                }
+            match self.stage.next_stage(numbers) {
                 Next::Done if self.advance() => {}
                 other => return other,
             }
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         self.stage.absorb(stage, results);
     }
 
@@ -301,10 +281,6 @@ impl PathAlgorithm for RegenerationSolve {
             paths,
             done: present.done && self.last,
         }
-    }
-
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::Regeneration(Box::new(self.clone())).to_bytes()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {

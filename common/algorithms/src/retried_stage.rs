@@ -5,13 +5,16 @@
 //! another would change which start reaches which end) and tighten the
 //! settings; the verdict uses the last.
 
-use crate::progress::{Progress, StageProgress, VerdictCounts};
-use crate::{FiniteEndpoint, FiniteEndpoints, Next, Opening};
+use crate::finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
+use crate::opening::Opening;
+use crate::progress::{self, Progress, StageProgress, VerdictCounts};
+use crate::solve::{Next, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{self, Candidate};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::start_points::StartPoints;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_numeric::precision::DOUBLE;
@@ -50,6 +53,8 @@ struct TargetBook {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RetriedStage {
     first: Stage,
+    /// Points that the first stage brings, until it is open.
+    objects: Vec<Arc<StoredPoints>>,
     shape: PointShape,
     /// Sets of which a few endpoints are asked whether they are isolated.
     declared: DeclaredSets,
@@ -76,7 +81,12 @@ pub struct RetriedStage {
 
 impl RetriedStage {
     /// A stage that is not open yet, with its number of targets.
-    pub fn new(first: Stage, system: &System, tolerances: Tolerances, targets: u64) -> Self {
+    pub fn new(
+        first: impl Into<Opening>,
+        system: &System,
+        tolerances: Tolerances,
+        targets: u64,
+    ) -> Self {
         Self {
             declared: DeclaredSets::of(system),
             ..Self::with_shape(first, PointShape::of(system), tolerances, targets)
@@ -85,11 +95,16 @@ impl RetriedStage {
 
     /// The same, where only the shape of the system's points is at hand.
     pub fn with_shape(
-        first: Stage,
+        first: impl Into<Opening>,
         shape: PointShape,
         tolerances: Tolerances,
         targets: u64,
     ) -> Self {
+        let Opening {
+            stage: first,
+            objects,
+            ..
+        } = first.into();
         let items = first
             .items()
             .expect("a plan has only stages whose paths can be counted");
@@ -99,6 +114,7 @@ impl RetriedStage {
         );
         Self {
             first,
+            objects,
             shape,
             declared: DeclaredSets::default(),
             tolerances,
@@ -139,17 +155,22 @@ impl RetriedStage {
     /// The stage that comes after all of this one: the same system, tolerances and limit of
     /// repetitions.
     /// `lost`: paths that did not arrive where the new stage begins.
-    pub fn followed_by(&self, first: Stage, lost: u64) -> Self {
+    pub fn followed_by(&self, first: Opening, lost: u64) -> Self {
+        let Opening {
+            stage: first,
+            objects,
+            ..
+        } = first;
         let items = first
             .items()
             .expect("a plan has only stages whose paths can be counted");
         let targets = first.homotopy.targets();
         Self {
             first: Stage {
-                id: StageId(self.first.id.0 + self.stages.len() as u32),
                 attempt: 0,
                 ..first
             },
+            objects,
             paths_per_target: items / targets,
             results: Vec::new(),
             plain: None,
@@ -161,6 +182,11 @@ impl RetriedStage {
             lost,
             ..self.clone()
         }
+    }
+
+    /// The number of the stage that comes first; 0 before it is open.
+    pub fn first_id(&self) -> StageId {
+        progress::first_id(&self.stages)
     }
 
     /// False where the ends of paths are compared with more than each other, so that all are held.
@@ -257,30 +283,24 @@ impl RetriedStage {
 
     /// Opens a stage of another making, after all repetitions: its results stand in the place of
     /// those of the paths that it names as origins, and none is tracked again.
-    pub fn open_last(&mut self, opening: Opening) -> Next {
-        let number = self.stages.len();
+    pub fn open_last(&mut self, opening: Opening, numbers: &mut StageNumbers) -> Next {
         let stage = Stage {
-            id: StageId(self.first.id.0 + number as u32),
-            attempt: self.max_retries.max(number as u16) + 1,
+            attempt: self.max_retries.max(self.stages.len() as u16) + 1,
             ..opening.stage
         };
-        self.stages.push(StageProgress {
-            id: stage.id,
-            work: stage.work,
-            attempt: stage.attempt,
-            items: stage.items().expect("selected paths can be counted"),
-            absorbed: false,
-        });
-        Next::Open(Box::new(Opening { stage, ..opening }))
+        numbers.open(Opening { stage, ..opening }, &mut self.stages)
     }
 
     /// What is wanted next.
-    pub fn next_stage(&mut self) -> Next {
+    pub fn next_stage(&mut self, numbers: &mut StageNumbers) -> Next {
         if self.stages.iter().any(|stage| !stage.absorbed) {
             return Next::Wait;
         }
         let opening = if self.stages.is_empty() {
-            self.first.clone().into()
+            Opening {
+                objects: std::mem::take(&mut self.objects),
+                ..self.first.clone().into()
+            }
         } else if let Some(indices) = self.wanted.take() {
             self.repetition(indices).into()
         } else if std::mem::take(&mut self.isolation_wanted) {
@@ -288,17 +308,7 @@ impl RetriedStage {
         } else {
             return Next::Done;
         };
-        let Opening { stage, .. } = &opening;
-        self.stages.push(StageProgress {
-            id: stage.id,
-            work: stage.work,
-            attempt: stage.attempt,
-            items: stage
-                .items()
-                .expect("a plan has only stages whose paths can be counted"),
-            absorbed: false,
-        });
-        Next::Open(Box::new(opening))
+        numbers.open(opening, &mut self.stages)
     }
 
     /// The stage that finds out whether singular endpoints are isolated: one item for each point,
@@ -320,7 +330,6 @@ impl RetriedStage {
         let points = Arc::new(candidates::to_stored(&points));
         Opening {
             stage: Stage {
-                id: StageId(self.first.id.0 + self.stages.len() as u32),
                 work: Work::LocalDimension,
                 start_points: points.as_start(),
                 ..self.first.clone()
@@ -374,7 +383,6 @@ impl RetriedStage {
             false => tighter.robust(),
         };
         Stage {
-            id: StageId(self.first.id.0 + self.stages.len() as u32),
             start_points: StartPoints::Selected {
                 base: Box::new(self.first.start_points.clone()),
                 indices,
@@ -389,13 +397,8 @@ impl RetriedStage {
     ///
     /// # Panics
     /// When the stage is not open, or the results are not its own, complete and in order.
-    pub fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = PathResult>) {
-        let stage = self
-            .stages
-            .iter_mut()
-            .find(|stage| stage.id == id && !stage.absorbed)
-            .expect("only an open stage is absorbed");
-        stage.absorbed = true;
+    pub fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+        let stage = progress::absorb(&mut self.stages, id);
         let (attempt, items, work) = (stage.attempt, stage.items, stage.work);
         let mut taken = 0;
         if work == Work::LocalDimension {
@@ -403,9 +406,12 @@ impl RetriedStage {
                 let point = usize::try_from(taken).unwrap_or(usize::MAX);
                 let paths = self.singular_points.get(point).map_or(&[][..], |p| &p[..]);
                 let places: Vec<usize> = paths.iter().filter_map(|&p| self.place(p)).collect();
+                let ItemResult::LocalDimension(found) = result else {
+                    unreachable!("a stage that looks at endpoints has no {result:?}")
+                };
                 for place in places {
                     let known = &mut self.results[place].local_dimension;
-                    known.clone_from(&result.local_dimension);
+                    *known = found.fact().cloned();
                 }
                 taken += 1;
             }
@@ -414,7 +420,7 @@ impl RetriedStage {
             self.wanted = self.unconfirmed();
             return;
         }
-        for result in results {
+        for result in results.map(ItemResult::into_path) {
             let origin = result.origin.0;
             if attempt == 0 {
                 let last = self.results.last().map(|r| r.origin.0);
@@ -754,7 +760,7 @@ pub(crate) fn can_be_helped(outcome: PathOutcome) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::any_algorithm::{AnyAlgorithm, RestoreError};
+    use crate::any_algorithm::{AnyAlgorithm, AnySolve, RestoreError};
     use crate::parameter_solve::ParameterSolve;
     use crate::run_locally::drive;
     use crate::synthetic::{Fate, first_stage, system, track};
@@ -772,11 +778,11 @@ mod tests {
         let homotopy = HomotopyKind::StraightLine {
             parameters: vec![Complex64::new(1.0, 0.0)],
         };
-        AnyAlgorithm::ZeroDimensional(ZeroDimensionalSolve::new(
+        AnyAlgorithm::from(AnySolve::ZeroDimensional(ZeroDimensionalSolve::new(
             first_stage(homotopy),
             &system(),
             Tolerances::default(),
-        ))
+        )))
     }
 
     /// Runs it; returns the stages that it opened and what it found.
@@ -913,11 +919,11 @@ mod tests {
             start: one(1.0),
             targets: vec![one(2.0), vec![Complex64::new(0.0, 1.0)], one(3.0)],
         };
-        let mut algorithm = AnyAlgorithm::Parameter(ParameterSolve::new(
+        let mut algorithm = AnyAlgorithm::from(AnySolve::Parameter(ParameterSolve::new(
             first_stage(homotopy),
             &system(),
             Tolerances::default(),
-        ));
+        )));
         // Equal endpoints of different targets are no crossing; paths 8 and 9 are one.
         let (stages, sets) = run(&mut algorithm, |path, attempt| match (path, attempt) {
             (9, 0) => Fate::At(0.0),

@@ -1,7 +1,7 @@
 //! Any algorithm from beginning to end in one thread: for examples, tests and tools.
 
 use crate::{Next, Opening, PathAlgorithm};
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -33,7 +33,7 @@ pub fn run_locally(
     width: usize,
 ) -> Result<Vec<SolutionSet>, PrepareError> {
     let mut made: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-    drive::<PrepareError>(algorithm, &mut |opening| {
+    drive::<PrepareError, _>(algorithm, &mut |opening| {
         let objects_of_stage = opening.objects.iter();
         made.extend(objects_of_stage.map(|points| (points.digest(), Arc::clone(points))));
         let find = |wanted: Digest| made.get(&wanted).cloned().or_else(|| objects(wanted));
@@ -47,11 +47,11 @@ pub fn run_locally(
     Ok(algorithm.solution_sets(system))
 }
 
-/// Drives an algorithm until it is done. `track` follows all paths of a stage,
-/// in item order; its first error ends the run.
-pub fn drive<E>(
+/// Drives an algorithm until it is done. `work` does all items of a stage, in
+/// their order; its first error ends the run.
+pub fn drive<E, R: Into<ItemResult>>(
     algorithm: &mut dyn PathAlgorithm,
-    track: &mut dyn FnMut(&Opening) -> Result<Vec<PathResult>, E>,
+    work: &mut dyn FnMut(&Opening) -> Result<Vec<R>, E>,
 ) -> Result<(), E> {
     let mut open = VecDeque::new();
     loop {
@@ -61,8 +61,8 @@ pub fn drive<E>(
                 let opening: Box<Opening> = open
                     .pop_front()
                     .expect("an algorithm waits only for a stage that it opened");
-                let results = track(&opening)?;
-                algorithm.absorb(opening.stage.id, &mut results.into_iter());
+                let results = work(&opening)?;
+                algorithm.absorb(opening.stage.id, &mut results.into_iter().map(R::into));
             }
             Next::Done => return Ok(()),
         }
@@ -75,6 +75,7 @@ mod tests {
     use crate::Progress;
     use crate::synthetic::{first_stage, system};
     use cognate_continuation::homotopies::HomotopyKind;
+    use cognate_continuation::path_result::PathResult;
     use cognate_continuation::work::{Stage, StageId};
     use num_complex::Complex64;
 
@@ -119,8 +120,8 @@ mod tests {
             self.opened += 1;
             Next::Open(Box::new(opening))
         }
-        fn absorb(&mut self, _: StageId, results: &mut dyn Iterator<Item = PathResult>) {
-            self.ends = results.collect();
+        fn absorb(&mut self, _: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+            self.ends = results.map(ItemResult::into_path).collect();
             let values = self.ends.iter().map(|result| {
                 let z = result.endpoint.to_double();
                 z[1] / z[0]
@@ -133,8 +134,8 @@ mod tests {
         fn progress(&self) -> Progress {
             unreachable!("nobody asks")
         }
-        fn snapshot(&self) -> Vec<u8> {
-            unreachable!("nobody asks")
+        fn failure(&self) -> Option<String> {
+            None
         }
         fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
             Vec::new()

@@ -1,6 +1,6 @@
 //! Set structures of linear-product starts: guessed from the monomials or given, checked and counted.
 
-use crate::start_costs::not_multiplied_out;
+use crate::monomials::not_multiplied_out;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::linear_product::{
     LinearProductError, SOLVING_STEPS, SetStructure, check_covered, count, guess,

@@ -1,8 +1,10 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
-use crate::plan::{MAX_PATHS, MAX_PLAIN_PATHS};
+use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
+use crate::monomials::not_multiplied_out;
 use crate::plan_error::PlanError;
 use crate::set_structures::{given, guessed, set_names};
+pub use crate::start_kind::StartKind;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::start_systems::grouping::best_grouping;
@@ -10,50 +12,12 @@ use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_solutions::plain::Sieve;
-use cognate_systems::expression::Node;
-use cognate_systems::polynomial::{self, Degrees, check_homogeneous, degrees_by_form, supports};
+use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
 use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// How paths begin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StartKind {
-    /// As many paths as the product of the degrees.
-    TotalDegree,
-    /// As many as the multihomogeneous Bezout number of the variable groups.
-    Multihomogeneous,
-    /// Given start solutions.
-    Given,
-    /// Loops in the space of parameters.
-    Monodromy,
-    /// Twice as many as the mixed volume: from mixed cells to a generic system, and on.
-    Polyhedral,
-    /// As many as products of linear forms, each in a set of variables, have regular solutions.
-    LinearProduct,
-    /// Equation by equation: numbers are known when they are found.
-    Regeneration,
-    /// Equation by equation, for components of all dimensions.
-    Cascade,
-}
-
-impl std::fmt::Display for StartKind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::TotalDegree => "total-degree",
-            Self::Multihomogeneous => "multihomogeneous",
-            Self::Given => "given",
-            Self::Monodromy => "monodromy",
-            Self::Polyhedral => "polyhedral",
-            Self::LinearProduct => "linear-product",
-            Self::Regeneration => "regeneration",
-            Self::Cascade => "cascade",
-        })
-    }
-}
 
 /// A start by the variable groups.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -490,46 +454,6 @@ pub(crate) fn cell_supports(system: &System) -> Result<Vec<Vec<Vec<i64>>>, Strin
     let supports = supports(system).ok_or_else(|| not_multiplied_out(system))?;
     Ok(affine_supports(&supports, &nonzero_variables(system)))
 }
-
-/// Why the monomials of a system are not known: the equation that may have the most of them, by its
-/// form. A system whose equations share subexpressions is solved without its monomials.
-pub(crate) fn not_multiplied_out(system: &System) -> String {
-    let all: Vec<usize> = (0..system.variable_count()).collect();
-    let sizes = system.equations.iter().enumerate().map(|(i, &equation)| {
-        let degrees = degrees_by_form(&system.expressions, equation, &all);
-        let nodes = degrees.keys().map(|&id| system.expressions.node(id));
-        let variables = nodes
-            .filter(|node| matches!(node, Node::Variable(_)))
-            .count();
-        let degree = degrees[&equation];
-        // Monomials of at most this degree: (n + d) over n.
-        let terms = (1..=variables).try_fold(1u128, |product, k| {
-            let next = product.checked_mul(u128::from(degree) + k as u128)?;
-            Some(next / k as u128).filter(|&terms| terms <= MANY_TERMS)
-        });
-        (terms.unwrap_or(MANY_TERMS), i, degree, variables)
-    });
-    let Some((terms, i, degree, variables)) =
-        sizes.max_by_key(|&(terms, i, ..)| (terms, usize::MAX - i))
-    else {
-        return "there are no equations".into();
-    };
-    let name = match system.equation_names.get(i) {
-        Some(name) if !name.is_empty() => format!("equation {name}"),
-        _ => format!("equation {}", i + 1),
-    };
-    let terms = match terms {
-        MANY_TERMS => "more than 10^12".into(),
-        terms => format!("up to {terms}"),
-    };
-    format!(
-        "the equations are not multiplied out: {name}, of degree {degree} in {variables} variables, may \
-         have {terms} terms"
-    )
-}
-
-/// Numbers of terms are not told beyond.
-const MANY_TERMS: u128 = 1_000_000_000_000;
 
 /// Whether two legs for each of `volume` paths cost less than one for each of `count`.
 ///

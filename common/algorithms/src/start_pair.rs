@@ -153,22 +153,14 @@ pub fn start_pair(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::system;
-
-    fn written(text: &str) -> System {
-        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
-        match cognate_systems::formats::read("test", text.as_bytes()) {
-            Ok(problem) => problem.system,
-            Err(error) => panic!("{error}"),
-        }
-    }
+    use crate::synthetic::{declared, system};
 
     #[test]
     fn a_pair_solves_the_system() {
         let (x, p) = start_pair(&system(), 3).unwrap();
         let error = x[0] * x[0] * x[0] * x[0] - p[0];
         assert!(error.norm_sqr() < 1e-28, "{error}");
-        let more = written(
+        let more = declared(
             "variable_group x, y; parameter p, q, r; function f, g;
              f = p*x^2 + q*y - 3; g = r*x*y + 2*p*y + 1;",
         );
@@ -181,10 +173,10 @@ mod tests {
 
     #[test]
     fn what_is_not_linear_or_not_free_is_refused() {
-        let square = written("variable_group x; parameter p; function f; f = x^2 - p^2;");
+        let square = declared("variable_group x; parameter p; function f; f = x^2 - p^2;");
         assert_eq!(start_pair(&square, 1), Err(StartPairError::NotLinear));
         let half =
-            written("variable_group x, y; parameter p; function f, g; f = x^2 - p; g = x*y - 1;");
+            declared("variable_group x, y; parameter p; function f, g; f = x^2 - p; g = x*y - 1;");
         assert!(matches!(
             start_pair(&half, 1),
             Err(StartPairError::NotFree {

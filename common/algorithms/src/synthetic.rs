@@ -1,7 +1,10 @@
 //! A make-believe tracker for this crate's tests: what each path does at each attempt is written down.
 
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::{BoundaryKey, LocalDimension, NUMBERS, PathResult};
+use cognate_continuation::item_result::{ItemResult, PointResult};
+use cognate_continuation::path_result::{
+    BoundaryKey, LocalDimension, NUMBERS, PathIndex, PathResult,
+};
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
@@ -26,6 +29,19 @@ pub fn system() -> System {
     let fourth = e.power(x, 4);
     system.equations = vec![e.subtract(fourth, p)];
     system
+}
+
+/// The system of this input for Bertini.
+pub fn written(text: &str) -> System {
+    match cognate_systems::formats::read("test", text.as_bytes()) {
+        Ok(problem) => problem.system,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// The system of these declarations, as they stand in an input for Bertini.
+pub fn declared(text: &str) -> System {
+    written(&format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n"))
 }
 
 /// All four paths.
@@ -57,8 +73,9 @@ pub enum Fate {
     Hopeless,
 }
 
-/// All paths of a stage, each by its fate at the stage's attempt.
-pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> {
+/// All items of a stage: paths, each by its fate at the stage's attempt; singular points are triple ones, where that
+/// is asked.
+pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<ItemResult> {
     let items = stage.items().unwrap();
     (0..items)
         .map(|item| {
@@ -70,7 +87,17 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                 Fate::Hopeless => (PathOutcome::Failed(Failure::KilledItsWorker), 0.1),
             };
             let coordinates = vec![Complex64::new(1.0, 0.0), Complex64::new(x, 0.0)];
-            PathResult {
+            if stage.work == Work::LocalDimension {
+                let triple = LocalDimension {
+                    dual_dimensions: vec![1, 2, 3, 3],
+                    bound: u64::MAX,
+                    margin: 1e9,
+                    moved_slices: Vec::new(),
+                };
+                let point = PointResult::new(PathIndex(origin), 0, coordinates, Some(triple));
+                return ItemResult::LocalDimension(point);
+            }
+            ItemResult::Track(PathResult {
                 residual: 1e-16,
                 condition: 3.0,
                 accuracy: 1e-15,
@@ -90,15 +117,8 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<PathResult> 
                         margin: 1e-6,
                     })
                 }),
-                // Singular points are triple ones, where that is asked.
-                local_dimension: (stage.work == Work::LocalDimension).then(|| LocalDimension {
-                    dual_dimensions: vec![1, 2, 3, 3],
-                    bound: u64::MAX,
-                    margin: 1e9,
-                    moved_slices: Vec::new(),
-                }),
                 ..PathResult::untracked(origin, stage.attempt, outcome, coordinates)
-            }
+            })
         })
         .collect()
 }

@@ -1,10 +1,11 @@
 //! All isolated solutions of one system, from a start system, or by a homotopy of the user's own.
 
-use crate::any_algorithm::AnyAlgorithm;
+use crate::finite_endpoints::FiniteEndpoints;
+use crate::progress::Progress;
 use crate::retried_stage::RetriedStage;
-use crate::{FiniteEndpoints, Next, PathAlgorithm, Progress};
+use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::plain::Sieve;
@@ -84,21 +85,17 @@ impl ZeroDimensionalSolve {
     }
 }
 
-impl PathAlgorithm for ZeroDimensionalSolve {
-    fn next(&mut self) -> Next {
-        self.paths.next_stage()
+impl Solve for ZeroDimensionalSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
+        self.paths.next_stage(numbers)
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         self.paths.absorb(stage, results);
     }
 
     fn progress(&self) -> Progress {
         self.paths.progress("all isolated solutions")
-    }
-
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::ZeroDimensional(self.clone()).to_bytes()
     }
 
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {

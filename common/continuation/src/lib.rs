@@ -3,7 +3,8 @@
 //! In the order of a path's life: [`work`] says what is asked, [`prepared_work`] and
 //! [`stage`] prepare it, [`chart`] and [`homotopies`] make the program, [`start_systems`] and
 //! [`start_points`] the beginning; [`predictor`], [`step_control`] and [`tracker`]
-//! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left;
+//! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left, one of the kinds of
+//! [`item_result`];
 //! [`asked_system`] holds it against all equations that are asked, [`local_dimension`] says
 //! whether it is isolated, [`sharpening`] brings it to more digits, [`certification`] proves what is
 //! there; [`bend`] says how it moves with its slice; these look at the [`points_at_targets`] of a stage. [`projection`] tells points apart by numbers.
@@ -76,10 +77,12 @@ pub mod certification;
 pub mod chart;
 pub mod endgames;
 pub mod homotopies;
+pub mod item_result;
 pub mod local_dimension;
 pub mod path_result;
 pub mod points_at_targets;
 pub mod predictor;
+pub mod prepared_items;
 pub mod prepared_work;
 pub mod projection;
 mod refine;

@@ -1,13 +1,9 @@
-//! PathResult: what is known about one path when it ends. The noun that leaves this floor.
+//! PathResult: what is known about one path when it ends.
 //!
 //! Facts only, no time and no worker, so that two executions of one path can be
 //! compared bit for bit. What needs all paths at once (multiplicity, duplicates,
 //! classes) is `solutions`' business.
 
-use crate::bend::Bend;
-use crate::certification::Certification;
-use crate::sharpening::Sharpening;
-use crate::start_systems::polyhedral::branches::BranchCount;
 use crate::tracker::outcome::PathOutcome;
 use cognate_numeric::precision::DOUBLE;
 use num_complex::Complex64;
@@ -159,21 +155,11 @@ pub struct PathResult {
     /// How well the endpoint solves the system that is asked; `None` where that is the one that
     /// was tracked, and for a failed path.
     pub asked: Option<AskedFit>,
-    /// What was proved of the point, in a stage that certifies; its `endpoint` is the point that
-    /// was given, in the values of the variables.
-    pub certification: Option<Certification>,
-    /// Whether the endpoint is isolated; `None` where it was not asked.
+    /// Whether the endpoint is isolated, as a later stage found out; `None` where it was not asked.
     pub local_dimension: Option<LocalDimension>,
-    /// The point with more digits, in a stage that sharpens.
-    pub sharpening: Option<Sharpening>,
     /// Where the path entered the endgame, for one that ends at a singular point or runs to infinity:
     /// a regular end tells it from others.
     pub boundary: Option<Box<BoundaryKey>>,
-    /// The mixed cells of a branch, in a stage that counts them; its `origin` is the branch.
-    pub mixed_cells: Option<BranchCount>,
-    /// How the point moves with the parameters, in a stage that asks that; coordinates are those of the
-    /// unknowns.
-    pub bend: Option<Box<Bend>>,
 }
 
 impl PathResult {
@@ -198,12 +184,8 @@ impl PathResult {
             precision_bits: DOUBLE,
             counts: Counts::default(),
             asked: None,
-            certification: None,
             local_dimension: None,
-            sharpening: None,
             boundary: None,
-            mixed_cells: None,
-            bend: None,
         }
     }
 }

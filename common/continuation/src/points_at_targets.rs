@@ -2,10 +2,10 @@
 //! looks at points instead of tracking paths.
 
 use crate::homotopies::HomotopyKind;
-use crate::path_result::PathResult;
+use crate::item_result::PointResult;
+use crate::path_result::PathIndex;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
-use crate::tracker::outcome::PathOutcome;
 use crate::work::Stage;
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
@@ -150,11 +150,10 @@ impl PointsAtTargets {
         &self.targets[target]
     }
 
-    /// The result of one item, before anything is known of it: no path was followed, and its
-    /// endpoint is the point that was given, in the values of the variables.
-    pub fn result(&self, item: u64) -> PathResult {
+    /// The result of one item with this fact, and nothing else known of its point, which is the one that was
+    /// given, in the values of the variables.
+    pub fn result<Fact>(&self, item: u64, fact: Option<Fact>) -> PointResult<Fact> {
         let Item { origin, point, .. } = self.item(item);
-        let attempt = self.stage.attempt;
-        PathResult::untracked(origin, attempt, PathOutcome::Regular, point.to_vec())
+        PointResult::new(PathIndex(origin), self.stage.attempt, point.to_vec(), fact)
     }
 }

@@ -1,9 +1,12 @@
 //! PreparedWork: all that a worker makes of a stage before it does its items, whatever they are.
+//!
+//! Here every kind of work is registered, in [`PreparedWork::new`].
 
 use crate::bend::stage::BendStage;
 use crate::certification::CertificationStage;
+use crate::item_result::ItemResult;
 use crate::local_dimension::prepared::PreparedLocalDimension;
-use crate::path_result::PathResult;
+use crate::prepared_items::PreparedItems;
 use crate::sharpening::SharpeningStage;
 use crate::stage::{PrepareError, PreparedStage};
 use crate::start_points::{Digest, StoredPoints};
@@ -15,20 +18,7 @@ use std::sync::Arc;
 
 /// A stage of any kind of work, ready for its items.
 #[derive(Debug)]
-pub enum PreparedWork {
-    /// Paths to track.
-    Track(Box<PreparedStage>),
-    /// Points to certify.
-    Certify(Box<CertificationStage>),
-    /// Endpoints of which it is asked whether they are isolated.
-    LocalDimension(Box<PreparedLocalDimension>),
-    /// Points to sharpen.
-    Sharpen(Box<SharpeningStage>),
-    /// Branches whose mixed cells are counted.
-    CountMixedCells(Box<CountingStage>),
-    /// Witness points that are moved.
-    Bend(Box<BendStage>),
-}
+pub struct PreparedWork(Box<dyn PreparedItems>);
 
 impl PreparedWork {
     /// Checks that stage and system fit, and compiles. `objects` finds stored points by their
@@ -38,23 +28,16 @@ impl PreparedWork {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
-        Ok(match stage.work {
-            Work::Track => Self::Track(Box::new(PreparedStage::new(system, stage, objects)?)),
-            Work::Certify => {
-                Self::Certify(Box::new(CertificationStage::new(system, stage, objects)?))
+        Ok(Self(match stage.work {
+            Work::Track => Box::new(PreparedStage::new(system, stage, objects)?),
+            Work::Certify => Box::new(CertificationStage::new(system, stage, objects)?),
+            Work::LocalDimension => Box::new(PreparedLocalDimension::new(system, stage, objects)?),
+            Work::Sharpen { digits } => {
+                Box::new(SharpeningStage::new(system, stage, digits, objects)?)
             }
-            Work::LocalDimension => {
-                let prepared = PreparedLocalDimension::new(system, stage, objects)?;
-                Self::LocalDimension(Box::new(prepared))
-            }
-            Work::Sharpen { digits } => Self::Sharpen(Box::new(SharpeningStage::new(
-                system, stage, digits, objects,
-            )?)),
-            Work::CountMixedCells => {
-                Self::CountMixedCells(Box::new(CountingStage::new(system, stage)?))
-            }
-            Work::Bend => Self::Bend(Box::new(BendStage::new(system, stage, objects)?)),
-        })
+            Work::CountMixedCells => Box::new(CountingStage::new(system, stage)?),
+            Work::Bend => Box::new(BendStage::new(system, stage, objects)?),
+        }))
     }
 
     /// Whether [`Self::new`] would succeed for a stage that a solve begins with, without what
@@ -66,32 +49,49 @@ impl PreparedWork {
     ) -> Result<(), PrepareError> {
         match stage.work {
             Work::CountMixedCells => CountingStage::check(system, stage),
-            _ => PreparedStage::check(system, stage, objects),
+            Work::Track
+            | Work::Certify
+            | Work::LocalDimension
+            | Work::Sharpen { .. }
+            | Work::Bend => PreparedStage::check(system, stage, objects),
         }
     }
 
     /// Number of items.
     pub fn items(&self) -> u64 {
-        match self {
-            Self::Track(stage) => stage.items(),
-            Self::Certify(stage) => stage.items(),
-            Self::LocalDimension(stage) => stage.items(),
-            Self::Sharpen(stage) => stage.items(),
-            Self::CountMixedCells(stage) => stage.items(),
-            Self::Bend(stage) => stage.items(),
-        }
+        self.0.items()
     }
 
     /// Does these items, where it can `width` at a time; results in item order, the same at
     /// every width and in every split.
-    pub fn run(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
-        match self {
-            Self::Track(stage) => stage.track(items, width),
-            Self::Certify(stage) => stage.run(items),
-            Self::LocalDimension(stage) => stage.run(items),
-            Self::Sharpen(stage) => stage.run(items),
-            Self::CountMixedCells(stage) => stage.run(items),
-            Self::Bend(stage) => stage.run(items),
+    pub fn run(&self, items: Range<u64>, width: usize) -> Vec<ItemResult> {
+        self.0.run(items, width)
+    }
+
+    /// How many items are best done at a time.
+    pub fn preferred_width(&self) -> usize {
+        self.0.preferred_width()
+    }
+}
+
+/// Unknowns up to which sixteen lanes of program and matrix fit in about 64 KB: n (n + 2)
+/// complex numbers of 16 bytes for the matrix alone are 31 KB at n = 10.
+const SIXTEEN_LANES_UP_TO: usize = 10;
+
+impl PreparedItems for PreparedStage {
+    fn items(&self) -> u64 {
+        self.items()
+    }
+
+    fn run(&self, items: Range<u64>, width: usize) -> Vec<ItemResult> {
+        let paths = self.track(items, width).into_iter();
+        paths.map(ItemResult::Track).collect()
+    }
+
+    fn preferred_width(&self) -> usize {
+        match self.homotopy().dimension() <= SIXTEEN_LANES_UP_TO {
+            true => 16,
+            false => 8,
         }
     }
 }

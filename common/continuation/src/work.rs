@@ -72,6 +72,22 @@ pub struct Stage {
 }
 
 impl Stage {
+    /// What the stage is for, in words for people.
+    pub fn purpose(&self) -> String {
+        match (self.work, self.attempt) {
+            (Work::Track, 0) if self.homotopy == HomotopyKind::Toric => {
+                "tracking to a generic system".to_owned()
+            }
+            (Work::Track, 0) => "tracking".to_owned(),
+            (Work::Track, attempt) => format!("tracking again, more carefully ({attempt})"),
+            (Work::Certify, _) => "certifying".to_owned(),
+            (Work::LocalDimension, _) => "whether singular endpoints are isolated".to_owned(),
+            (Work::Sharpen { digits }, _) => format!("bringing solutions to {digits} digits"),
+            (Work::CountMixedCells, _) => "counting mixed cells".to_owned(),
+            (Work::Bend, _) => "derivatives of witness points".to_owned(),
+        }
+    }
+
     /// How many items the stage has; `None` when they are more than fit in 64 bits.
     pub fn items(&self) -> Option<u64> {
         match self.work {

@@ -1,15 +1,17 @@
 //! The wire: generated messages, checked conversions, digests.
 //!
 //! [`v1`] is generated from `proto/`; [`from_proto`] checks every field on its
-//! way in, [`to_proto`] cannot fail. [`submission`] is what a client asks for,
+//! way in, [`to_proto`] cannot fail. [`submission`] is what a client asks for, [`option_misfit`] what of it does not go together,
 //! [`digest`] names a system by its content, [`records`] is the form in which
 //! results are stored and hashed.
 #![forbid(unsafe_code)]
 
 pub mod digest;
 pub mod error;
+mod flat_result;
 pub mod from_proto;
 pub mod limits;
+pub mod option_misfit;
 pub mod records;
 pub mod submission;
 pub mod to_proto;

@@ -1,4 +1,4 @@
-//! Records: path results as bytes that are stored and hashed.
+//! Records: results as bytes that are stored and hashed.
 //!
 //! One layout, written by hand so that it is the same for ever: magic with the
 //! version, number of records, then each record with its length before it; all
@@ -7,8 +7,10 @@
 //! agree. The hash is over these bytes before any compression; neither time nor
 //! worker is in them.
 
+use crate::flat_result::FlatResult;
 use cognate_continuation::bend::{Bend, Number};
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{
     AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, NUMBERS, PathIndex,
     PathResult,
@@ -17,6 +19,7 @@ use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, CountedCells};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::work::Work;
 use cognate_numeric::exact_text::{exact_text, read_exact};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::DoubleDouble;
@@ -50,7 +53,7 @@ pub struct DamagedRecords {
 }
 
 /// The records of these results.
-pub fn encode<'a>(results: impl IntoIterator<Item = &'a PathResult>) -> Vec<u8> {
+pub fn encode<'a>(results: impl IntoIterator<Item = &'a ItemResult>) -> Vec<u8> {
     let mut w = Writer(Vec::with_capacity(4096));
     w.0.extend_from_slice(MAGIC);
     w.u64(0);
@@ -58,7 +61,7 @@ pub fn encode<'a>(results: impl IntoIterator<Item = &'a PathResult>) -> Vec<u8> 
     for result in results {
         let start = w.0.len();
         w.u32(0);
-        w.record(result);
+        w.record(&result.into());
         let length = u32::try_from(w.0.len() - start - 4)
             .expect("a path has far fewer than 2^28 coordinates");
         w.0[start..start + 4].copy_from_slice(&length.to_le_bytes());
@@ -73,8 +76,8 @@ pub fn hash(records: &[u8]) -> Digest {
     crate::digest::of_bytes(records)
 }
 
-/// Reads what [`encode`] wrote.
-pub fn decode(records: &[u8]) -> Result<Vec<PathResult>, DamagedRecords> {
+/// Reads what [`encode`] wrote of items of this kind of work.
+pub fn decode(records: &[u8], work: Work) -> Result<Vec<ItemResult>, DamagedRecords> {
     let mut r = Reader {
         bytes: records,
         at: 0,
@@ -90,10 +93,12 @@ pub fn decode(records: &[u8]) -> Result<Vec<PathResult>, DamagedRecords> {
         if end > records.len() {
             return Err(r.damaged("a record is longer than what is there"));
         }
-        results.push(r.record(end)?);
+        let result = r.record(end)?;
         if r.at != end {
             return Err(r.damaged("a record has another length than it says"));
         }
+        let of_another = r.damaged("a result of another kind of work");
+        results.push(result.into_item(work).map_err(|_| of_another)?);
     }
     if r.at != records.len() {
         return Err(r.damaged("there is more than the records"));
@@ -138,7 +143,13 @@ impl Writer {
         self.u32(u32::try_from(length).expect("a path has far fewer than 2^32 coordinates"));
     }
 
-    fn record(&mut self, result: &PathResult) {
+    fn record(&mut self, result: &FlatResult) {
+        self.path(&result.path);
+        self.facts(result);
+    }
+
+    /// What every result has.
+    fn path(&mut self, path: &PathResult) {
         let PathResult {
             origin,
             attempt,
@@ -152,14 +163,10 @@ impl Writer {
             infinity_turns,
             precision_bits,
             counts,
-            asked,
-            certification,
-            local_dimension,
-            sharpening,
-            boundary,
-            mixed_cells,
-            bend,
-        } = result;
+            asked: _,
+            local_dimension: _,
+            boundary: _,
+        } = path;
         self.u64(origin.0);
         self.0.extend_from_slice(&attempt.to_le_bytes());
         self.0.push(match outcome {
@@ -198,10 +205,21 @@ impl Writer {
         for count in [steps, rejections, evaluations, exchanges, turns] {
             self.u32(*count);
         }
+    }
+
+    /// What only some results have.
+    fn facts(&mut self, result: &FlatResult) {
+        let FlatResult {
+            path,
+            certification,
+            sharpening,
+            mixed_cells,
+            bend,
+        } = result;
         if let Some(AskedFit {
             residual,
             correction,
-        }) = asked
+        }) = &path.asked
         {
             self.0.push(tag::ASKED);
             self.f64(*residual);
@@ -226,7 +244,7 @@ impl Writer {
             bound,
             margin,
             moved_slices: _,
-        }) = local_dimension
+        }) = &path.local_dimension
         {
             self.0.push(tag::LOCAL_DIMENSION);
             self.length(dual_dimensions.len());
@@ -258,7 +276,7 @@ impl Writer {
                 });
             }
         }
-        if let Some(BoundaryKey { numbers, margin }) = boundary.as_deref() {
+        if let Some(BoundaryKey { numbers, margin }) = path.boundary.as_deref() {
             self.0.push(tag::BOUNDARY);
             numbers.iter().for_each(|&number| self.f64(number));
             self.f64(*margin);
@@ -279,7 +297,8 @@ impl Writer {
             Some(BranchCount::Tie) => self.0.extend_from_slice(&[tag::UNCOUNTED, 1]),
             Some(BranchCount::TooLarge) => self.0.extend_from_slice(&[tag::UNCOUNTED, 2]),
         }
-        let slices = local_dimension.as_ref().map(|found| &found.moved_slices);
+        let slices = path.local_dimension.as_ref();
+        let slices = slices.map(|found| &found.moved_slices);
         if let Some(slices) = slices.filter(|slices| !slices.is_empty()) {
             self.0.push(tag::MOVED_SLICES);
             self.length(slices.len());
@@ -434,7 +453,22 @@ impl<'a> Reader<'a> {
     }
 
     /// One record, which ends there.
-    fn record(&mut self, end: usize) -> Result<PathResult, DamagedRecords> {
+    fn record(&mut self, end: usize) -> Result<FlatResult, DamagedRecords> {
+        let mut result = FlatResult::from(self.path()?);
+        let mut last = 0;
+        while self.at < end {
+            let [next] = self.array()?;
+            if next <= last {
+                return Err(self.damaged("facts that do not ascend"));
+            }
+            last = next;
+            self.fact(next, &mut result)?;
+        }
+        Ok(result)
+    }
+
+    /// What every record has.
+    fn path(&mut self) -> Result<PathResult, DamagedRecords> {
         let origin = PathIndex(self.u64()?);
         let attempt = self.array().map(u16::from_le_bytes)?;
         let outcome = match self.array::<1>()?[0] {
@@ -462,7 +496,7 @@ impl<'a> Reader<'a> {
         let infinity_turns = (0..groups)
             .map(|_| self.array().map(i32::from_le_bytes))
             .collect::<Result<_, _>>()?;
-        let mut result = PathResult {
+        Ok(PathResult {
             origin,
             attempt,
             outcome,
@@ -482,132 +516,122 @@ impl<'a> Reader<'a> {
                 turns: self.u32()?,
             },
             asked: None,
-            certification: None,
             local_dimension: None,
-            sharpening: None,
             boundary: None,
-            mixed_cells: None,
-            bend: None,
-        };
-        let mut last = 0;
-        while self.at < end {
-            let [next] = self.array()?;
-            if next <= last {
-                return Err(self.damaged("facts that do not ascend"));
+        })
+    }
+
+    /// What stands behind a tag.
+    fn fact(&mut self, tag: u8, result: &mut FlatResult) -> Result<(), DamagedRecords> {
+        match tag {
+            tag::ASKED => {
+                result.path.asked = Some(AskedFit {
+                    residual: self.f64()?,
+                    correction: self.f64()?,
+                });
             }
-            last = next;
-            match next {
-                tag::ASKED => {
-                    result.asked = Some(AskedFit {
-                        residual: self.f64()?,
-                        correction: self.f64()?,
-                    });
-                }
-                tag::CERTIFIED => {
-                    let certificate = Box::new(self.certificate()?);
-                    result.certification = Some(Certification::Certified(certificate));
-                }
-                tag::UNCERTIFIED => {
-                    let reason = match self.array::<1>()?[0] {
-                        1 => Uncertified::DamagedPoint,
-                        2 => Uncertified::NoEnclosure,
-                        3 => Uncertified::NewtonLeaves,
-                        4 => Uncertified::Singular,
-                        5 => Uncertified::NoContraction,
-                        _ => return Err(self.damaged("a reason that this version does not know")),
-                    };
-                    result.certification = Some(Certification::Uncertified(reason));
-                }
-                tag::LOCAL_DIMENSION => {
-                    let orders = self.length(4)?;
-                    result.local_dimension = Some(LocalDimension {
-                        dual_dimensions: (0..orders)
-                            .map(|_| self.u32())
-                            .collect::<Result<_, _>>()?,
-                        bound: self.u64()?,
-                        margin: self.f64()?,
-                        moved_slices: Vec::new(),
-                    });
-                }
-                tag::MOVED_SLICES => {
-                    let count = self.length(24)?;
-                    let slice = |reader: &mut Self| {
-                        Ok(MovedSlice {
-                            distance: reader.f64()?,
-                            residual: reader.f64()?,
-                            reached: reader.f64()?,
-                        })
-                    };
-                    let slices: Vec<MovedSlice> =
-                        (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
-                    let Some(found) = &mut result.local_dimension else {
-                        return Err(self.damaged("moved slices without a dual space"));
-                    };
-                    if !slices.iter().all(MovedSlice::is_sound) {
-                        return Err(self.damaged("a moved slice that is none"));
-                    }
-                    found.moved_slices = slices;
-                }
-                tag::SHARPENED => {
-                    let found = Sharpened {
-                        values: self.exact_parts()?,
-                        accuracy: self.f64()?,
-                        deflations: self.u32()?,
-                        precision_bits: self.u32()?,
-                    };
-                    if !found.is_sound() {
-                        return Err(self.damaged("an accuracy that is none"));
-                    }
-                    result.sharpening = Some(Sharpening::Sharpened(Box::new(found)));
-                }
-                tag::UNSHARPENED => {
-                    let reason = match self.array::<1>()?[0] {
-                        1 => Unsharpened::DamagedPoint,
-                        2 => Unsharpened::NotRegular,
-                        3 => Unsharpened::NewtonLeaves,
-                        _ => return Err(self.damaged("a reason that this version does not know")),
-                    };
-                    result.sharpening = Some(Sharpening::Unsharpened(reason));
-                }
-                tag::BOUNDARY => {
-                    let mut numbers = [0.0; NUMBERS];
-                    for number in &mut numbers {
-                        *number = self.f64()?;
-                    }
-                    let margin = self.f64()?;
-                    result.boundary = Some(BoundaryKey { numbers, margin })
-                        .filter(BoundaryKey::is_sound)
-                        .map(|key| Some(Box::new(key)))
-                        .ok_or_else(|| self.damaged("a key that is none"))?;
-                }
-                tag::MIXED_CELLS => {
-                    result.mixed_cells = Some(BranchCount::Counted(CountedCells {
-                        cells: self.u64()?,
-                        volume: self.u64()?,
-                        time_exponent: self.u32()?,
-                    }));
-                }
-                tag::UNCOUNTED => {
-                    result.mixed_cells = Some(match self.array::<1>()?[0] {
-                        1 => BranchCount::Tie,
-                        2 => BranchCount::TooLarge,
-                        _ => return Err(self.damaged("a reason that this version does not know")),
-                    });
-                }
-                tag::BEND => {
-                    let bend = Bend {
-                        velocity: self.numbers()?,
-                        acceleration: self.numbers()?,
-                        error: self.f64()?,
-                    };
-                    if !bend.is_sound() {
-                        return Err(self.damaged("derivatives that do not belong together"));
-                    }
-                    result.bend = Some(Box::new(bend));
-                }
-                _ => return Err(self.damaged("a fact that this version does not know")),
+            tag::CERTIFIED => {
+                let certificate = Box::new(self.certificate()?);
+                result.certification = Some(Certification::Certified(certificate));
             }
+            tag::UNCERTIFIED => {
+                let reason = match self.array::<1>()?[0] {
+                    1 => Uncertified::DamagedPoint,
+                    2 => Uncertified::NoEnclosure,
+                    3 => Uncertified::NewtonLeaves,
+                    4 => Uncertified::Singular,
+                    5 => Uncertified::NoContraction,
+                    _ => return Err(self.damaged("a reason that this version does not know")),
+                };
+                result.certification = Some(Certification::Uncertified(reason));
+            }
+            tag::LOCAL_DIMENSION => {
+                let orders = self.length(4)?;
+                result.path.local_dimension = Some(LocalDimension {
+                    dual_dimensions: (0..orders).map(|_| self.u32()).collect::<Result<_, _>>()?,
+                    bound: self.u64()?,
+                    margin: self.f64()?,
+                    moved_slices: Vec::new(),
+                });
+            }
+            tag::MOVED_SLICES => {
+                let count = self.length(24)?;
+                let slice = |reader: &mut Self| {
+                    Ok(MovedSlice {
+                        distance: reader.f64()?,
+                        residual: reader.f64()?,
+                        reached: reader.f64()?,
+                    })
+                };
+                let slices: Vec<MovedSlice> =
+                    (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
+                let Some(found) = &mut result.path.local_dimension else {
+                    return Err(self.damaged("moved slices without a dual space"));
+                };
+                if !slices.iter().all(MovedSlice::is_sound) {
+                    return Err(self.damaged("a moved slice that is none"));
+                }
+                found.moved_slices = slices;
+            }
+            tag::SHARPENED => {
+                let found = Sharpened {
+                    values: self.exact_parts()?,
+                    accuracy: self.f64()?,
+                    deflations: self.u32()?,
+                    precision_bits: self.u32()?,
+                };
+                if !found.is_sound() {
+                    return Err(self.damaged("an accuracy that is none"));
+                }
+                result.sharpening = Some(Sharpening::Sharpened(Box::new(found)));
+            }
+            tag::UNSHARPENED => {
+                let reason = match self.array::<1>()?[0] {
+                    1 => Unsharpened::DamagedPoint,
+                    2 => Unsharpened::NotRegular,
+                    3 => Unsharpened::NewtonLeaves,
+                    _ => return Err(self.damaged("a reason that this version does not know")),
+                };
+                result.sharpening = Some(Sharpening::Unsharpened(reason));
+            }
+            tag::BOUNDARY => {
+                let mut numbers = [0.0; NUMBERS];
+                for number in &mut numbers {
+                    *number = self.f64()?;
+                }
+                let margin = self.f64()?;
+                result.path.boundary = Some(BoundaryKey { numbers, margin })
+                    .filter(BoundaryKey::is_sound)
+                    .map(|key| Some(Box::new(key)))
+                    .ok_or_else(|| self.damaged("a key that is none"))?;
+            }
+            tag::MIXED_CELLS => {
+                result.mixed_cells = Some(BranchCount::Counted(CountedCells {
+                    cells: self.u64()?,
+                    volume: self.u64()?,
+                    time_exponent: self.u32()?,
+                }));
+            }
+            tag::UNCOUNTED => {
+                result.mixed_cells = Some(match self.array::<1>()?[0] {
+                    1 => BranchCount::Tie,
+                    2 => BranchCount::TooLarge,
+                    _ => return Err(self.damaged("a reason that this version does not know")),
+                });
+            }
+            tag::BEND => {
+                let bend = Bend {
+                    velocity: self.numbers()?,
+                    acceleration: self.numbers()?,
+                    error: self.f64()?,
+                };
+                if !bend.is_sound() {
+                    return Err(self.damaged("derivatives that do not belong together"));
+                }
+                result.bend = Some(Box::new(bend));
+            }
+            _ => return Err(self.damaged("a fact that this version does not know")),
         }
-        Ok(result)
+        Ok(())
     }
 }

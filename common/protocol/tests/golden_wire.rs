@@ -114,7 +114,7 @@ fn stage() {
 
 #[test]
 fn report() {
-    let results: Vec<_> = (0..2).map(|seed| Draw::new(seed).path_result()).collect();
+    let results = Draw::new(0).item_results();
     let message = v1::ReportRequest {
         identity: Some(v1::WorkerIdentity {
             worker: "host-1".to_owned(),
@@ -127,7 +127,10 @@ fn report() {
                 chunk: 128,
                 epoch: 3,
             }),
-            results: results.iter().map(to_proto::path::path_result).collect(),
+            results: results
+                .iter()
+                .map(|(_, result)| to_proto::path::item_result(result))
+                .collect(),
             cpu_nanoseconds: 5_000_000,
             wall_nanoseconds: 6_000_000,
         }],
@@ -139,20 +142,32 @@ fn report() {
         &message.encode_to_vec(),
     );
     let back = v1::ReportRequest::decode(bytes.as_slice()).unwrap();
-    for (message, result) in back.chunks[0].results.iter().zip(&results) {
-        assert_eq!(&from_proto::path::path_result(message).unwrap(), result);
+    for (message, (work, result)) in back.chunks[0].results.iter().zip(&results) {
+        let read = from_proto::path::item_result(message, *work).unwrap();
+        assert_eq!(&read, result);
     }
 }
 
 #[test]
 fn result_records() {
-    let results: Vec<_> = (0..2).map(|seed| Draw::new(seed).path_result()).collect();
-    let bytes = records::encode(&results);
-    let bytes = golden(
+    let results = Draw::new(0).item_results();
+    let (mut shown, mut bytes) = (String::new(), Vec::new());
+    for (work, result) in &results {
+        let records = records::encode([result]);
+        let hash = records::hash(&records);
+        writeln!(shown, "{work:?}, hash {hash}\n{result:#?}").expect("a string can be written to");
+        bytes.push(records);
+    }
+    let whole = golden(
         "result_records.txt",
-        "Stored results; a ledger of today must be readable for ever, with the same hash.",
-        &format!("hash {}\n{results:#?}", records::hash(&bytes)),
-        &bytes,
+        "Stored results of each kind of work; a ledger of today must be readable for ever, with the same hash.",
+        &shown,
+        &bytes.concat(),
     );
-    assert_eq!(records::decode(&bytes).unwrap(), results);
+    let mut rest = whole.as_slice();
+    for ((work, result), one) in results.into_iter().zip(&bytes) {
+        let (records, others) = rest.split_at(one.len());
+        assert_eq!(records::decode(records, work).unwrap(), [result]);
+        rest = others;
+    }
 }

@@ -2,6 +2,8 @@
 
 mod support;
 
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::work::Work;
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use prost::Message;
 use support::Draw;
@@ -205,11 +207,12 @@ fn bad_stages_and_results_are_refused_with_the_field() {
         "start_points: 18446744073709551615 paths, more than the limit PATHS of 1099511627776"
     );
     let result = |change: &dyn Fn(&mut v1::PathResult)| {
-        let mut message = to_proto::path::path_result(&Draw::new(1).path_result());
+        let path = ItemResult::Track(Draw::new(1).path_result());
+        let mut message = to_proto::path::item_result(&path);
         message.outcome = v1::PathOutcome::Regular.into();
         message.endpoint = vec![1.0, 2.0];
         change(&mut message);
-        from_proto::path::path_result(&message)
+        from_proto::path::item_result(&message, Work::Track)
             .map(|_| ())
             .map_err(|e| e.to_string())
     };
@@ -285,15 +288,16 @@ fn mutated_bytes_never_panic_and_what_passes_is_whole() {
         {
             assert!(stage.items().is_some());
         }
-        let results: Vec<_> = (0..3).map(|_| draw.path_result()).collect();
-        let mut bytes = to_proto::path::path_result(&results[0]).encode_to_vec();
-        mutate(&mut draw, &mut bytes);
-        if let Ok(message) = v1::PathResult::decode(bytes.as_slice()) {
-            let _ = from_proto::path::path_result(&message);
+        for (work, result) in draw.item_results() {
+            let mut bytes = to_proto::path::item_result(&result).encode_to_vec();
+            mutate(&mut draw, &mut bytes);
+            if let Ok(message) = v1::PathResult::decode(bytes.as_slice()) {
+                let _ = from_proto::path::item_result(&message, work);
+            }
+            let mut bytes = records::encode([&result]);
+            mutate(&mut draw, &mut bytes);
+            let _ = records::decode(&bytes, work);
         }
-        let mut bytes = records::encode(&results);
-        mutate(&mut draw, &mut bytes);
-        let _ = records::decode(&bytes);
     }
     assert!(
         passed > 50,

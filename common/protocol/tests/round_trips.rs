@@ -2,12 +2,10 @@
 
 mod support;
 
-use cognate_continuation::bend::{Bend, Number};
-use cognate_continuation::path_result::{Coordinates, PathResult};
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::start_points::StartPoints;
-use cognate_continuation::start_systems::polyhedral::branches::{
-    BRANCHES, BranchCount, CellBranches, CountedCells,
-};
+use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CellBranches};
 use cognate_continuation::work::{Stage, Work};
 use cognate_protocol::submission::{Decompose, Options, Source, Submission};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
@@ -83,33 +81,42 @@ proptest! {
     #[test]
     fn results_come_back_by_both_ways(seed: u64) {
         let mut draw = Draw::new(seed);
-        let mut results: Vec<PathResult> = (0..draw.below(5)).map(|_| draw.path_result()).collect();
-        results.push(draw.sharpened_result());
-        let counted = BranchCount::Counted(CountedCells { cells: seed, volume: 7, time_exponent: 4 });
-        results.extend([counted, BranchCount::Tie, BranchCount::TooLarge].map(|count| PathResult {
-            mixed_cells: Some(count),
-            ..draw.path_result()
-        }));
-        let third = |sign: f64| {
-            let mut third = Number::from_f64((), sign, sign * 1e-3);
-            third.mul(&Number::from_f64((), 1.0 / 3.0, 1e-20));
-            third
-        };
-        results.push(PathResult {
-            bend: Some(Box::new(Bend {
-                velocity: vec![third(1.0), third(-7.0)],
-                acceleration: vec![third(0.0), third(1e300)],
-                error: 1e-30,
-            })),
-            ..draw.path_result()
-        });
-        for result in &results {
-            let message: v1::PathResult = sent(&to_proto::path::path_result(result));
-            let back = from_proto::path::path_result(&message).unwrap();
-            prop_assert_eq!(&back, result);
+        for (work, result) in draw.item_results() {
+            let message: v1::PathResult = sent(&to_proto::path::item_result(&result));
+            let back = from_proto::path::item_result(&message, work).unwrap();
+            prop_assert_eq!(&back, &result);
+            let bytes = records::encode([&result, &result]);
+            let back = records::decode(&bytes, work).unwrap();
+            prop_assert_eq!(back, [result.clone(), result]);
         }
-        let bytes = records::encode(&results);
-        prop_assert_eq!(records::decode(&bytes).unwrap(), results);
+    }
+
+    #[test]
+    fn facts_of_another_kind_of_work_are_refused(seed: u64) {
+        let all = Draw::new(seed).item_results();
+        for (work, result) in &all {
+            let message = to_proto::path::item_result(result);
+            let bytes = records::encode([result]);
+            for (other, _) in all.iter().filter(|(other, _)| other != work) {
+                // Without a fact, a point is a point, whatever was asked of it.
+                let read = from_proto::path::item_result(&message, *other);
+                prop_assert!(read.is_err() || !has_fact(result), "{result:?} as {other:?}");
+                prop_assert_eq!(records::decode(&bytes, *other).is_err(), read.is_err());
+            }
+        }
+    }
+}
+
+/// True where a result says what only results of its kind do.
+fn has_fact(result: &ItemResult) -> bool {
+    match result {
+        // A path without a turn or step is like a point.
+        ItemResult::Track(_) => false,
+        ItemResult::Certify(point) => point.fact().is_some(),
+        ItemResult::LocalDimension(point) => point.fact().is_some(),
+        ItemResult::Sharpen(point) => point.fact().is_some(),
+        ItemResult::CountMixedCells(branch) => branch.fact().is_some(),
+        ItemResult::Bend(point) => point.fact().is_some(),
     }
 }
 
@@ -136,7 +143,7 @@ fn signs_of_zero_and_kinds_of_nan_are_kept_or_made_one() {
             cognate_continuation::tracker::outcome::Failure::StepTooSmall,
         );
         result.endpoint = Coordinates::Double(vec![Complex64::new(value, 0.0)]);
-        records::hash(&records::encode([&result]))
+        records::hash(&records::encode([&ItemResult::Track(result)]))
     };
     assert_ne!(with(0.0), with(-0.0));
     assert_eq!(with(f64::NAN), with(-f64::NAN));

@@ -217,9 +217,14 @@ pub enum Isolation {
 
 /// Whether an endpoint is isolated, from its dual spaces.
 pub fn isolation(result: &PathResult, tolerances: &Tolerances) -> Isolation {
-    let Some(found) = &result.local_dimension else {
-        return Isolation::Undecided;
-    };
+    let known = result.local_dimension.as_ref();
+    known.map_or(Isolation::Undecided, |found| {
+        isolation_by(found, tolerances)
+    })
+}
+
+/// Whether the endpoint of these dual spaces is isolated.
+pub fn isolation_by(found: &LocalDimension, tolerances: &Tolerances) -> Isolation {
     match (multiplicity(found, tolerances), is_met(found, tolerances)) {
         (Some(multiplicity), false) => Isolation::Isolated { multiplicity },
         (None, true) => Isolation::PositiveDimensional,

@@ -2,7 +2,7 @@
 
 use super::error::ApiError;
 use super::{Answers, Context, duration_ms, guarded, lease_id, pieces};
-use crate::coordinator::{CoordinatorError, Pull, Report};
+use crate::coordinator::{Coordinator, CoordinatorError, Pull, Report};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{LeaseId, RequestId, WorkerId};
@@ -115,11 +115,12 @@ fn leases(m: &[v1::LeaseId]) -> Result<Vec<LeaseId>, ApiError> {
     m.iter().map(|id| lease_id("leases", Some(id))).collect()
 }
 
-fn report(m: &v1::ChunkReport) -> Result<Report, ApiError> {
+async fn report(coordinator: &Coordinator, m: &v1::ChunkReport) -> Result<Report, ApiError> {
     let lease = lease_id("lease", m.lease.as_ref())?;
+    let work = coordinator.work_of(lease).await?;
     within_limit("results", m.results.len(), CHUNK_PATHS)?;
     let results = m.results.iter().enumerate().map(|(i, result)| {
-        from_proto::path::path_result(result).map_err(|e| e.within(format!("results[{i}]")))
+        from_proto::path::item_result(result, work).map_err(|e| e.within(format!("results[{i}]")))
     });
     Ok(Report {
         lease,
@@ -253,7 +254,10 @@ impl WorkerApi for WorkerService {
             .map(|chunk| {
                 let coordinator = self.context.coordinator.clone();
                 // What is wrong with one chunk says nothing about the others.
-                guarded(async move { Ok(coordinator.complete(report(&chunk)?).await?) })
+                guarded(async move {
+                    let report = report(&coordinator, &chunk).await?;
+                    Ok(coordinator.complete(report).await?)
+                })
             })
             .buffered(REPORTS_AT_ONCE)
             .map(verdict)

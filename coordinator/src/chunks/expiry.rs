@@ -8,10 +8,9 @@
 use super::leasing::Policy;
 use crate::ledger::identity::ItemRange;
 use crate::ledger::rows::{ChunkRow, Piece};
-use cognate_continuation::path_result::PathResult;
-use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::path_result::PathIndex;
 use cognate_continuation::work::Stage;
-use num_complex::Complex64;
 
 /// What is done with a suspect.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,13 +50,9 @@ pub fn suspect_action(chunk: &ChunkRow, policy: &Policy) -> SuspectAction {
     SuspectAction::Split((0..pieces).map(piece).collect())
 }
 
-/// The result of a path that no worker survived.
-pub fn killed_its_worker(stage: &Stage, item: u64) -> PathResult {
-    let failed = PathOutcome::Failed(Failure::KilledItsWorker);
-    PathResult {
-        t: Complex64::new(1.0, 0.0),
-        ..PathResult::untracked(stage.origin(item), stage.attempt, failed, Vec::new())
-    }
+/// The result of an item that no worker survived.
+pub fn killed_its_worker(stage: &Stage, item: u64) -> ItemResult {
+    ItemResult::killed_its_worker(stage.work, PathIndex(stage.origin(item)), stage.attempt)
 }
 
 #[cfg(test)]

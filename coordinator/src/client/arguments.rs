@@ -11,7 +11,7 @@ use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cognate_continuation::sharpening::MOST_DIGITS;
-use cognate_protocol::submission::PrecisionChoice;
+use cognate_protocol::submission::{PrecisionChoice, StartKind};
 use cognate_worker::transport::connect::CredentialFiles;
 use std::path::PathBuf;
 
@@ -130,6 +130,21 @@ pub enum Start {
     Regeneration,
     /// All solutions of a family with parameters from one of them, by loops
     Monodromy,
+}
+
+impl From<Start> for StartKind {
+    fn from(start: Start) -> Self {
+        match start {
+            Start::Auto => Self::Auto,
+            Start::TotalDegree => Self::TotalDegree,
+            Start::Multihomogeneous => Self::Multihomogeneous,
+            Start::Given => Self::Given,
+            Start::LinearProduct => Self::LinearProduct,
+            Start::Polyhedral => Self::Polyhedral,
+            Start::Regeneration => Self::Regeneration,
+            Start::Monodromy => Self::Monodromy,
+        }
+    }
 }
 
 /// Named settings of the tracker, as typed.

@@ -213,15 +213,16 @@ impl Connection {
     pub async fn solutions(
         &mut self,
         job: &str,
-        mut take: impl FnMut(Solution) -> Result<bool, ClientError>,
+        mut take: impl FnMut(Solution, u32) -> Result<bool, ClientError>,
     ) -> Result<(), ClientError> {
         let request = v1::StreamSolutionsRequest { job: job.into() };
         let answer = self.client.stream_solutions(request).await;
         let mut stream = answer.map_err(|e| self.explain(&e))?.into_inner();
         while let Some(solution) = stream.message().await.map_err(|e| self.explain(&e))? {
+            let target = solution.target;
             let solution = from_proto::solution::solution(&solution)
                 .map_err(|e| ClientError::GaveUp(format!("a solution of it is malformed: {e}")))?;
-            if !take(solution)? {
+            if !take(solution, target)? {
                 break;
             }
         }

@@ -5,6 +5,7 @@ use super::error::ClientError;
 use crate::intake;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
+use cognate_protocol::option_misfit::{OptionMisfit, any_of};
 use cognate_protocol::submission::{
     Decompose, Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
@@ -95,55 +96,15 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         let (name, content) = read_file(path)?;
         formats::symmetry::read(&name, &content, &mut system).map_err(|e| described(&e))?;
     }
-    for (given, option) in [
-        (a.idle_loops.is_some(), "--idle-loops"),
-        (a.expect.is_some(), "--expect"),
-        (a.trace_test, "--trace-test"),
-        (a.confidence.is_some(), "--confidence"),
-    ] {
-        if given && a.start != Start::Monodromy {
-            return Err(wrong(option, "only goes with --start monodromy"));
-        }
-    }
     let sets = read_sets(a.sets.as_deref(), &system)?;
-    let serves = match a.start {
-        Start::Auto => a.start_solutions.is_none(),
-        start => start == Start::LinearProduct,
-    };
-    if sets.is_some() && !serves {
-        return Err(wrong("--sets", "only go with --start linear-product"));
-    }
     warnings.extend(intake::precision_warning(&file));
     let start_solutions = match &a.start_solutions {
         None => None,
         Some(path) => Some(start_points(path, &system)?),
     };
     let start = match (a.start, &start_solutions) {
-        (Start::Given, None) => {
-            return Err(wrong("--start given", "needs --start-solutions FILE"));
-        }
-        (
-            Start::TotalDegree
-            | Start::Multihomogeneous
-            | Start::Polyhedral
-            | Start::LinearProduct
-            | Start::Regeneration,
-            Some(_),
-        ) => {
-            return Err(wrong(
-                "--start-solutions",
-                "only go with --start given, monodromy or auto",
-            ));
-        }
-        (Start::TotalDegree, None) => StartKind::TotalDegree,
-        (Start::Multihomogeneous, None) => StartKind::Multihomogeneous,
-        (Start::Monodromy, _) => StartKind::Monodromy,
-        (Start::Polyhedral, None) => StartKind::Polyhedral,
-        (Start::LinearProduct, None) => StartKind::LinearProduct,
-        (Start::Regeneration, None) => StartKind::Regeneration,
-        (_, Some(_)) => StartKind::Given,
-        // What is not in this version was refused before.
-        (_, None) => StartKind::Auto,
+        (Start::Auto, Some(_)) => StartKind::Given,
+        (start, _) => start.into(),
     };
     let mut start_parameters = parameters(a.start_parameters.as_deref(), &system)?;
     if start_parameters.len() > 1 {
@@ -194,6 +155,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         sets,
         decompose: None,
     };
+    options.check().map_err(misfit)?;
     Ok(Prepared {
         submission: Submission {
             source: Source::System(Box::new(system)),
@@ -262,6 +224,24 @@ fn parameters(
         ));
     }
     formats::points::read_parameters(&name, &content, &system.parameters).map_err(|e| described(&e))
+}
+
+/// A misfit in the words of the command line.
+fn misfit(misfit: OptionMisfit) -> ClientError {
+    let typed = |field: &str| match field {
+        "expected_solutions" => "--expect".to_owned(),
+        field => format!("--{}", field.replace('_', "-")),
+    };
+    match misfit {
+        OptionMisfit::OnlyWith { field, starts } => {
+            let message = format!("only goes with --start {}", any_of(starts));
+            wrong(&typed(field), &message)
+        }
+        OptionMisfit::NotWith { field, other } => {
+            wrong(&typed(field), &format!("does not go with {}", typed(other)))
+        }
+        OptionMisfit::NoStartSolutions => wrong("--start given", "needs --start-solutions FILE"),
+    }
 }
 
 fn wrong(origin: &str, message: &str) -> ClientError {

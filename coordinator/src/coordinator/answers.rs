@@ -10,11 +10,10 @@ use crate::results::AnySummary;
 use crate::results::decomposition::DECOMPOSITION;
 use crate::results::summary::SOLUTIONS;
 use cognate_algorithms::AnyAlgorithm;
-use cognate_algorithms::monodromy::estimate::percent;
-use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
-use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
@@ -51,19 +50,14 @@ pub struct Explanation {
     pub json: String,
 }
 
-/// What a stage is for, in words.
-fn purpose(stage: &Stage) -> String {
-    match (stage.work, stage.attempt) {
-        (Work::Certify, _) => "certifying".to_owned(),
-        (Work::Sharpen { digits }, _) => format!("bringing solutions to {digits} digits"),
-        (Work::LocalDimension, _) => "whether singular endpoints are isolated".to_owned(),
-        (Work::CountMixedCells, _) => "counting mixed cells".to_owned(),
-        (Work::Bend, _) => "derivatives of witness points".to_owned(),
-        (Work::Track, 0) if stage.homotopy == HomotopyKind::Toric => {
-            "tracking to a generic system".to_owned()
-        }
-        (Work::Track, 0) => "tracking".to_owned(),
-        (Work::Track, attempt) => format!("tracking again, more carefully ({attempt})"),
+/// The mixed cells of a branch, where they were counted.
+fn cells_of(result: &ItemResult) -> u64 {
+    match result {
+        ItemResult::CountMixedCells(branch) => match branch.fact() {
+            Some(BranchCount::Counted(counted)) => counted.cells,
+            Some(BranchCount::Tie | BranchCount::TooLarge) | None => 0,
+        },
+        _ => 0,
     }
 }
 
@@ -79,7 +73,7 @@ impl Coordinator {
                 Work::CountMixedCells => Some(self.cells_so_far(job, stage.stage).await?),
                 _ => None,
             };
-            purposes.insert(stage.stage, (purpose(&definition), cells));
+            purposes.insert(stage.stage, (definition.purpose(), cells));
         }
         let now = self.ledger.now().await?;
         Ok(JobProgress::new(&row, &stages, now, |stage: &StageRow| {
@@ -100,11 +94,8 @@ impl Coordinator {
                 if counts.contains_key(&object.items.first) {
                     continue;
                 }
-                let results = self.store.results(&object).await?;
-                let cells = results.iter().map(|result| match result.mixed_cells {
-                    Some(BranchCount::Counted(counted)) => counted.cells,
-                    Some(BranchCount::Tie | BranchCount::TooLarge) | None => 0,
-                });
+                let results = self.store.results(&object, Work::CountMixedCells).await?;
+                let cells = results.iter().map(cells_of);
                 counts.insert(object.items.first, cells.sum());
             }
         }
@@ -270,7 +261,7 @@ impl Coordinator {
         };
         let stages = self.ledger.stages(job).await?.into_iter();
         for stage in stages.filter(|stage| stage.stage >= counted) {
-            if self.stage_of(stage.definition).await?.work != Work::Track {
+            if !self.stage_of(stage.definition).await?.work.tracks_paths() {
                 continue; // its items are no paths
             }
             let (mut from, first) = (0, results.is_empty());
@@ -287,7 +278,7 @@ impl Coordinator {
                     else {
                         continue;
                     };
-                    for result in self.store.results(&result).await? {
+                    for result in self.store.paths(&result).await? {
                         if first {
                             results.push(result);
                         } else if let Ok(place) = usize::try_from(result.origin.0)
@@ -351,96 +342,7 @@ impl Coordinator {
                 "late: {late} chunks were given to a second worker, which reported {won} of them first"
             ));
         }
-        if let Some(AnySummary::Decomposition(summary)) = &summary {
-            lines.extend(summary.lines());
-        }
-        if let Some(AnySummary::Solve(summary)) = &summary {
-            let paths = &summary.paths;
-            lines.push(format!(
-                "paths: {} finite, {} singular, {} on positive-dimensional sets, {} undecided (isolated or not), {} within the \
-                 accuracy of the data, {} excess (no solutions before randomisation), {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
-                paths.finite,
-                paths.singular,
-                paths
-                    .positive_dimensional
-                    .map_or("an unknown number".to_owned(), |n| n.to_string()),
-                paths.undecided,
-                paths.within_data_accuracy,
-                paths.excess.unwrap_or(0),
-                paths.at_infinity,
-                paths.failed,
-                paths.retracked,
-                paths.crossings_found,
-                paths.crossings_resolved
-            ));
-            if let Some(block) = &summary.monodromy {
-                let loops = &block.loops;
-                lines.push(format!(
-                    "monodromy: {} solutions in {} classes by {} loops, the last {} without \
-                     anything new; {} paths tracked for them, {} lost; {} crossings seen, {} came \
-                     apart",
-                    loops.solutions,
-                    loops.classes,
-                    loops.loops,
-                    loops.idle_loops,
-                    loops.tracked,
-                    loops.lost,
-                    loops.crossings_found,
-                    loops.crossings_resolved
-                ));
-                let shown = loops.mixing.is_shown(loops.classes);
-                if let Some(estimate) = loops.estimate.as_ref().filter(|_| !shown) {
-                    lines.push(format!(
-                        "estimate: {} classes by capture and recapture; no probability is claimed, \
-                         since loops are not seen to permute the known classes at random ({} of {} \
-                         move some; {:.1} stay on average)",
-                        estimate
-                            .likeliest
-                            .map_or("an unknown number of".to_owned(), |n| n.to_string()),
-                        loops.mixing.moving,
-                        loops.mixing.loops,
-                        loops.mixing.fixed.unwrap_or(0.0)
-                    ));
-                }
-                if let Some(estimate) = loops.estimate.as_ref().filter(|_| shown) {
-                    lines.push(format!(
-                        "estimate: {} classes, all known with probability {}, by capture and \
-                         recapture: N of them are likely as the product of (N)_r over places with r \
-                         known, divided by that of (N)_c over edges with c pairs and by (N)_s with s \
-                         at the start, (N)_k = N (N-1) ... (N-k+1) (after Hauenstein and Sherman \
-                         2020); it takes for granted that {}",
-                        estimate
-                            .likeliest
-                            .map_or("an unknown number of".to_owned(), |n| n.to_string()),
-                        percent(estimate.confidence),
-                        estimate.assumption
-                    ));
-                }
-            }
-            if let Some(certified) = summary.solutions.certified {
-                lines.push(format!(
-                    "certified: {certified} of {} nonsingular solutions, {} of them proved real",
-                    summary.solutions.nonsingular,
-                    summary
-                        .solutions
-                        .certified_real
-                        .map_or("none".to_owned(), |n| n.to_string()),
-                ));
-            }
-            if let Some(sharpened) = &summary.solutions.sharpened {
-                lines.push(format!(
-                    "sharpened: {} of {} solutions to {} digits, {} of them by deflation",
-                    sharpened.solutions,
-                    summary.solutions.distinct,
-                    sharpened.digits,
-                    sharpened.by_deflation
-                ));
-            }
-            for (reason, count) in &summary.failures {
-                lines.push(format!("failed: {count} because {reason}"));
-            }
-            lines.extend(summary.warnings.iter().map(|w| format!("warning: {w}")));
-        }
+        lines.extend(summary.iter().flat_map(AnySummary::lines));
         let stages: Vec<_> = progress
             .stages
             .iter()

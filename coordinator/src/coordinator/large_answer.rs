@@ -9,7 +9,7 @@ use crate::ledger::rows::JobRow;
 use crate::results::summary::{LARGE, LargeAnswer};
 use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::{StageId, Work};
+use cognate_continuation::work::StageId;
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::plain::Sieve;
 use cognate_solutions::solution::Solution;
@@ -95,7 +95,7 @@ impl Coordinator {
         let solve = algorithm
             .large()
             .ok_or_else(|| unreadable("it is of another kind".into()))?;
-        let first = solve.paths().first().id;
+        let first = solve.paths().first_id();
         let mut teller = Teller {
             sieve: solve.sieve(&system),
             again: self.tracked_again(job, first).await?,
@@ -137,7 +137,7 @@ impl Coordinator {
         let mut again = HashMap::new();
         let stages = self.ledger.stages(job).await?.into_iter();
         for stage in stages.filter(|stage| stage.stage > first) {
-            if self.stage_of(stage.definition).await?.work != Work::Track {
+            if !self.stage_of(stage.definition).await?.work.tracks_paths() {
                 continue; // its items are no paths
             }
             let mut from = 0;

@@ -34,7 +34,6 @@ use crate::ledger::{Ledger, LedgerError};
 use crate::recent::Recent;
 use crate::results::store::Store;
 use bytes::Bytes;
-use cognate_algorithms::PathAlgorithm;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_numeric::NUMERICS_REVISION;

@@ -4,13 +4,16 @@
 
 use super::{Coordinator, CoordinatorError, NewProblem, Pull, Report};
 use crate::chunks::leasing::Policy;
+use crate::chunks::sizing::Sizing;
 use crate::jobs::drive::{Drive, Driven};
 use crate::jobs::tools::Tools;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::identity::*;
+use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::Store;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -32,6 +35,67 @@ impl Dice {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         (z ^ (z >> 31)) % sides
+    }
+}
+
+/// Chunks of so many items, and a clock that is soon over.
+pub fn policy(most_items: u64) -> Policy {
+    Policy {
+        lease_ms: 3000,
+        steward_ms: 2000,
+        sizing: Sizing {
+            first_items: most_items,
+            most_items,
+            ..Sizing::default()
+        },
+        ..Policy::default()
+    }
+}
+
+/// A cluster without faults, whose chunks have so many items.
+pub fn cluster(most_items: u64, seed: u64) -> Cluster {
+    let clock = Arc::new(ManualClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    Cluster::new(ledger, Store::in_memory(), clock, policy(most_items), seed)
+}
+
+/// The reference of a problem: one coordinator and one worker solve it, and nothing happens to them.
+pub async fn undisturbed(problem: &NewProblem) -> (Cluster, JobRow) {
+    let mut cluster = cluster(1000, 1);
+    cluster.start_coordinator();
+    cluster.start_worker();
+    cluster.submit(problem).await;
+    for _ in 0..200 {
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        cluster.report(0, 0).await;
+    }
+    let row = cluster.row().await;
+    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    (cluster, row)
+}
+
+/// Whether clusters of all sizes, in which chance decides who does what, find what the reference is.
+pub async fn check_any_cluster(
+    problem: &NewProblem,
+    reference: &JobRow,
+    sizes: &[u64],
+    seeds: u64,
+) {
+    for seed in 0..seeds {
+        let mut cluster = cluster(sizes[seed as usize % sizes.len()], seed);
+        // Here workers die by chance, and no path is at fault.
+        cluster.policy.suspicion_limit = 1000;
+        for _ in 0..=seed % 2 {
+            cluster.start_coordinator();
+        }
+        for _ in 0..=seed % 3 {
+            cluster.start_worker();
+        }
+        cluster.submit(problem).await;
+        let row = cluster.run().await;
+        assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
     }
 }
 
@@ -367,7 +431,12 @@ impl Cluster {
         self.tracked += lease.items.len();
         let mut results = prepared.run(items, self.workers[worker].width);
         if self.workers[worker].wrong {
-            results[0].endpoint = Coordinates::Double(vec![Complex64::new(1.0, 2.0); 3]);
+            let wrong = vec![Complex64::new(1.0, 2.0); 3];
+            match &mut results[0] {
+                ItemResult::Track(path) => path.endpoint = Coordinates::Double(wrong),
+                ItemResult::LocalDimension(point) => point.point = wrong,
+                other => panic!("a solve of this simulation has no {other:?}"),
+            }
         }
         let report = Report {
             lease: lease.lease,

@@ -2,7 +2,6 @@
 
 use super::simulation::*;
 use super::*;
-use crate::chunks::sizing::Sizing;
 use crate::chunks::speculation::Speculation;
 use crate::ledger::clock::{Clock, ManualClock};
 use crate::ledger::faulty::{FaultyLedger, Side};
@@ -15,38 +14,9 @@ use cognate_solutions::solution_set::FailureReason;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 
-fn policy(most_items: u64) -> Policy {
-    Policy {
-        lease_ms: 3000,
-        steward_ms: 2000,
-        sizing: Sizing {
-            first_items: most_items,
-            most_items,
-            ..Sizing::default()
-        },
-        ..Policy::default()
-    }
-}
-
-fn cluster(most_items: u64, seed: u64) -> Cluster {
-    let clock = Arc::new(ManualClock::default());
-    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
-    Cluster::new(ledger, Store::in_memory(), clock, policy(most_items), seed)
-}
-
 /// The reference: one coordinator, one worker, nothing happens.
 async fn quiet(problem: &NewProblem) -> (JobRow, Vec<SolutionSet>) {
-    let mut cluster = cluster(1000, 1);
-    cluster.start_coordinator();
-    cluster.start_worker();
-    cluster.submit(problem).await;
-    for _ in 0..200 {
-        cluster.drive(0).await;
-        cluster.pull(0, 0).await;
-        cluster.report(0, 0).await;
-    }
-    let row = cluster.row().await;
-    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    let (cluster, row) = undisturbed(problem).await;
     let sets = cluster.coordinator(0).solutions(cluster.job).await.unwrap();
     (row, sets.to_vec())
 }
@@ -63,21 +33,7 @@ async fn the_reference_is_right() {
 #[tokio::test]
 async fn any_cluster_finds_the_same() {
     let (reference, _) = quiet(&problem()).await;
-    for seed in 0..40 {
-        let mut cluster = cluster([1, 3, 5, 16][seed as usize % 4], seed);
-        // Here workers die by chance, and no path is at fault.
-        cluster.policy.suspicion_limit = 1000;
-        for _ in 0..=seed % 2 {
-            cluster.start_coordinator();
-        }
-        for _ in 0..=seed % 3 {
-            cluster.start_worker();
-        }
-        cluster.submit(&problem()).await;
-        let row = cluster.run().await;
-        assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
-        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
-    }
+    check_any_cluster(&problem(), &reference, &[1, 3, 5, 16], 40).await;
 }
 
 /// Two coordinators, three workers; every fault that the simulation has, and a ledger that fails at
@@ -518,12 +474,15 @@ async fn a_running_coordinator_needs_nobody_to_drive_it() {
                         .stage(id.chunk.job, id.chunk.stage)
                         .await
                         .unwrap();
-                    let prepared =
-                        cognate_continuation::stage::PreparedStage::new(&system, &stage, &|_| None)
-                            .unwrap();
+                    let prepared = cognate_continuation::prepared_work::PreparedWork::new(
+                        &system,
+                        &stage,
+                        &|_| None,
+                    )
+                    .unwrap();
                     let report = Report {
                         lease: id,
-                        results: prepared.track(lease.items.first..lease.items.last, 8),
+                        results: prepared.run(lease.items.first..lease.items.last, 8),
                         cpu_micros: 1000,
                     };
                     coordinator.complete(report).await.unwrap();
@@ -634,7 +593,7 @@ async fn a_panic_ends_the_job_and_not_the_service() {
         .collect();
     let (store, ledger) = (coordinator.store(), coordinator.ledger());
     let object = store
-        .put_results(stage.work, lease.lease, lease.items, results, 1)
+        .put_results(lease.lease, lease.items, results, 1)
         .await
         .unwrap();
     ledger.complete(lease.lease, object).await.unwrap();

@@ -2,7 +2,6 @@
 
 use super::simulation::*;
 use super::*;
-use crate::chunks::sizing::Sizing;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::faulty::FaultyLedger;
 use crate::ledger::memory::MemoryLedger;
@@ -20,15 +19,8 @@ fn polyhedral() -> NewProblem {
 
 fn policy(most_items: u64) -> Policy {
     Policy {
-        lease_ms: 3000,
-        steward_ms: 2000,
         counting_operations: 10,
-        sizing: Sizing {
-            first_items: most_items,
-            most_items,
-            ..Sizing::default()
-        },
-        ..Policy::default()
+        ..super::simulation::policy(most_items)
     }
 }
 

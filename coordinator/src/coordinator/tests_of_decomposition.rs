@@ -2,9 +2,6 @@
 
 use super::simulation::*;
 use super::*;
-use crate::chunks::sizing::Sizing;
-use crate::ledger::clock::ManualClock;
-use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::JobRow;
 use cognate_protocol::submission::Decompose;
 
@@ -16,37 +13,9 @@ fn problem() -> NewProblem {
     problem
 }
 
-fn cluster(most_items: u64, seed: u64) -> Cluster {
-    let clock = Arc::new(ManualClock::default());
-    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
-    let policy = Policy {
-        lease_ms: 3000,
-        steward_ms: 2000,
-        // Here workers die by chance, and no path is at fault.
-        suspicion_limit: 1000,
-        sizing: Sizing {
-            first_items: most_items,
-            most_items,
-            ..Sizing::default()
-        },
-        ..Policy::default()
-    };
-    Cluster::new(ledger, Store::in_memory(), clock, policy, seed)
-}
-
 /// One coordinator, one worker, nothing happens.
 async fn quiet() -> JobRow {
-    let mut cluster = cluster(1000, 1);
-    cluster.start_coordinator();
-    cluster.start_worker();
-    cluster.submit(&problem()).await;
-    for _ in 0..200 {
-        cluster.drive(0).await;
-        cluster.pull(0, 0).await;
-        cluster.report(0, 0).await;
-    }
-    let row = cluster.row().await;
-    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    let (cluster, row) = undisturbed(&problem()).await;
     let coordinator = cluster.coordinator(0);
     let found = coordinator.decomposition(cluster.job).await.unwrap();
     let of = |set: &cognate_solutions::witness::WitnessSet| {
@@ -67,17 +36,5 @@ async fn quiet() -> JobRow {
 #[tokio::test]
 async fn any_cluster_finds_the_same_components() {
     let reference = quiet().await;
-    for seed in 0..24 {
-        let mut cluster = cluster([1, 2, 3][seed as usize % 3], seed);
-        for _ in 0..=seed % 2 {
-            cluster.start_coordinator();
-        }
-        for _ in 0..=seed % 3 {
-            cluster.start_worker();
-        }
-        cluster.submit(&problem()).await;
-        let row = cluster.run().await;
-        assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
-        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
-    }
+    check_any_cluster(&problem(), &reference, &[1, 2, 3], 24).await;
 }

@@ -6,8 +6,8 @@ use crate::ledger::identity::{ItemRange, LeaseId, RequestId, WorkerId};
 use crate::ledger::rows::{Completion, GiveBack, Lease, LeaseRequest, Renewal, WorkerSeen};
 use crate::ledger::rules::MOST_MICROS;
 use crate::results::store::StoreError;
-use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::Stage;
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::work::{Stage, Work};
 use std::time::Duration;
 use tokio::time::{Instant, timeout_at};
 
@@ -36,7 +36,7 @@ pub struct Report {
     /// Lease under which the chunk was done.
     pub lease: LeaseId,
     /// One result for each item, in order.
-    pub results: Vec<PathResult>,
+    pub results: Vec<ItemResult>,
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
 }
@@ -131,6 +131,12 @@ impl Coordinator {
         Ok(self.ledger.renew(leases, self.policy.lease_ms).await?)
     }
 
+    /// What is done with the items of a lease.
+    pub async fn work_of(&self, lease: LeaseId) -> Result<Work, CoordinatorError> {
+        let stage = self.stage(lease.chunk.job, lease.chunk.stage).await?;
+        Ok(stage.work)
+    }
+
     /// Takes the results of a chunk: the object, then the row, then the answer.
     pub async fn complete(&self, report: Report) -> Result<Completion, CoordinatorError> {
         let Report {
@@ -151,7 +157,7 @@ impl Coordinator {
         let cpu_micros = cpu_micros.min(MOST_MICROS);
         let object = match self
             .store
-            .put_results(stage.work, lease, items, results, cpu_micros)
+            .put_results(lease, items, results, cpu_micros)
             .await
         {
             Ok(object) => object,
@@ -228,16 +234,24 @@ impl Coordinator {
 }
 
 /// Results must be those of the items: the algorithms rely on it.
-fn check_report(stage: &Stage, items: ItemRange, results: &[PathResult]) -> Result<(), String> {
+fn check_report(stage: &Stage, items: ItemRange, results: &[ItemResult]) -> Result<(), String> {
     if items.is_empty() || stage.items().is_none_or(|all| items.last > all) {
         return Err(format!("items {}..{}", items.first, items.last));
     }
     for (item, result) in (items.first..items.last).zip(results) {
         let origin = stage.origin(item);
-        if result.origin.0 != origin || result.attempt != stage.attempt {
+        if result.origin().0 != origin || result.attempt() != stage.attempt {
             return Err(format!(
                 "item {item} is path {origin} in attempt {}, the report has path {} in attempt {}",
-                stage.attempt, result.origin.0, result.attempt
+                stage.attempt,
+                result.origin().0,
+                result.attempt()
+            ));
+        }
+        if !result.is_of(stage.work) {
+            let work = stage.work;
+            return Err(format!(
+                "item {item} is of {work:?}, the report has {result:?}"
             ));
         }
     }

@@ -176,6 +176,7 @@ impl Drive {
         let Some(stage) = next_to_absorb(&stages) else {
             return self.judge_suspects(tools).await;
         };
+        let work = tools.store.stage(stage.definition).await?.work;
         let (stage, items) = (stage.stage, stage.items);
         let steward = self.steward();
         let is_large = steward.leaves_out()
@@ -185,11 +186,11 @@ impl Drive {
         if is_large {
             tracing::info!(job = %self.job, stage = stage.0, items, "absorbing a stage of a large job");
             let (large, steward) = (&mut self.large, &mut self.steward);
-            let wanted = large.absorb(tools, self.job, steward, (stage, items));
+            let wanted = large.absorb(tools, self.job, steward, (stage, items, work));
             let wanted = wanted.await?;
             return self.carry_out(tools, &[stage], &wanted).await;
         }
-        let results = large_stage::all(tools, self.job, stage).await?;
+        let results = large_stage::all(tools, self.job, stage, work).await?;
         if results.len() as u64 != items {
             // A worker was outvoted in between, and what it did is done again.
             return Err(LedgerError::Fenced(self.job).into());
@@ -373,9 +374,7 @@ impl Drive {
                         chunk,
                         epoch: Epoch(suspect.epoch.0 + 1),
                     };
-                    let object = store
-                        .put_results(stage.work, own, items, results, 0)
-                        .await?;
+                    let object = store.put_results(own, items, results, 0).await?;
                     ledger.fail_item(chunk, self.epoch, object).await?;
                 }
             }

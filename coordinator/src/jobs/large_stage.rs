@@ -9,8 +9,10 @@ use super::tools::{DriveError, Tools};
 use crate::ledger::LedgerError;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkRow, ChunkState, ResultObject};
+use crate::results::store::{Store, StoreError};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::StageId;
+use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::plain::Crowd;
 use futures::{Stream, StreamExt};
 
@@ -38,22 +40,23 @@ pub async fn page(
     Ok(rows.into_iter().filter_map(object_of).collect())
 }
 
-/// The results of these objects, in their order; some are read ahead.
+/// The paths of these objects of stages that track, in their order; some are read ahead.
 pub fn read<'a>(
-    store: &'a crate::results::store::Store,
+    store: &'a Store,
     objects: Vec<ResultObject>,
-) -> impl Stream<Item = Result<Vec<PathResult>, crate::results::store::StoreError>> + 'a {
+) -> impl Stream<Item = Result<Vec<PathResult>, StoreError>> + 'a {
     futures::stream::iter(objects)
-        .map(move |object| async move { store.results(&object).await })
+        .map(move |object| async move { store.paths(&object).await })
         .buffered(READ_AHEAD)
 }
 
-/// All results of a complete stage, in the order of its items.
+/// All results of a complete stage that does this work, in the order of its items.
 pub async fn all(
     tools: &Tools<'_>,
     job: JobId,
     stage: StageId,
-) -> Result<Vec<PathResult>, DriveError> {
+    work: Work,
+) -> Result<Vec<ItemResult>, DriveError> {
     let mut results = Vec::new();
     let mut from = 0;
     loop {
@@ -62,7 +65,12 @@ pub async fn all(
             return Ok(results);
         };
         from = last.items.last;
-        let mut chunks = std::pin::pin!(read(tools.store, objects));
+        let objects = futures::stream::iter(objects);
+        let mut chunks = std::pin::pin!(
+            objects
+                .map(|object| async move { tools.store.results(&object, work).await })
+                .buffered(READ_AHEAD)
+        );
         while let Some(chunk) = chunks.next().await {
             results.extend(chunk?);
         }
@@ -157,7 +165,7 @@ impl LargeStage {
         tools: &Tools<'_>,
         job: JobId,
         steward: &mut Option<Steward>,
-        (stage, items): (StageId, u64),
+        (stage, items, work): (StageId, u64, Work),
     ) -> Result<Wanted, DriveError> {
         const HERE: &str = "the steward is back before the step ends";
         let first = steward.as_ref().expect(HERE).first_stage();
@@ -180,7 +188,7 @@ impl LargeStage {
             let plain = crowd.counts().clone();
             let (back, wanted) = elsewhere(move || {
                 taken.leave_out(plain);
-                let wanted = taken.absorb(stage, held);
+                let wanted = taken.absorb(stage, held.into_iter().map(ItemResult::Track));
                 (taken, wanted)
             })
             .await;
@@ -188,11 +196,10 @@ impl LargeStage {
             self.crowd = Some(crowd);
             return Ok(wanted);
         }
-        let results = all(tools, job, stage).await?;
+        let results = all(tools, job, stage, work).await?;
         if results.len() as u64 != items {
             return Err(LedgerError::Fenced(job).into());
         }
-        let tracked = steward.as_ref().expect(HERE).tracks(stage);
         let mut crowd = match self.crowd.take() {
             Some(crowd) => crowd,
             // Another coordinator began: what it remembered is in the objects.
@@ -202,11 +209,12 @@ impl LargeStage {
             }
         };
         // Other stages say more of ends that are held.
-        let near = if tracked {
-            crowd.near(&results)
-        } else {
-            Vec::new()
-        };
+        let paths: Vec<PathResult> = results
+            .iter()
+            .filter_map(ItemResult::path)
+            .cloned()
+            .collect();
+        let near = crowd.near(&paths);
         let near = fetch(tools, job, first, &near).await?;
         crowd.take_back(&near);
         let mut taken = steward.take().expect(HERE);

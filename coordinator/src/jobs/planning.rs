@@ -10,7 +10,7 @@ use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::start_costs::StartKind as PlannedStart;
-use cognate_algorithms::{AnyAlgorithm, Next, PathAlgorithm, PlanError};
+use cognate_algorithms::{AnySolve, Next, PathAlgorithm, PlanError};
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::stage::PrepareError;
@@ -214,7 +214,7 @@ fn plan_decomposition(
     let solve = DecompositionSolve::new(system, &options)?;
     Ok(Plan {
         system: system.clone(),
-        algorithm: AnyAlgorithm::Decomposition(Box::new(solve)),
+        algorithm: AnySolve::Decomposition(Box::new(solve)).into(),
         start: PlannedStart::Cascade,
         paths: None,
         why: "all components are asked for; equation by equation, and in each dimension the points that solve \

@@ -7,8 +7,9 @@
 use crate::ledger::rows::StageRow;
 use crate::results::summary::MonodromyBlock;
 use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::{StageId, Work};
+use cognate_continuation::work::StageId;
 use cognate_solutions::plain::{Crowd, PlainCounts, Sieve};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::Decomposition;
@@ -73,7 +74,7 @@ impl Steward {
     pub fn absorb(
         &mut self,
         stage: StageId,
-        results: impl IntoIterator<Item = PathResult>,
+        results: impl IntoIterator<Item = ItemResult>,
     ) -> Wanted {
         self.algorithm.absorb(stage, &mut results.into_iter());
         self.ask()
@@ -82,7 +83,7 @@ impl Steward {
     /// The stage whose paths are those of the job, where they need not all be held.
     pub fn first_stage(&self) -> StageId {
         let large = self.algorithm.large();
-        large.map_or(StageId(0), |solve| solve.paths().first().id)
+        large.map_or(StageId(0), |solve| solve.paths().first_id())
     }
 
     /// True where plain paths need not be held (see `solutions::plain`).
@@ -94,12 +95,6 @@ impl Steward {
     pub fn leaves_out(&self) -> bool {
         let large = self.algorithm.large();
         large.is_some_and(|solve| solve.paths().leaves_out())
-    }
-
-    /// True for stages that track paths.
-    pub fn tracks(&self, stage: StageId) -> bool {
-        let stages = self.algorithm.progress().stages;
-        (stages.iter()).any(|other| other.id == stage && other.work == Work::Track)
     }
 
     /// Nobody yet, with room for so many paths.

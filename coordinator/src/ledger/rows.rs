@@ -4,10 +4,10 @@ use super::clock::LedgerTime;
 use super::identity::*;
 use crate::chunks::sizing::Sizing;
 use crate::chunks::speculation::{Pace, Speculation};
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::PathOutcome;
-use cognate_continuation::work::{StageId, Work};
+use cognate_continuation::work::StageId;
 use serde::{Deserialize, Serialize};
 
 /// How far a job is.
@@ -182,12 +182,9 @@ pub struct Outcomes {
 
 impl Outcomes {
     /// Counts the outcomes of some results of a stage; none where the stage tracks no paths.
-    pub fn of(work: Work, results: &[PathResult]) -> Self {
+    pub fn of(results: &[ItemResult]) -> Self {
         let mut outcomes = Self::default();
-        if !work.tracks_paths() {
-            return outcomes;
-        }
-        for result in results {
+        for result in results.iter().filter_map(ItemResult::path) {
             match result.outcome {
                 PathOutcome::Regular => outcomes.regular += 1,
                 PathOutcome::Singular | PathOutcome::Diverging => outcomes.singular += 1,

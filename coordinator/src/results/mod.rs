@@ -1,6 +1,7 @@
 //! Results: write-once objects, and the summary of a finished job.
 
 pub mod decomposition;
+mod explained;
 pub mod store;
 pub mod summary;
 

@@ -8,6 +8,7 @@
 use crate::ledger::identity::{ItemRange, LeaseId, digest_of};
 use crate::ledger::rows::{Outcomes, ResultObject};
 use bytes::Bytes;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, Work};
@@ -232,16 +233,15 @@ impl Store {
         .await
     }
 
-    /// Keeps the results of a lease of a stage that does this work. Sent twice, they are kept once.
+    /// Keeps the results of a lease. Sent twice, they are kept once.
     pub async fn put_results(
         &self,
-        work: Work,
         lease: LeaseId,
         items: ItemRange,
-        results: Vec<PathResult>,
+        results: Vec<ItemResult>,
         cpu_micros: u64,
     ) -> Result<ResultObject, StoreError> {
-        let outcomes = Outcomes::of(work, &results);
+        let outcomes = Outcomes::of(&results);
         let (hash, bytes) = off_thread(results.len() * 256 > SMALL, move || pack(&results)).await;
         let address = results_address(lease, items);
         let object = ResultObject {
@@ -269,8 +269,18 @@ impl Store {
         Ok(self.objects.delete(&address).await?)
     }
 
-    /// The results that an object holds, in the order of their items.
-    pub async fn results(&self, object: &ResultObject) -> Result<Vec<PathResult>, StoreError> {
+    /// The paths that an object of a stage that tracks holds, in the order of its items.
+    pub async fn paths(&self, object: &ResultObject) -> Result<Vec<PathResult>, StoreError> {
+        let results = self.results(object, Work::Track).await?.into_iter();
+        Ok(results.map(ItemResult::into_path).collect())
+    }
+
+    /// The results that an object of a stage that does this work holds, in the order of their items.
+    pub async fn results(
+        &self,
+        object: &ResultObject,
+        work: Work,
+    ) -> Result<Vec<ItemResult>, StoreError> {
         let address = Address::parse(&object.address)
             .map_err(|error| damaged(&Address::from(object.address.as_str()), error))?;
         let bytes = self.read(&address).await?;
@@ -280,7 +290,8 @@ impl Store {
             if hash != object.hash {
                 return Err(damaged(&address, "it is not the object that was accepted"));
             }
-            let results = records::decode(&records).map_err(|error| damaged(&address, error))?;
+            let results =
+                records::decode(&records, work).map_err(|error| damaged(&address, error))?;
             if results.len() as u64 != object.items.len() {
                 return Err(damaged(&address, "it has another number of results"));
             }
@@ -323,7 +334,7 @@ fn results_address(lease: LeaseId, items: ItemRange) -> Address {
 }
 
 /// The hash of the results' records and the object that holds them.
-fn pack(results: &[PathResult]) -> (Digest, Vec<u8>) {
+fn pack(results: &[ItemResult]) -> (Digest, Vec<u8>) {
     let records = records::encode(results);
     let hash = records::hash(&records);
     let compressed =
@@ -378,12 +389,14 @@ mod tests {
     use cognate_continuation::work::StageId;
     use num_complex::Complex64;
 
-    fn results(count: u64, value: f64) -> Vec<PathResult> {
+    fn results(count: u64, value: f64) -> Vec<ItemResult> {
         let point = |k| vec![Complex64::new(value, k as f64); 3];
-        let result = |k| PathResult {
-            residual: 1e-16,
-            accuracy: 1e-15,
-            ..PathResult::untracked(k, 0, PathOutcome::Regular, point(k))
+        let result = |k| {
+            ItemResult::Track(PathResult {
+                residual: 1e-16,
+                accuracy: 1e-15,
+                ..PathResult::untracked(k, 0, PathOutcome::Regular, point(k))
+            })
         };
         (0..count).map(result).collect()
     }
@@ -405,12 +418,13 @@ mod tests {
     async fn results_come_back_and_are_kept_once() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::folder(folder.path()).unwrap();
-        let put = |epoch, value| {
-            store.put_results(Work::Track, lease(epoch), ITEMS, results(5, value), 7)
-        };
+        let put = |epoch, value| store.put_results(lease(epoch), ITEMS, results(5, value), 7);
         let object = put(1, 0.5).await.unwrap();
         assert_eq!(object.outcomes.regular, 5);
-        assert_eq!(store.results(&object).await.unwrap(), results(5, 0.5));
+        assert_eq!(
+            store.results(&object, Work::Track).await.unwrap(),
+            results(5, 0.5)
+        );
         assert_eq!(put(1, 0.5).await.unwrap(), object);
         let other = put(1, 0.25).await;
         assert!(matches!(other, Err(StoreError::Differs(_))));
@@ -420,9 +434,12 @@ mod tests {
         assert_eq!(again.hash, object.hash);
         // It may go, where the ledger names the other.
         store.remove_results(&again.address).await.unwrap();
-        let gone = store.results(&again).await;
+        let gone = store.results(&again, Work::Track).await;
         assert!(matches!(gone, Err(StoreError::Missing(_))));
-        assert_eq!(store.results(&object).await.unwrap(), results(5, 0.5));
+        assert_eq!(
+            store.results(&object, Work::Track).await.unwrap(),
+            results(5, 0.5)
+        );
     }
 
     #[tokio::test]
@@ -430,7 +447,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::folder(folder.path()).unwrap();
         let object = store
-            .put_results(Work::Track, lease(1), ITEMS, results(5, 0.5), 7)
+            .put_results(lease(1), ITEMS, results(5, 0.5), 7)
             .await
             .unwrap();
         let path = folder.path().join(&object.address);
@@ -439,13 +456,22 @@ mod tests {
             let mut bad = good.clone();
             bad[at] ^= 0x41;
             std::fs::write(&path, &bad).unwrap();
-            let error = store.results(&object).await.expect_err("damage is seen");
+            let error = store
+                .results(&object, Work::Track)
+                .await
+                .expect_err("damage is seen");
             assert!(matches!(error, StoreError::Damaged { .. }), "byte {at}");
             std::fs::write(&path, &good[..at]).unwrap();
-            assert!(store.results(&object).await.is_err(), "cut at {at}");
+            assert!(
+                store.results(&object, Work::Track).await.is_err(),
+                "cut at {at}"
+            );
         }
         std::fs::remove_file(&path).unwrap();
-        let error = store.results(&object).await.expect_err("it is gone");
+        let error = store
+            .results(&object, Work::Track)
+            .await
+            .expect_err("it is gone");
         assert!(matches!(error, StoreError::Missing(_)));
     }
 

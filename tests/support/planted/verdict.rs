@@ -5,7 +5,7 @@ use crate::dice::Dice;
 use cognate_algorithms::plan::StartChoice;
 use cognate_algorithms::run_locally::drive;
 use cognate_algorithms::{PathAlgorithm, PlanOptions, plan};
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_solutions::solution_set::SolutionSet;
@@ -127,13 +127,13 @@ pub fn solve_within(
     let until = Instant::now() + limit;
     let mut made = HashMap::<Digest, Arc<StoredPoints>>::new();
     let tracked = plan.system.clone();
-    drive::<Verdict>(&mut plan.algorithm, &mut |opening| {
+    drive::<Verdict, _>(&mut plan.algorithm, &mut |opening| {
         let objects = opening.objects.iter();
         made.extend(objects.map(|points| (points.digest(), Arc::clone(points))));
         let find = |wanted: Digest| made.get(&wanted).cloned();
         let work = PreparedWork::new(&tracked, &opening.stage, &find);
         let work = work.map_err(|error| refused(error.to_string()))?;
-        let mut results = Vec::<PathResult>::new();
+        let mut results = Vec::<ItemResult>::new();
         let mut next = 0;
         while next < work.items() {
             let end = (next + WIDTH as u64).min(work.items());

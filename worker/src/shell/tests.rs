@@ -5,6 +5,7 @@ use crate::transport::address::Address;
 use crate::transport::{GiveBack, Pulled, Renewal};
 use async_trait::async_trait;
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathIndex;
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
@@ -260,7 +261,7 @@ fn check_all_accepted(coordinator: &Coordinator, items: u64) {
     let table = coordinator.table();
     assert!(table.ready.is_empty() && table.leased.is_empty());
     let results = table.accepted.values().flat_map(|chunk| &chunk.results);
-    let mut origins: Vec<PathIndex> = results.map(|result| result.origin).collect();
+    let mut origins: Vec<PathIndex> = results.map(ItemResult::origin).collect();
     origins.sort_unstable();
     assert_eq!(origins, (0..items).map(PathIndex).collect::<Vec<_>>());
     assert!(table.left, "it said goodbye");

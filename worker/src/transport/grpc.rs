@@ -292,7 +292,7 @@ impl Transport for Grpc {
                 results: chunk
                     .results
                     .iter()
-                    .map(to_proto::path::path_result)
+                    .map(to_proto::path::item_result)
                     .collect(),
                 cpu_nanoseconds: nanoseconds(chunk.cpu),
                 wall_nanoseconds: nanoseconds(chunk.wall),

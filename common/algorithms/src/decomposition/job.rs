@@ -1,8 +1,10 @@
 //! Job: one stage of a decomposition with its repetitions, and the system that it is of.
 
+use crate::opening::Opening;
 use crate::retried_stage::RetriedStage;
-use crate::{Next, Opening};
+use crate::solve::{Next, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Settings;
@@ -56,9 +58,9 @@ enum Doing {
     Tracked(Box<RetriedStage>),
     /// Points about which something is asked once.
     Asked {
-        stage: Box<Stage>,
-        opened: bool,
-        results: Option<Vec<PathResult>>,
+        /// The stage that asks, until it is open.
+        opening: Option<Box<Opening>>,
+        results: Option<Vec<ItemResult>>,
     },
 }
 
@@ -67,7 +69,6 @@ enum Doing {
 pub(super) struct Job {
     pub system: StageSystem,
     work: Doing,
-    unsent: Option<Arc<StoredPoints>>,
 }
 
 fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
@@ -88,12 +89,11 @@ impl Job {
     ) -> Self {
         let points = stored(points);
         let targets = homotopy.targets();
-        let first = stage(id, Work::Track, homotopy, &points, with);
+        let first = opening(id, Work::Track, homotopy, points, with);
         let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
         Self {
             system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
-            unsent: Some(points),
         }
     }
 
@@ -142,55 +142,48 @@ impl Job {
         points: Arc<StoredPoints>,
         with: &Tracking,
     ) -> Self {
-        let stage = stage(id, work, homotopy, &points, with);
+        let opening = opening(id, work, homotopy, points, with);
         Self {
             system,
             work: Doing::Asked {
-                stage: Box::new(stage),
-                opened: false,
+                opening: Some(Box::new(opening)),
                 results: None,
             },
-            unsent: Some(points),
         }
     }
 
     /// What is wanted next.
-    pub fn next(&mut self) -> Next {
-        let next = match &mut self.work {
-            Doing::Tracked(stages) => stages.next_stage(),
-            Doing::Asked {
-                stage,
-                opened: opened @ false,
-                ..
-            } => {
-                *opened = true;
-                Next::Open(Box::new((**stage).clone().into()))
-            }
-            Doing::Asked { results: None, .. } => Next::Wait,
-            Doing::Asked { .. } => Next::Done,
-        };
-        match next {
-            Next::Open(mut opening) => {
-                let Opening { objects, .. } = &mut *opening;
-                objects.extend(self.unsent.take());
-                Next::Open(opening)
-            }
-            other => other,
+    pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
+        match &mut self.work {
+            Doing::Tracked(stages) => stages.next_stage(numbers),
+            Doing::Asked { opening, results } => match (opening.take(), results) {
+                (Some(opening), _) => numbers.open(*opening, &mut Vec::new()),
+                (None, None) => Next::Wait,
+                (None, Some(_)) => Next::Done,
+            },
         }
     }
 
     /// Takes the results of an open stage.
-    pub fn absorb(&mut self, id: StageId, taken: &mut dyn Iterator<Item = PathResult>) {
+    pub fn absorb(&mut self, id: StageId, taken: &mut dyn Iterator<Item = ItemResult>) {
         match &mut self.work {
             Doing::Tracked(stages) => stages.absorb(id, taken),
             Doing::Asked { results, .. } => *results = Some(taken.collect()),
         }
     }
 
-    /// The last results of all items, in their order.
+    /// The last results of its paths, in the order of its items; none where it asks about points.
     pub fn results(&self) -> &[PathResult] {
         match &self.work {
             Doing::Tracked(stages) => stages.results(),
+            Doing::Asked { .. } => &[],
+        }
+    }
+
+    /// What was said about its points, in their order; none where it tracks paths.
+    pub fn answers(&self) -> &[ItemResult] {
+        match &self.work {
+            Doing::Tracked(_) => &[],
             Doing::Asked { results, .. } => results.as_deref().unwrap_or(&[]),
         }
     }
@@ -237,21 +230,25 @@ impl Job {
     }
 }
 
-fn stage(
+fn opening(
     id: StageId,
     work: Work,
     homotopy: HomotopyKind,
-    points: &Arc<StoredPoints>,
+    points: Arc<StoredPoints>,
     with: &Tracking,
-) -> Stage {
-    Stage {
-        id,
+) -> Opening {
+    Opening {
+        stage: Stage {
+            id,
+            system: None,
+            work,
+            homotopy,
+            start_points: points.as_start(),
+            settings: with.settings.clone(),
+            seed: with.seed,
+            attempt: 0,
+        },
         system: None,
-        work,
-        homotopy,
-        start_points: points.as_start(),
-        settings: with.settings.clone(),
-        seed: with.seed,
-        attempt: 0,
+        objects: vec![points],
     }
 }

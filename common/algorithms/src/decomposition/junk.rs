@@ -10,11 +10,12 @@ use super::deflated::{Deflations, Multiple, PureSet};
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use cognate_solutions::classification::{Isolation, Verdict, isolation};
+use cognate_solutions::classification::{Isolation, Verdict, isolation_by};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{Dimension, Doubt};
 use num_complex::Complex64;
@@ -169,9 +170,13 @@ impl Sieve {
         match std::mem::replace(&mut self.asking, Asking::Nothing) {
             Asking::Nothing => {}
             Asking::Isolation => {
-                for (suspect, result) in self.suspects.iter_mut().zip(job.results()) {
-                    suspect.isolation = isolation(result, &problem.tracking.tolerances);
-                    if let Some(found) = &result.local_dimension {
+                for (suspect, result) in self.suspects.iter_mut().zip(job.answers()) {
+                    let ItemResult::LocalDimension(result) = result else {
+                        unreachable!("a stage that looks at endpoints has no {result:?}")
+                    };
+                    suspect.isolation = Isolation::Undecided;
+                    if let Some(found) = result.fact() {
+                        suspect.isolation = isolation_by(found, &problem.tracking.tolerances);
                         suspect.dual_dimensions.clone_from(&found.dual_dimensions);
                     }
                 }

@@ -16,11 +16,11 @@ mod options;
 mod problem;
 mod split;
 
-use crate::progress::{StageProgress, VerdictCounts};
+use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
-use crate::{Next, PathAlgorithm, Progress};
+use crate::solve::{Next, Root, Solve, StageNumbers};
 use cascade::Cascade;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
@@ -250,11 +250,11 @@ impl DecompositionSolve {
     }
 }
 
-impl PathAlgorithm for DecompositionSolve {
-    fn next(&mut self) -> Next {
+impl Solve for DecompositionSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         loop {
             if let Some(job) = &mut self.state.job {
-                match job.next() {
+                match job.next(numbers) {
                     Next::Open(mut opening) => {
                         let system = self.deflations.of_stage(&self.problem, &job.system);
                         opening.system = Some(system);
@@ -282,7 +282,7 @@ impl PathAlgorithm for DecompositionSolve {
         }
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         let job = self.state.job.as_mut();
         job.expect("only an open stage is absorbed")
             .absorb(stage, results);
@@ -303,10 +303,6 @@ impl PathAlgorithm for DecompositionSolve {
             paths: VerdictCounts::default(),
             done: matches!(self.state.step, Step::Done(_)),
         }
-    }
-
-    fn snapshot(&self) -> Vec<u8> {
-        postcard::to_stdvec(&self.state).expect("memory takes every byte")
     }
 
     /// None: its answer is [`DecompositionSolve::decomposition`].
@@ -338,21 +334,20 @@ fn grid(point: &[num_complex::Complex64]) -> Vec<i64> {
 /// assert!(found.settled());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn run_locally(
-    mut solve: DecompositionSolve,
-    width: usize,
-) -> Result<Decomposition, PrepareError> {
+pub fn run_locally(solve: DecompositionSolve, width: usize) -> Result<Decomposition, PrepareError> {
     let system = Arc::clone(&solve.state.system);
-    run_locally::run_locally(&system, &mut solve, &|_| None, width)?;
-    let found = solve.decomposition().cloned();
+    let mut root = Root::new(solve);
+    run_locally::run_locally(&system, &mut root, &|_| None, width)?;
+    let found = root.solve.decomposition().cloned();
     Ok(found.expect("it says what it found when it is done"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::AnyAlgorithm;
     use crate::run_locally::drive;
+    use crate::{AnyAlgorithm, AnySolve, PathAlgorithm};
+    use cognate_continuation::path_result::{Coordinates, PathResult};
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_points::{Digest, StoredPoints};
     use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
@@ -360,7 +355,7 @@ mod tests {
     use std::collections::HashMap;
 
     /// Decomposes with a tracker that spoils the results of each stage of the cascade.
-    fn decompose(text: &str, spoil: impl Fn(&mut Vec<PathResult>)) -> Decomposition {
+    fn decompose(text: &str, spoil: impl Fn(&mut PathResult)) -> Decomposition {
         let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
         let system = formats::read("test", text.as_bytes()).unwrap().system;
         let options = DecompositionOptions {
@@ -368,20 +363,24 @@ mod tests {
             max_retries: 0,
             ..DecompositionOptions::default()
         };
-        let mut solve = DecompositionSolve::new(&system, &options).unwrap();
+        let mut root = Root::new(DecompositionSolve::new(&system, &options).unwrap());
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-        let done: Result<(), PrepareError> = drive(&mut solve, &mut |opening| {
+        let done: Result<(), PrepareError> = drive(&mut root, &mut |opening| {
             let made = opening.objects.iter();
             objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
             let find = |digest: Digest| objects.get(&digest).cloned();
             let system = opening.system.as_deref().unwrap_or(&system);
             let prepared = PreparedWork::new(system, &opening.stage, &find)?;
             let mut results = prepared.run(0..prepared.items(), 8);
-            spoil(&mut results);
+            for result in &mut results {
+                if let ItemResult::Track(path) = result {
+                    spoil(path);
+                }
+            }
             Ok(results)
         });
         assert_eq!(done, Ok(()));
-        solve.decomposition().unwrap().clone()
+        root.solve.decomposition().unwrap().clone()
     }
 
     /// A parabola and a circle.
@@ -408,9 +407,9 @@ mod tests {
     #[test]
     fn a_lost_path_leaves_nothing_settled() {
         // Four paths end at the four witness points: the last of them is lost, however often it is tracked.
-        let lost = |results: &mut Vec<PathResult>| {
-            for result in results.iter_mut().filter(|r| r.origin.0 == 3) {
-                result.outcome = PathOutcome::Failed(Failure::TooManySteps);
+        let lost = |path: &mut PathResult| {
+            if path.origin.0 == 3 {
+                path.outcome = PathOutcome::Failed(Failure::TooManySteps);
             }
         };
         let found = decompose(CURVES, lost);
@@ -430,10 +429,11 @@ mod tests {
     #[test]
     fn a_point_that_is_no_solution_is_not_taken() {
         // The first path's end is moved away.
-        let moved = |results: &mut Vec<PathResult>| {
-            let cognate_continuation::path_result::Coordinates::Double(end) =
-                &mut results[0].endpoint;
-            end[1] += 0.3;
+        let moved = |path: &mut PathResult| {
+            if path.origin.0 == 0 {
+                let Coordinates::Double(end) = &mut path.endpoint;
+                end[1] += 0.3;
+            }
         };
         let found = decompose(CURVES, moved);
         assert!(!found.settled(), "{found:?}");
@@ -446,7 +446,7 @@ mod tests {
         let system = formats::read("test", text.as_bytes()).unwrap().system;
         let solve = || DecompositionSolve::new(&system, &DecompositionOptions::default()).unwrap();
         let lived = run_locally(solve(), 8).unwrap();
-        let mut solve = AnyAlgorithm::Decomposition(Box::new(solve()));
+        let mut solve = AnyAlgorithm::from(AnySolve::Decomposition(Box::new(solve())));
         let mut open: Option<Box<crate::Opening>> = None;
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
         loop {

@@ -11,7 +11,7 @@ use super::job::Job;
 use super::problem::Problem;
 use cognate_continuation::bend::{Bend, Number, RefinedPoint, length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_systems::slices::form;
 use cognate_continuation::work::StageId;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -99,7 +99,7 @@ impl Split {
             let Some(job) = done else {
                 return Some(self.ask_bends(problem, id));
             };
-            self.bends = Some(self.read_bends(job.results()));
+            self.bends = Some(self.read_bends(job.answers()));
             return self.next_loop(problem, deflations, id);
         };
         let mut points = self.travelling();
@@ -134,10 +134,13 @@ impl Split {
     }
 
     /// What workers found; where one found nothing, any error may be in the derivatives.
-    fn read_bends(&self, results: &[PathResult]) -> Vec<Bend> {
-        let found = |(result, point): (&PathResult, &RefinedPoint)| {
+    fn read_bends(&self, results: &[ItemResult]) -> Vec<Bend> {
+        let found = |(result, point): (&ItemResult, &RefinedPoint)| {
             let length = point.point.len();
-            let known = result.bend.as_deref();
+            let ItemResult::Bend(result) = result else {
+                unreachable!("a stage that asks for derivatives has no {result:?}")
+            };
+            let known = result.fact().map(|bend| &**bend);
             let known = known.filter(|bend| bend.acceleration.len() == length);
             known.cloned().unwrap_or_else(|| Bend {
                 velocity: vec![Number::zero(()); length],

@@ -1,12 +1,12 @@
 //! How a trace test ends loops: what it needs is tracked beside them, or by a solve of its own.
 
-use super::counts::{Stop, TraceCounts, TraceForm};
+use super::counts::{Stop, Tested, TraceCounts, TraceForm};
 use super::estimate;
 use super::graph::Known;
 use super::trace::{Curve, MOST_DEVIATION, Pencil, Test, deviation};
 use super::{BASE, LoopStart, MonodromySolve, Phase, edge_seed};
-use crate::Completeness;
-use crate::plan::MAX_PATHS;
+use crate::completeness_claim::CompletenessClaim;
+use crate::limits::MAX_PATHS;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::symmetry::SymmetryGroup;
 use num_complex::Complex64;
@@ -19,17 +19,6 @@ const NOT_THERE: f64 = 1e-9;
 pub(super) fn probability_of_hiding(known: usize, loops: u64) -> f64 {
     let each = 1.0 / (known as f64 + 1.0);
     (0..loops).fold(1.0, |product, _| product * each)
-}
-
-/// What is known of completeness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tested {
-    /// Nothing is missing.
-    Complete,
-    /// Something is to be tracked first.
-    Begun,
-    /// Not that it is complete.
-    No,
 }
 
 impl MonodromySolve {
@@ -167,7 +156,6 @@ impl MonodromySolve {
             edge_seed(self.seed, usize::MAX - 1),
         );
         inner.max_retries = self.max_retries;
-        inner.first_id = self.first_id + self.stages.len() as u32;
         inner.test = Some(Test::Pencil {
             pencil: curve.pencil.clone(),
             moved: None,
@@ -322,22 +310,22 @@ impl MonodromySolve {
     }
 
     /// Whether all solutions that loops can connect are known: `None` while loops are made.
-    pub fn completeness(&self) -> Option<Completeness> {
+    pub fn completeness(&self) -> Option<CompletenessClaim> {
         let found = self.counts.solutions;
         Some(match self.counts.stop? {
-            Stop::Count => Completeness::yes(format!("{found} solutions were asked for")),
-            Stop::TraceTest => Completeness::yes(format!(
+            Stop::Count => CompletenessClaim::yes(format!("{found} solutions were asked for")),
+            Stop::TraceTest => CompletenessClaim::yes(format!(
                 "the trace test says that loops connect no others with these {found}"
             )),
-            Stop::IdleLoops | Stop::Confidence => Completeness::not_known(format!(
+            Stop::IdleLoops | Stop::Confidence => CompletenessClaim::not_known(format!(
                 "loops found {found} solutions at generic parameters, and nothing proves that they \
                  reach all; --trace-test asks, --expect says how many there are"
             )),
-            Stop::PathLimit => {
-                Completeness::not_known(format!("loops ended at the limit of {MAX_PATHS} paths"))
-            }
+            Stop::PathLimit => CompletenessClaim::not_known(format!(
+                "loops ended at the limit of {MAX_PATHS} paths"
+            )),
             Stop::NoStart => {
-                Completeness::not_known("no start solution could be followed".to_string())
+                CompletenessClaim::not_known("no start solution could be followed".to_string())
             }
         })
     }

@@ -151,3 +151,14 @@ pub struct LoopCounts {
     #[serde(default)]
     pub estimate: Option<Estimate>,
 }
+
+/// What is known of completeness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tested {
+    /// Nothing is missing.
+    Complete,
+    /// Something is to be tracked first.
+    Begun,
+    /// Not that it is complete.
+    No,
+}

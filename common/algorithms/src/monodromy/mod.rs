@@ -16,14 +16,17 @@ pub(crate) mod graph;
 mod places;
 pub mod trace;
 
-use crate::any_algorithm::AnyAlgorithm;
+use crate::completeness_claim::CompletenessClaim;
+use crate::finite_endpoints::FiniteEndpoints;
+use crate::limits::MAX_PATHS;
+use crate::opening::Opening;
 use crate::parameter_solve::ParameterSolve;
-use crate::plan::MAX_PATHS;
 use crate::plan_error::PlanError;
-use crate::progress::{Progress, StageProgress, VerdictCounts};
+use crate::progress::{self, Progress, StageProgress, VerdictCounts};
 use crate::retried_stage::{MAX_RETRIES, can_be_helped};
-use crate::{Completeness, FiniteEndpoints, Next, Opening, PathAlgorithm};
+use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::{HomotopyKind, way_back};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
@@ -35,8 +38,7 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
-use completeness::Tested;
-use counts::{LoopCounts, Mixing, Stop, moving};
+use counts::{LoopCounts, Mixing, Stop, Tested, moving};
 use estimate::Estimate;
 use graph::{Arrival, Fate, Graph, Known, Wanted, Way};
 use num_complex::Complex64;
@@ -166,8 +168,6 @@ pub struct MonodromySolve {
     warnings: Vec<String>,
     /// Loops that were weighed already when idle ones were counted.
     weighed: u64,
-    /// The number of its first stage.
-    first_id: u32,
     /// How completeness is tested; `None` where that is not asked.
     test: Option<Test>,
     /// Points of the base that the last test was about.
@@ -241,7 +241,6 @@ impl MonodromySolve {
             first_results: Vec::new(),
             warnings: Vec::new(),
             weighed: 0,
-            first_id: 0,
             test: None,
             tested: None,
             curve: None,
@@ -268,19 +267,15 @@ impl MonodromySolve {
     /// The stage whose paths the answer counts: the first to the wanted parameters.
     pub fn counted_stage(&self) -> StageId {
         match &self.phase {
-            Phase::Arrive(solve) => solve.paths().first().id,
+            Phase::Arrive(solve) => solve.paths().first_id(),
             _ => StageId(0),
         }
-    }
-
-    fn next_id(&self) -> StageId {
-        StageId(self.first_id + self.stages.len() as u32)
     }
 
     /// A stage along a path of parameters.
     fn stage(&self, from: &[Complex64], to: &[Complex64], seed: u64, points: StartPoints) -> Stage {
         Stage {
-            id: self.next_id(),
+            id: StageId(0),
             system: None,
             work: Work::Track,
             homotopy: match &self.curve {
@@ -300,18 +295,6 @@ impl MonodromySolve {
             seed,
             attempt: 0,
         }
-    }
-
-    fn open(&mut self, opening: Opening) -> Next {
-        let items = opening.stage.items();
-        self.stages.push(StageProgress {
-            id: opening.stage.id,
-            work: opening.stage.work,
-            attempt: opening.stage.attempt,
-            items: items.expect("stored points can be counted"),
-            absorbed: false,
-        });
-        Next::Open(Box::new(opening))
     }
 
     /// The stage that tracks these paths.
@@ -738,7 +721,12 @@ impl MonodromySolve {
             start: base.parameters.clone(),
             targets: self.targets.clone(),
         };
-        let solve = ParameterSolve::with_shape(stage, &self.shape, self.tolerances.clone())
+        let first = Opening {
+            stage,
+            system: None,
+            objects: vec![Arc::new(points)],
+        };
+        let solve = ParameterSolve::with_shape(first, &self.shape, self.tolerances.clone())
             .with_group(self.group.clone());
         self.warn_of_the_end();
         self.phase = Phase::Arrive(Box::new(solve.with_max_retries(self.max_retries)));
@@ -777,7 +765,7 @@ fn edge_seed(seed: u64, edge: usize) -> u64 {
     RandomStream::new(seed, Purpose::Loop, edge as u64).bits()
 }
 
-impl PathAlgorithm for MonodromySolve {
+impl Solve for MonodromySolve {
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         match &self.phase {
             Phase::Arrive(solve) => solve.finite_endpoints(),
@@ -785,46 +773,31 @@ impl PathAlgorithm for MonodromySolve {
         }
     }
 
-    fn next(&mut self) -> Next {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         loop {
             match &mut self.phase {
-                Phase::Arrive(solve) => {
-                    let next = solve.next();
-                    return match next {
-                        // The object of the first stage; repetitions name it again, and other
-                        // work brings its own.
-                        Next::Open(opening)
-                            if opening.stage.attempt == 0 && opening.stage.work == Work::Track =>
-                        {
-                            let points = self.arriving_points();
-                            Next::Open(Box::new(Opening {
-                                objects: vec![Arc::new(points)],
-                                ..*opening
-                            }))
-                        }
-                        next => next,
-                    };
-                }
+                Phase::Arrive(solve) => return solve.next(numbers),
                 Phase::Stuck => return Next::Done,
-                Phase::Sections(inner) => match inner.next() {
+                Phase::Sections(inner) => match inner.next(numbers) {
                     Next::Done => self.take_in_sections(),
                     next => return next,
                 },
                 Phase::Check(Some(_)) => return Next::Wait,
                 Phase::Check(None) => {
-                    let opening = self.check();
-                    self.phase = Phase::Check(Some(opening.stage.id));
-                    return self.open(opening);
+                    let next = numbers.open(self.check(), &mut self.stages);
+                    self.phase = Phase::Check(self.stages.last().map(|stage| stage.id));
+                    return next;
                 }
                 Phase::Loops(batches) => {
                     let planned = batches.iter().position(|batch| batch.stage.is_none());
                     if let Some(place) = planned {
                         let wanted = batches[place].wanted.clone();
                         let opening = self.opening(&wanted);
+                        let next = numbers.open(opening, &mut self.stages);
                         if let Phase::Loops(batches) = &mut self.phase {
-                            batches[place].stage = Some(opening.stage.id);
+                            batches[place].stage = self.stages.last().map(|stage| stage.id);
                         }
-                        return self.open(opening);
+                        return next;
                     }
                     if !batches.is_empty() {
                         return Next::Wait;
@@ -835,7 +808,7 @@ impl PathAlgorithm for MonodromySolve {
         }
     }
 
-    fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = PathResult>) {
+    fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         if let Phase::Arrive(solve) = &mut self.phase {
             solve.absorb(id, results);
             return;
@@ -844,13 +817,8 @@ impl PathAlgorithm for MonodromySolve {
             inner.absorb(id, results);
             return;
         }
-        let stage = self
-            .stages
-            .iter_mut()
-            .find(|stage| stage.id == id && !stage.absorbed)
-            .expect("only an open stage is absorbed");
-        stage.absorbed = true;
-        let results: Vec<PathResult> = results.collect();
+        let stage = progress::absorb(&mut self.stages, id);
+        let results: Vec<PathResult> = results.map(ItemResult::into_path).collect();
         assert_eq!(
             results.len() as u64,
             stage.items,
@@ -907,12 +875,8 @@ impl PathAlgorithm for MonodromySolve {
         progress
     }
 
-    fn completeness(&self) -> Option<Completeness> {
+    fn completeness(&self) -> Option<CompletenessClaim> {
         Self::completeness(self)
-    }
-
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::Monodromy(Box::new(self.clone())).to_bytes()
     }
 
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

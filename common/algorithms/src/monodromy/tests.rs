@@ -2,20 +2,17 @@
 
 use super::completeness::probability_of_hiding;
 use super::*;
+use crate::any_algorithm::{AnyAlgorithm, AnySolve};
 use crate::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
 use crate::run_locally::{drive, run_locally};
+use crate::solve::PathAlgorithm;
+use crate::synthetic::written;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PreparedStage;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use counts::TraceForm;
 use std::collections::HashMap;
-
-fn written(text: &str) -> System {
-    match cognate_systems::formats::read("test", text.as_bytes()) {
-        Ok(problem) => problem.system,
-        Err(error) => panic!("{error}"),
-    }
-}
 
 /// Two general cubics: 9 solutions.
 const CUBICS: &str = "CONFIG END; INPUT variable_group x, y;
@@ -269,7 +266,8 @@ fn a_restored_solve_goes_on_to_the_same_answer() {
                 let find = |digest: Digest| objects.get(&digest).cloned();
                 let prepared = PreparedStage::new(&system, &stage, &find).unwrap();
                 let results = prepared.track(0..prepared.items(), 1);
-                plan.algorithm.absorb(stage.id, &mut results.into_iter());
+                let mut results = results.into_iter().map(ItemResult::from);
+                plan.algorithm.absorb(stage.id, &mut results);
             }
             Next::Done => break,
         }
@@ -303,7 +301,8 @@ fn the_order_of_stages_does_not_matter() {
                 let find = |digest: Digest| objects.get(&digest).cloned();
                 let prepared = PreparedStage::new(&system, &stage, &find).unwrap();
                 let results = prepared.track(0..prepared.items(), 8);
-                plan.algorithm.absorb(stage.id, &mut results.into_iter());
+                let mut results = results.into_iter().map(ItemResult::from);
+                plan.algorithm.absorb(stage.id, &mut results);
             }
             Next::Done => break,
         }
@@ -321,7 +320,7 @@ fn an_edge_leads_back_to_where_it_came_from() {
     let system = written(CUBICS);
     let mut plan = monodromy(&system, 3);
     solve(&mut plan);
-    let AnyAlgorithm::Monodromy(solved) = &mut plan.algorithm else {
+    let AnySolve::Monodromy(mut solved) = plan.algorithm.solve().clone() else {
         panic!("it is a monodromy solve")
     };
     let partners = |solved: &MonodromySolve, edge: usize, way: Way| -> Vec<usize> {
@@ -354,11 +353,11 @@ fn an_edge_leads_back_to_where_it_came_from() {
                     other => panic!("{other:?}"),
                 })
                 .collect();
-            assert_eq!(partners(solved, edge, way), pairs, "{edge} {way:?}");
+            assert_eq!(partners(&solved, edge, way), pairs, "{edge} {way:?}");
         }
-        let ahead = partners(solved, edge, Way::Ahead);
+        let ahead = partners(&solved, edge, Way::Ahead);
         solved.graph.edges[edge].seed = way_back(solved.graph.edges[edge].seed);
-        elsewhere += u32::from(partners(solved, edge, Way::Ahead) != ahead);
+        elsewhere += u32::from(partners(&solved, edge, Way::Ahead) != ahead);
     }
     assert!(edges > 20 && elsewhere > 3, "{edges} {elsewhere}");
 }
@@ -497,7 +496,7 @@ fn points_on_a_slice_are_complete_when_their_sum_moves_on_a_line() {
             "{counts:?}"
         );
         assert_eq!(set.warnings, Vec::<String>::new());
-        let AnyAlgorithm::Monodromy(solve) = &mut plan.algorithm else {
+        let AnySolve::Monodromy(mut solve) = plan.algorithm.solve().clone() else {
             panic!("it is a monodromy solve")
         };
         let Some(Test::Pencil { pencil, moved }) = solve.test.clone() else {
@@ -583,7 +582,7 @@ fn is_near(point: &[Complex64], other: &[Complex64]) -> bool {
 fn what_loops_miss_the_trace_test_finds() {
     let mut plan = traced(CUBICS, 1);
     solve(&mut plan);
-    let AnyAlgorithm::Monodromy(whole) = &plan.algorithm else {
+    let AnySolve::Monodromy(whole) = plan.algorithm.solve() else {
         panic!("it is a monodromy solve")
     };
     let base = whole.graph.vertices[BASE].parameters.clone();

@@ -2,8 +2,9 @@
 
 use super::{Bend, Number, SlicedEquations, exactly};
 use crate::homotopies::HomotopyKind;
-use crate::path_result::PathResult;
+use crate::item_result::{ItemResult, PointResult};
 use crate::points_at_targets::PointsAtTargets;
+use crate::prepared_items::PreparedItems;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StoredPoints};
 use crate::work::Stage;
@@ -68,30 +69,40 @@ impl BendStage {
     ///
     /// # Panics
     /// When `items` reaches beyond the stage.
-    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+    pub fn run(&self, items: Range<u64>) -> Vec<PointResult<Box<Bend>>> {
         assert!(items.end <= self.items(), "a chunk lies within its stage");
         items.map(|item| self.item(item)).collect()
     }
 
-    fn item(&self, item: u64) -> PathResult {
-        let before = self.points.result(item);
+    fn item(&self, item: u64) -> PointResult<Box<Bend>> {
         let unknowns = self
             .points
             .scaling()
             .to_unknowns(self.points.item(item).point);
         let start: Vec<Number> = unknowns.into_iter().map(exactly).collect();
         let Some(refined) = self.equations.refine(&start) else {
-            return before;
+            return self.points.result(item, None);
         };
         let bend = self.equations.bend(&refined, &self.direction);
-        PathResult {
+        let fact = bend.is_sound().then(|| Box::new(bend));
+        PointResult {
             residual: refined.residual,
             condition: refined.condition,
             accuracy: refined.correction,
             precision_bits: BITS,
-            bend: bend.is_sound().then(|| Box::new(bend)),
-            ..before
+            ..self.points.result(item, fact)
         }
+    }
+}
+
+impl PreparedItems for BendStage {
+    fn items(&self) -> u64 {
+        self.items()
+    }
+
+    fn run(&self, items: Range<u64>, _: usize) -> Vec<ItemResult> {
+        let results = self.run(items).into_iter();
+        results.map(ItemResult::Bend).collect()
     }
 }
 

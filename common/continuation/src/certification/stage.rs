@@ -1,8 +1,9 @@
 //! CertificationStage: the points of a stage, each with the attempt to certify it.
 
 use super::{Certification, Krawczyk, Uncertified};
-use crate::path_result::PathResult;
+use crate::item_result::{ItemResult, PointResult};
 use crate::points_at_targets::{Item, PointsAtTargets};
+use crate::prepared_items::PreparedItems;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StoredPoints};
 use crate::work::Stage;
@@ -68,7 +69,7 @@ impl CertificationStage {
     ///
     /// # Panics
     /// When `items` reaches beyond the stage.
-    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+    pub fn run(&self, items: Range<u64>) -> Vec<PointResult<Certification>> {
         assert!(items.end <= self.items(), "a chunk lies within its stage");
         let mut test: Option<(usize, Krawczyk)> = None;
         items
@@ -96,13 +97,23 @@ impl CertificationStage {
                 let bits = certification
                     .certificate()
                     .map(|found| found.precision_bits);
-                PathResult {
+                PointResult {
                     precision_bits: bits.unwrap_or(super::MOST_BITS),
-                    certification: Some(certification),
-                    ..self.points.result(item)
+                    ..self.points.result(item, Some(certification))
                 }
             })
             .collect()
+    }
+}
+
+impl PreparedItems for CertificationStage {
+    fn items(&self) -> u64 {
+        self.items()
+    }
+
+    fn run(&self, items: Range<u64>, _: usize) -> Vec<ItemResult> {
+        let results = self.run(items).into_iter();
+        results.map(ItemResult::Certify).collect()
     }
 }
 
@@ -155,10 +166,7 @@ mod tests {
         assert_eq!(all, split);
         let origins: Vec<u64> = all.iter().map(|r| r.origin.0).collect();
         assert_eq!(origins, [0, 1, 6, 7]);
-        let found: Vec<_> = all
-            .iter()
-            .map(|r| r.certification.clone().unwrap())
-            .collect();
+        let found: Vec<_> = all.iter().map(|r| r.fact().cloned().unwrap()).collect();
         for certified in &found[..3] {
             assert!(certified.certificate().is_some(), "{certified:?}");
         }

@@ -5,11 +5,12 @@ use super::local_dimension;
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
 use crate::homotopies::HomotopyKind;
-use crate::path_result::{LocalDimension, PathResult};
+use crate::item_result::{ItemResult, PointResult};
+use crate::path_result::{LocalDimension, PathIndex};
+use crate::prepared_items::PreparedItems;
 use crate::sharpening::search::sharpen;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
-use crate::tracker::outcome::PathOutcome;
 use crate::work::Stage;
 use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees};
 use cognate_systems::system::System;
@@ -116,7 +117,7 @@ impl PreparedLocalDimension {
     ///
     /// # Panics
     /// When `items` reaches beyond the stage.
-    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+    pub fn run(&self, items: Range<u64>) -> Vec<PointResult<LocalDimension>> {
         items.map(|item| self.look(item)).collect()
     }
 
@@ -145,7 +146,7 @@ impl PreparedLocalDimension {
         }
     }
 
-    fn look(&self, item: u64) -> PathResult {
+    fn look(&self, item: u64) -> PointResult<LocalDimension> {
         let candidate = &self.candidates[item as usize];
         let chart = self.asked.chart();
         let point = chart.from_variables(&candidate.values);
@@ -163,11 +164,21 @@ impl PreparedLocalDimension {
         } else {
             chart.normalize(&mut endpoint);
         }
-        PathResult {
+        PointResult {
             residual: 0.0,
             accuracy: candidate.question.accuracy,
-            local_dimension: found,
-            ..PathResult::untracked(item, 0, PathOutcome::Singular, endpoint)
+            ..PointResult::new(PathIndex(item), 0, endpoint, found)
         }
+    }
+}
+
+impl PreparedItems for PreparedLocalDimension {
+    fn items(&self) -> u64 {
+        self.items()
+    }
+
+    fn run(&self, items: Range<u64>, _: usize) -> Vec<ItemResult> {
+        let results = self.run(items).into_iter();
+        results.map(ItemResult::LocalDimension).collect()
     }
 }

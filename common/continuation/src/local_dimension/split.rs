@@ -6,6 +6,7 @@ use crate::asked_system::{AskedSystem, Linearization};
 use crate::chart::norm;
 use crate::path_result::LocalDimension;
 use cognate_numeric::linear_algebra::svd::Svd;
+pub(super) use cognate_numeric::linear_algebra::vector::square;
 use num_complex::Complex64;
 
 /// Singular values below this many times the noise count as 0. What lies within the margin of a
@@ -31,10 +32,6 @@ pub(super) fn rank(values: &[f64], noise: f64, margin: &mut f64) -> usize {
         *margin = margin.min(distance);
     }
     rank
-}
-
-pub(super) fn square(a: &[Complex64]) -> f64 {
-    a.iter().map(|z| z.norm_sqr()).sum()
 }
 
 /// Domain and range split where the Jacobian is regular and where it is 0.

@@ -2,8 +2,9 @@
 
 use super::search::sharpen;
 use super::{MOST_DIGITS, Sharpening};
-use crate::path_result::PathResult;
+use crate::item_result::{ItemResult, PointResult};
 use crate::points_at_targets::{Item, PointsAtTargets};
+use crate::prepared_items::PreparedItems;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StoredPoints};
 use crate::work::Stage;
@@ -51,7 +52,7 @@ impl SharpeningStage {
     ///
     /// # Panics
     /// When `items` reaches beyond the stage.
-    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+    pub fn run(&self, items: Range<u64>) -> Vec<PointResult<Sharpening>> {
         assert!(items.end <= self.items(), "a chunk lies within its stage");
         items
             .map(|item| {
@@ -60,20 +61,30 @@ impl SharpeningStage {
                 let scaling = self.points.scaling();
                 let unknowns = scaling.to_unknowns(point);
                 let found = sharpen(&self.system, parameters, &unknowns, self.digits, self.seed);
-                let before = self.points.result(item);
                 match found.map(|found| found.in_variables(scaling, &self.system.groups)) {
-                    Ok(found) => PathResult {
+                    Ok(found) => PointResult {
                         precision_bits: found.precision_bits,
                         accuracy: found.accuracy,
-                        sharpening: Some(Sharpening::Sharpened(Box::new(found))),
-                        ..before
+                        ..self
+                            .points
+                            .result(item, Some(Sharpening::Sharpened(Box::new(found))))
                     },
-                    Err(reason) => PathResult {
-                        sharpening: Some(Sharpening::Unsharpened(reason)),
-                        ..before
-                    },
+                    Err(reason) => self
+                        .points
+                        .result(item, Some(Sharpening::Unsharpened(reason))),
                 }
             })
             .collect()
+    }
+}
+
+impl PreparedItems for SharpeningStage {
+    fn items(&self) -> u64 {
+        self.items()
+    }
+
+    fn run(&self, items: Range<u64>, _: usize) -> Vec<ItemResult> {
+        let results = self.run(items).into_iter();
+        results.map(ItemResult::Sharpen).collect()
     }
 }

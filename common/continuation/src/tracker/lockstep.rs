@@ -897,15 +897,11 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 turns: path.cauchy.total_turns(),
             },
             asked: None,
-            certification: None,
             local_dimension: None,
-            sharpening: None,
             boundary: path
                 .boundary
                 .filter(|_| matches!(outcome, PathOutcome::Singular | PathOutcome::Diverging))
                 .map(Box::new),
-            mixed_cells: None,
-            bend: None,
         };
         self.ended.results.push((path.item, result));
     }

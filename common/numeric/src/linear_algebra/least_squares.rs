@@ -2,6 +2,7 @@
 //! with its right-hand side, which is as stable as Householder's reflections (Björck: Solving linear least
 //! squares problems by Gram-Schmidt orthogonalization, BIT 7, 1967).
 
+use super::vector::{inner, square};
 use num_complex::Complex64;
 
 /// A column of which no more than this part is left when those before it are taken out belongs to a matrix for
@@ -34,7 +35,7 @@ pub fn least_squares(columns: &[Vec<Complex64>], b: &[Complex64]) -> Option<Vec<
         unit.iter_mut().for_each(|q| *q /= length);
         upper[j][j] = length.into();
         for (k, column) in (j + 1..).zip(after) {
-            let share: Complex64 = unit.iter().zip(&*column).map(|(q, a)| q.conj() * a).sum();
+            let share = inner(unit, column);
             column
                 .iter_mut()
                 .zip(&*unit)
@@ -48,10 +49,6 @@ pub fn least_squares(columns: &[Vec<Complex64>], b: &[Complex64]) -> Option<Vec<
         x[j] = (upper[j][n] - known) / upper[j][j];
     }
     Some(x)
-}
-
-fn square(a: &[Complex64]) -> f64 {
-    a.iter().map(|z| z.norm_sqr()).sum()
 }
 
 #[cfg(test)]

@@ -10,3 +10,4 @@ pub mod lu;
 pub mod matrix;
 pub mod sparse;
 pub mod svd;
+pub mod vector;

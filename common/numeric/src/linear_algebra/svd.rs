@@ -5,6 +5,7 @@
 //! SIAM J. Matrix Anal. Appl. 13, 1992). For single small matrices at the end of a
 //! path; nothing here is in an inner loop.
 
+use super::vector::{inner, square};
 use num_complex::Complex64;
 
 /// A matrix as columns, and A V = U S with orthonormal V and the singular values S.
@@ -23,19 +24,6 @@ pub struct Svd {
 const ORTHOGONAL: f64 = 1e-15;
 /// More sweeps than any matrix needs; convergence is quadratic.
 const MOST_SWEEPS: usize = 60;
-
-/// conj(a) . b
-fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    let mut sum = Complex64::default();
-    for (x, y) in a.iter().zip(b) {
-        sum += x.conj() * y;
-    }
-    sum
-}
-
-fn square(a: &[Complex64]) -> f64 {
-    a.iter().map(|z| z.norm_sqr()).sum()
-}
 
 /// Two columns turned by the rotation that makes the columns orthogonal.
 fn turn(p: &mut [Complex64], q: &mut [Complex64], c: f64, s: f64, phase: Complex64) {

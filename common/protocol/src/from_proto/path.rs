@@ -1,13 +1,15 @@
-//! Stage and PathResult messages to the types of `continuation`.
+//! Stage and result messages to the types of `continuation`.
 
 use super::problem::{complexes, equation_sets, settings};
 use super::{digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
+use crate::flat_result::{FlatResult, OtherKind};
 use crate::limits;
 use crate::v1;
 use cognate_continuation::bend::{Bend, Number};
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{
     AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, NUMBERS, PathIndex,
     PathResult,
@@ -309,11 +311,46 @@ fn boundary_key(m: &v1::BoundaryKey) -> Result<BoundaryKey, ProtocolError> {
     }
 }
 
-/// The result of one path.
+/// The result of one item of a stage that does this work.
+pub fn item_result(m: &v1::PathResult, work: Work) -> Result<ItemResult, ProtocolError> {
+    let flat = FlatResult {
+        path: path_result(m)?,
+        certification: m
+            .certification
+            .as_ref()
+            .map(certification)
+            .transpose()
+            .map_err(|e| e.within("certification"))?,
+        sharpening: m
+            .sharpening
+            .as_ref()
+            .map(sharpening)
+            .transpose()
+            .map_err(|e| e.within("sharpening"))?,
+        mixed_cells: m
+            .mixed_cells
+            .as_ref()
+            .map(branch_count)
+            .transpose()
+            .map_err(|e| e.within("mixed_cells"))?,
+        bend: m
+            .bend
+            .as_ref()
+            .map(bend)
+            .transpose()
+            .map_err(|e| e.within("bend"))?,
+    };
+    flat.into_item(work).map_err(|OtherKind| {
+        let expected = format!("a result of the stage's work, which is {work:?}");
+        ProtocolError::invalid("result", "of another kind of work", expected)
+    })
+}
+
+/// The path of a result, or the point of an item of another kind as the end of a path without steps.
 ///
 /// What is known of a failed path may be anything; the endpoint of any other
 /// is finite, and what is not known of it is infinite, never NaN.
-pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
+fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
     let outcome = outcome(m.outcome)?;
     within_limit("endpoint", m.endpoint.len() / 2, limits::COORDINATES)?;
     let endpoint = pairs("endpoint", &m.endpoint)?;
@@ -365,36 +402,12 @@ pub fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
             turns: counts.turns,
         },
         asked: m.asked.as_ref().map(asked_fit).transpose()?,
-        certification: m
-            .certification
-            .as_ref()
-            .map(certification)
-            .transpose()
-            .map_err(|e| e.within("certification"))?,
         local_dimension: m.local_dimension.as_ref().map(dual_space).transpose()?,
-        sharpening: m
-            .sharpening
-            .as_ref()
-            .map(sharpening)
-            .transpose()
-            .map_err(|e| e.within("sharpening"))?,
         boundary: m
             .boundary
             .as_ref()
             .map(|key| boundary_key(key).map(Box::new))
             .transpose()?,
-        mixed_cells: m
-            .mixed_cells
-            .as_ref()
-            .map(branch_count)
-            .transpose()
-            .map_err(|e| e.within("mixed_cells"))?,
-        bend: m
-            .bend
-            .as_ref()
-            .map(bend)
-            .transpose()
-            .map_err(|e| e.within("bend"))?,
     })
 }
 

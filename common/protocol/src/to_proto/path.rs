@@ -1,12 +1,14 @@
-//! Stage and PathResult to their messages.
+//! Stage, PathResult and ItemResult to their messages.
 
 use super::problem::equation_sets;
 use super::{complex, complexes, digest, pairs};
+use crate::flat_result::FlatResult;
 use crate::submission::SettingsChoice;
 use crate::v1;
 use cognate_continuation::bend::Number;
 use cognate_continuation::certification::{Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{MovedSlice, PathResult};
 use cognate_continuation::sharpening::{Sharpening, Unsharpened};
 use cognate_continuation::start_points::StartPoints;
@@ -185,26 +187,35 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
             residual: fit.residual,
             correction: fit.correction,
         }),
-        certification: r.certification.as_ref().map(certification),
         local_dimension: r.local_dimension.as_ref().map(|found| v1::LocalDimension {
             dual_dimensions: found.dual_dimensions.clone(),
             bound: found.bound,
             margin: found.margin,
             moved_slices: found.moved_slices.iter().map(moved_slice).collect(),
         }),
-        sharpening: r.sharpening.as_ref().map(sharpening),
         boundary: r.boundary.as_ref().map(|key| v1::BoundaryKey {
             numbers: key.numbers.to_vec(),
             margin: key.margin,
         }),
-        mixed_cells: r.mixed_cells.map(|count| v1::BranchCount {
+        ..v1::PathResult::default()
+    }
+}
+
+/// The result of one item of any kind.
+pub fn item_result(result: &ItemResult) -> v1::PathResult {
+    let flat = FlatResult::from(result);
+    v1::PathResult {
+        certification: flat.certification.as_ref().map(certification),
+        sharpening: flat.sharpening.as_ref().map(sharpening),
+        mixed_cells: flat.mixed_cells.map(|count| v1::BranchCount {
             outcome: Some(branch_count(count)),
         }),
-        bend: r.bend.as_ref().map(|bend| v1::Bend {
+        bend: flat.bend.as_ref().map(|bend| v1::Bend {
             velocity: parts(&bend.velocity),
             acceleration: parts(&bend.acceleration),
             error: bend.error,
         }),
+        ..path_result(&flat.path)
     }
 }
 

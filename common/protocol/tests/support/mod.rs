@@ -1,14 +1,17 @@
 //! Random checked values, pure functions of a seed, for the tests of this folder.
 #![allow(dead_code)]
 
+use cognate_continuation::bend::{Bend, Number};
 use cognate_continuation::certification::{Certificate, Certification, Uncertified};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::{ItemResult, PointResult};
 use cognate_continuation::path_result::{
     AskedFit, BoundaryKey, Coordinates, Counts, LocalDimension, MovedSlice, PathIndex, PathResult,
 };
 use cognate_continuation::sharpening::{Sharpened, Sharpening, Unsharpened};
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::start_systems::exchange::Exchange;
+use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, CountedCells};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::{Preset, Settings};
 use cognate_continuation::work::{Stage, StageId, Work};
@@ -393,31 +396,113 @@ impl Draw {
         }))
     }
 
-    /// A result of a stage that sharpens.
-    pub fn sharpened_result(&mut self) -> PathResult {
+    fn sharpening(&mut self) -> Sharpening {
         let exact = |x: f64| Rational::from_f64(x).expect("a finite number");
-        let sharpening = if self.coin() {
+        if self.coin() {
             let all = [
                 Unsharpened::DamagedPoint,
                 Unsharpened::NotRegular,
                 Unsharpened::NewtonLeaves,
             ];
-            Sharpening::Unsharpened(all[self.below(all.len())])
-        } else {
-            Sharpening::Sharpened(Box::new(Sharpened {
-                values: self.many(3, |draw| {
-                    let tail = exact(draw.number()) >> 200;
-                    ComplexRational::new(exact(draw.number()) + tail, exact(draw.number()))
-                }),
-                accuracy: 1e-30,
-                deflations: self.index(4),
-                precision_bits: 338,
-            }))
-        };
-        PathResult {
-            sharpening: Some(sharpening),
-            ..self.path_result()
+            return Sharpening::Unsharpened(all[self.below(all.len())]);
         }
+        Sharpening::Sharpened(Box::new(Sharpened {
+            values: self.many(3, |draw| {
+                let tail = exact(draw.number()) >> 200;
+                ComplexRational::new(exact(draw.number()) + tail, exact(draw.number()))
+            }),
+            accuracy: 1e-30,
+            deflations: self.index(4),
+            precision_bits: 338,
+        }))
+    }
+
+    fn local_dimension(&mut self) -> LocalDimension {
+        LocalDimension {
+            dual_dimensions: self.many(5, |draw| 1 + draw.index(9)),
+            bound: self.0.bits(),
+            margin: self.number().abs(),
+            moved_slices: self.many(3, |draw| MovedSlice {
+                distance: draw.number().abs(),
+                residual: draw.number().abs(),
+                reached: draw.number().abs(),
+            }),
+        }
+    }
+
+    fn branch_count(&mut self) -> BranchCount {
+        match self.below(3) {
+            0 => BranchCount::Tie,
+            1 => BranchCount::TooLarge,
+            _ => BranchCount::Counted(CountedCells {
+                cells: self.0.bits(),
+                volume: 7,
+                time_exponent: 4,
+            }),
+        }
+    }
+
+    fn bend(&mut self) -> Box<Bend> {
+        let third = |sign: f64| {
+            let mut third = Number::from_f64((), sign, sign * 1e-3);
+            third.mul(&Number::from_f64((), 1.0 / 3.0, 1e-20));
+            third
+        };
+        Box::new(Bend {
+            velocity: vec![third(1.0), third(-7.0)],
+            acceleration: vec![third(self.number()), third(1e300)],
+            error: 1e-30,
+        })
+    }
+
+    /// What was found out about a point, or nothing.
+    fn point_result<Fact>(&mut self, fact: impl FnOnce(&mut Self) -> Fact) -> PointResult<Fact> {
+        let mut point = self.many(3, Self::complex);
+        point.push(self.complex());
+        let fact = self.some(|_| ()).map(|()| fact(self));
+        PointResult {
+            residual: self.number().abs(),
+            condition: if self.coin() { f64::INFINITY } else { 1e3 },
+            accuracy: self.number().abs(),
+            precision_bits: 106,
+            ..PointResult::new(
+                PathIndex(self.0.bits()),
+                self.below(65_536) as u16,
+                point,
+                fact,
+            )
+        }
+    }
+
+    /// A result of each kind of work, and of each an item that ended its workers.
+    pub fn item_results(&mut self) -> Vec<(Work, ItemResult)> {
+        let sharpen = Work::Sharpen { digits: 50 };
+        let mut results = vec![
+            (Work::Track, ItemResult::Track(self.path_result())),
+            (
+                Work::Certify,
+                ItemResult::Certify(self.point_result(Self::certification)),
+            ),
+            (
+                Work::LocalDimension,
+                ItemResult::LocalDimension(self.point_result(Self::local_dimension)),
+            ),
+            (
+                sharpen,
+                ItemResult::Sharpen(self.point_result(Self::sharpening)),
+            ),
+            (
+                Work::CountMixedCells,
+                ItemResult::CountMixedCells(self.point_result(Self::branch_count)),
+            ),
+            (Work::Bend, ItemResult::Bend(self.point_result(Self::bend))),
+        ];
+        let killed = |&(work, _): &(Work, ItemResult)| {
+            (work, ItemResult::killed_its_worker(work, PathIndex(17), 2))
+        };
+        let killed: Vec<_> = results.iter().map(killed).collect();
+        results.extend(killed);
+        results
     }
 
     /// A result; what is known of a failed path may be NaN.
@@ -452,26 +537,13 @@ impl Draw {
                 residual: draw.number().abs(),
                 correction: draw.number().abs(),
             }),
-            certification: self.some(Self::certification),
-            local_dimension: self.some(|draw| LocalDimension {
-                dual_dimensions: draw.many(5, |draw| 1 + draw.index(9)),
-                bound: draw.0.bits(),
-                margin: draw.number().abs(),
-                moved_slices: draw.many(3, |draw| MovedSlice {
-                    distance: draw.number().abs(),
-                    residual: draw.number().abs(),
-                    reached: draw.number().abs(),
-                }),
-            }),
-            sharpening: None,
+            local_dimension: None,
             boundary: self.some(|draw| {
                 Box::new(BoundaryKey {
                     numbers: std::array::from_fn(|_| draw.number()),
                     margin: draw.number().abs(),
                 })
             }),
-            mixed_cells: None,
-            bend: None,
         }
     }
 }

@@ -1,6 +1,5 @@
 //! What `solutions.jsonl` and `certificates.json` say of a certificate, field by field.
 
-use super::Attempt;
 use super::distinct::Distinctness;
 use cognate_continuation::certification::{Certificate, Certification};
 use cognate_numeric::exact_text::exact_text;
@@ -9,6 +8,10 @@ use cognate_systems::formats;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+
+/// What a solve with certificates was told about one path's endpoint: the outcome of the
+/// attempt, or `None` where the attempt itself was lost with its worker.
+pub type Attempt = Option<Certification>;
 
 /// What was proved of one solution, or why nothing was.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -10,19 +10,15 @@ mod distinct;
 mod line;
 mod reality;
 
-pub use line::{CertifiedCoordinate, CertifiedSystem, SolutionCertificate};
+pub use line::{Attempt, CertifiedCoordinate, CertifiedSystem, SolutionCertificate};
 
 use crate::involution::Involution;
 use crate::solution_set::SolutionSet;
 use boxes::Groups;
-use cognate_continuation::certification::{Certificate, Certification, certified_system};
+use cognate_continuation::certification::{Certificate, certified_system};
 use cognate_systems::system::System;
 use distinct::Distinctness;
 use num_complex::Complex64;
-
-/// What a solve with certificates was told about one path's endpoint: the outcome of the
-/// attempt, or `None` where the attempt itself was lost with its worker.
-pub type Attempt = Option<Certification>;
 
 /// Adds to a finished set what was certified of its solutions.
 ///
@@ -121,7 +117,7 @@ mod tests {
     use crate::classification::Tolerances;
     use crate::solution_set::History;
     use crate::test_results::{isolated, regular};
-    use cognate_continuation::certification::{Krawczyk, Uncertified};
+    use cognate_continuation::certification::{Certification, Krawczyk, Uncertified};
     use cognate_systems::formats::read;
     use std::collections::HashMap;
 

@@ -5,7 +5,7 @@
 
 use super::json_value::{self, Value};
 use super::limits::{self, Limit};
-use super::scope::{FieldFault, Scope, at};
+use super::scope::{FieldFault, Scope, at, variable};
 use super::sharing::{self, WriteError};
 use super::{FileSettings, Format, FormatError, Problem, Source, degenerate, finish, symmetry};
 use crate::expression::NodeId;
@@ -216,13 +216,6 @@ fn declare(
         .declare(name, value.span, kind, Some(node))
         .map_err(at(field))?;
     Ok(name.text.to_string())
-}
-
-/// The index of the variable that a string names.
-pub(crate) fn variable(value: &Value<'_>, variables: &[String]) -> Result<usize, Fault> {
-    let name = value.text("the name of a variable")?;
-    let index = variables.iter().position(|v| *v == name.text);
-    index.ok_or_else(|| Fault::expected(value.span, "the name of a variable", value.describe()))
 }
 
 fn groups(

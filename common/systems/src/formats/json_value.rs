@@ -124,7 +124,7 @@ impl<'a> Value<'a> {
             Kind::Text(text) => &*text.text,
             _ => return Err(self.wrong(expected)),
         };
-        super::points::decimal(text).ok_or_else(|| self.wrong(expected))
+        decimal(text).ok_or_else(|| self.wrong(expected))
     }
 }
 
@@ -396,6 +396,15 @@ pub(crate) fn quote(text: &str) -> String {
     }
     quoted.push('"');
     quoted
+}
+
+/// A finite number in decimal notation.
+pub(crate) fn decimal(text: &str) -> Option<f64> {
+    let plain = |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b'e' | b'E');
+    if !text.bytes().all(plain) {
+        return None;
+    }
+    text.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
 #[cfg(test)]

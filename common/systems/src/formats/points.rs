@@ -1,6 +1,6 @@
 //! Points: start solutions and values of parameters, in the notations that people have.
 
-use super::json_value::{self, Kind, Value};
+use super::json_value::{self, Kind, Value, decimal};
 use super::scope::{FieldFault, at};
 use super::{FormatError, Source, decode, limits};
 use crate::expression::fault::{Fault, Problem, Span};
@@ -65,15 +65,6 @@ pub fn read_parameters(
         }
     };
     json().map_err(|fault: FieldFault| fault.into_error(&source))
-}
-
-/// A finite number in decimal notation.
-pub(crate) fn decimal(text: &str) -> Option<f64> {
-    let plain = |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b'e' | b'E');
-    if !text.bytes().all(plain) {
-        return None;
-    }
-    text.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
 fn json_lines(source: &Source<'_>, variables: &[String]) -> Result<Vec<Point>, FieldFault> {

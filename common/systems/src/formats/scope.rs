@@ -249,3 +249,10 @@ impl<'a> Text<'a> {
         }
     }
 }
+
+/// The index of the variable that a string names.
+pub(crate) fn variable(value: &Value<'_>, variables: &[String]) -> Result<usize, Fault> {
+    let name = value.text("the name of a variable")?;
+    let index = variables.iter().position(|v| *v == name.text);
+    index.ok_or_else(|| Fault::expected(value.span, "the name of a variable", value.describe()))
+}

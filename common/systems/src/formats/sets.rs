@@ -1,8 +1,7 @@
 //! Sets of variables for a linear-product start: those of the factors of each equation.
 
-use super::json::variable;
 use super::json_value::{self, Value};
-use super::scope::{FieldFault, at};
+use super::scope::{FieldFault, at, variable};
 use super::{FormatError, Source, decode, limits};
 use crate::expression::fault::{Fault, Problem};
 use crate::system::System;

@@ -1,8 +1,7 @@
 //! Symmetry: generators of a group that acts on the solutions.
 
-use super::json::variable;
 use super::json_value::{self, Text, Value};
-use super::scope::{FieldFault, Scope, at};
+use super::scope::{FieldFault, Scope, at, variable};
 use super::{FormatError, Source, decode, limits};
 use crate::expression::build::Use;
 use crate::expression::fault::{Fault, Problem, Span};

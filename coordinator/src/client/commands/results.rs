@@ -61,9 +61,11 @@ pub async fn show(
             folder.family(&block.parameters)?;
         }
         let mut certificates = Certificates::create(path, &summary)?;
+        let several = !summary.targets.is_empty();
         connection
-            .solutions(job, |solution| {
-                folder.solution(&solution)?;
+            .solutions(job, |solution, target| {
+                let target = several.then_some(target);
+                folder.solution(&solution, target)?;
                 if let Some(certificates) = &mut certificates {
                     certificates.solution(&solution)?;
                 }
@@ -82,7 +84,7 @@ pub async fn show(
         folder.finish(&json)?;
     } else if wanted > 0 {
         connection
-            .solutions(job, |solution| {
+            .solutions(job, |solution, _| {
                 rows.push(solution);
                 Ok(rows.len() < wanted)
             })

@@ -150,10 +150,15 @@ impl Folder {
         })
     }
 
-    /// Writes one solution to every file that it belongs to.
-    pub fn solution(&mut self, solution: &Solution) -> Result<(), ClientError> {
+    /// Writes one solution to every file that it belongs to. `target`: the index of its target parameters,
+    /// where there are several.
+    pub fn solution(
+        &mut self,
+        solution: &Solution,
+        target: Option<u32>,
+    ) -> Result<(), ClientError> {
         self.lines
-            .write(&format!("{}\n", json::solution_line(solution)))?;
+            .write(&format!("{}\n", json::solution_line(solution, target)))?;
         // Bertini's files have no mark for a point that may be no solution.
         if solution.undecided {
             return Ok(());
@@ -243,7 +248,7 @@ mod tests {
             .expect("files");
         for (re, singular) in [(0.1, false), (5.0, true), (-0.0, false)] {
             let solution = solution(re, false, singular);
-            files.solution(&solution).expect("a line");
+            files.solution(&solution, None).expect("a line");
         }
         files.finish("{}").expect("files");
         let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it is there");
@@ -270,7 +275,7 @@ mod tests {
                 ..solution(4.0, true, true)
             },
         ] {
-            files.solution(&s).expect("written");
+            files.solution(&s, Some(3)).expect("written");
         }
         files
             .finish("{\"paths\": {\"total\": 3}}")
@@ -295,6 +300,7 @@ mod tests {
         let lines = read("solutions.jsonl");
         assert_eq!(lines.lines().count(), 4);
         assert_eq!(lines.matches("\"undecided\":true").count(), 1);
+        assert_eq!(lines.matches("\"target\":3}").count(), 4);
         assert!(read("summary.json").contains("\"total\": 3"));
     }
 }

@@ -4,9 +4,18 @@ use cognate_protocol::v1;
 use cognate_solutions::solution::Solution;
 use serde_json::{Map, Value, json};
 
-/// A solution as a line of `solutions.jsonl`, without the line's end.
-pub fn solution_line(solution: &Solution) -> String {
-    serde_json::to_string(solution).expect("a solution has only names and numbers")
+/// A solution as a line of `solutions.jsonl`, without the line's end; with several targets each says at which of
+/// them it is.
+pub fn solution_line(solution: &Solution, target: Option<u32>) -> String {
+    #[derive(serde::Serialize)]
+    struct Line<'a> {
+        #[serde(flatten)]
+        solution: &'a Solution,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        target: Option<u32>,
+    }
+    let line = Line { solution, target };
+    serde_json::to_string(&line).expect("a solution has only names and numbers")
 }
 
 /// A double with the digits that it has; JSON has no infinity, and what is unknown is null.

@@ -227,7 +227,7 @@ impl Search<'_> {
         self.rounds.push(Round { purpose, summary });
         let mut roots = vec![];
         connection
-            .solutions(&job, |solution| {
+            .solutions(&job, |solution, _| {
                 let values = solution.variables.values();
                 let values = values.collect::<Vec<_>>().try_into().map_err(|_| {
                     ClientError::GaveUp("a solution of it has another number of variables".into())

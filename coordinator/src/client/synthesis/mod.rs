@@ -210,7 +210,7 @@ async fn ends(
 ) -> Result<BTreeMap<usize, Arrival>, ClientError> {
     let mut ends = BTreeMap::new();
     connection
-        .solutions(job, |solution| {
+        .solutions(job, |solution, _| {
             let arrived = arrived(&solution)?;
             for &path in &solution.paths {
                 let arrival = match (solution.undecided, solution.singular) {

@@ -1,10 +1,11 @@
 //! CountingStage: the branches of a subdivision, each counted by whoever gets it.
 
 use super::branches::{BRANCHES, BranchCount, BranchedCells};
-use crate::path_result::PathResult;
+use crate::item_result::{ItemResult, PointResult};
+use crate::path_result::PathIndex;
+use crate::prepared_items::PreparedItems;
 use crate::stage::{PrepareError, generic_system};
 use crate::start_points::StartPoints;
-use crate::tracker::outcome::PathOutcome;
 use crate::work::Stage;
 use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees};
 use cognate_systems::system::System;
@@ -72,18 +73,27 @@ impl CountingStage {
     ///
     /// # Panics
     /// When `items` reaches beyond the stage.
-    pub fn run(&self, items: Range<u64>) -> Vec<PathResult> {
+    pub fn run(&self, items: Range<u64>) -> Vec<PointResult<BranchCount>> {
         assert!(items.end <= self.items(), "a chunk lies within its stage");
         items.map(|item| self.count(item)).collect()
     }
 
-    fn count(&self, item: u64) -> PathResult {
+    fn count(&self, item: u64) -> PointResult<BranchCount> {
         let branches = self.branches.as_ref();
         // Every result that is no failure has a point.
         let nowhere = vec![Complex64::default()];
-        PathResult {
-            mixed_cells: Some(branches.map_or(BranchCount::Tie, |all| all.count(item))),
-            ..PathResult::untracked(item, self.attempt, PathOutcome::Regular, nowhere)
-        }
+        let count = branches.map_or(BranchCount::Tie, |all| all.count(item));
+        PointResult::new(PathIndex(item), self.attempt, nowhere, Some(count))
+    }
+}
+
+impl PreparedItems for CountingStage {
+    fn items(&self) -> u64 {
+        self.items()
+    }
+
+    fn run(&self, items: Range<u64>, _: usize) -> Vec<ItemResult> {
+        let results = self.run(items).into_iter();
+        results.map(ItemResult::CountMixedCells).collect()
     }
 }

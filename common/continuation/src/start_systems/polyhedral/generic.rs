@@ -540,7 +540,7 @@ mod tests {
         let mut counted = CellBranches::uncounted(0);
         for (branch, result) in (0..).zip(counting.run(0..counting.items())) {
             assert_eq!(result.origin.0, branch);
-            let Some(BranchCount::Counted(cells)) = result.mixed_cells else {
+            let Some(&BranchCount::Counted(cells)) = result.fact() else {
                 panic!("{result:?}");
             };
             counted.volumes.push(cells.volume);

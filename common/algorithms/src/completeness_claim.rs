@@ -1,27 +1,27 @@
-//! Completeness: whether a method says that it misses no isolated solution.
+//! CompletenessClaim: whether a method says that it misses no isolated solution, and why.
 
-pub use cognate_solutions::completeness::Completeness as Complete;
+use cognate_solutions::completeness::Completeness;
 use serde::{Deserialize, Serialize};
 
-/// What a method knows of that, and why.
+/// What a method knows of its completeness.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Completeness {
+pub struct CompletenessClaim {
     /// Whether all are found.
-    pub complete: Complete,
+    pub complete: Completeness,
     /// Why, in words.
     pub reason: String,
 }
 
-impl Completeness {
+impl CompletenessClaim {
     /// None is missing.
     pub fn yes(reason: String) -> Self {
-        let complete = Complete::Yes;
+        let complete = Completeness::Yes;
         Self { complete, reason }
     }
 
     /// Some may be missing.
     pub fn not_known(reason: String) -> Self {
-        let complete = Complete::NotKnown;
+        let complete = Completeness::NotKnown;
         Self { complete, reason }
     }
 }

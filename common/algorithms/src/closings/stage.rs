@@ -1,49 +1,24 @@
 //! ClosingStage: after a solve one more stage, which looks at its finite endpoints.
 
-use crate::{Next, Opening, Progress, StageProgress};
+use crate::finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
+use crate::opening::Opening;
+use crate::progress::{self, Progress, StageProgress};
+use crate::solve::{Next, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::path_result::PathResult;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
-use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
-use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// The finite endpoints of a finished solve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FiniteEndpoints {
-    /// A homotopy that ends at the parameters of each target.
-    pub homotopy: HomotopyKind,
-    /// Its seed, from which combinations of equations are made where there are too many.
-    pub seed: u64,
-    /// The settings that its paths were tracked with.
-    pub settings: Settings,
-    /// The nonsingular ones, target by target.
-    pub regular: Vec<FiniteEndpoint>,
-    /// Of each singular point that is not known to lie on a positive-dimensional set one.
-    pub singular: Vec<FiniteEndpoint>,
-}
-
-/// One endpoint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FiniteEndpoint {
-    /// At which target.
-    pub target: u64,
-    /// Which path ended there, as the solution sets name it.
-    pub path: u64,
-    /// Values of the variables.
-    pub values: Vec<Complex64>,
-}
 
 /// The stage, and what it found: a fact for each endpoint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ClosingStage<Fact> {
     homotopy: HomotopyKind,
     seed: u64,
-    /// `None` where there was nothing to look at.
-    stage: Option<StageProgress>,
+    /// The stage once it is open; empty where there was nothing to look at.
+    stages: Vec<StageProgress>,
     /// Target and path of each item.
     items: Vec<(u64, u64)>,
     /// Item by item; empty until the stage is absorbed.
@@ -51,13 +26,13 @@ pub(crate) struct ClosingStage<Fact> {
 }
 
 impl<Fact> ClosingStage<Fact> {
-    /// The stage for these endpoints, after the stages that there were.
+    /// Opens the stage that does this work at these of the endpoints; nothing where there are none.
     pub fn open(
         endpoints: FiniteEndpoints,
         points: Vec<FiniteEndpoint>,
         work: Work,
-        before: &[StageProgress],
-    ) -> (Self, Option<Box<Opening>>) {
+        numbers: &mut StageNumbers,
+    ) -> (Self, Next) {
         let FiniteEndpoints {
             homotopy,
             seed,
@@ -67,12 +42,12 @@ impl<Fact> ClosingStage<Fact> {
         let mut closing = Self {
             homotopy: homotopy.clone(),
             seed,
-            stage: None,
+            stages: Vec::new(),
             items: points.iter().map(|p| (p.target, p.path)).collect(),
             found: Vec::new(),
         };
         let Some(first) = points.first() else {
-            return (closing, None);
+            return (closing, Next::Done);
         };
         let dimension = first.values.len();
         let stored = Arc::new(StoredPoints {
@@ -93,9 +68,8 @@ impl<Fact> ClosingStage<Fact> {
                     .collect(),
             }
         };
-        let id = before.iter().map(|stage| stage.id.0 + 1).max().unwrap_or(0);
         let stage = Stage {
-            id: StageId(id),
+            id: StageId(0),
             system: None,
             work,
             homotopy,
@@ -104,19 +78,13 @@ impl<Fact> ClosingStage<Fact> {
             seed,
             attempt: 0,
         };
-        closing.stage = Some(StageProgress {
-            id: stage.id,
-            work,
-            attempt: 0,
-            items: count,
-            absorbed: false,
-        });
         let opening = Opening {
             stage,
             system: None,
             objects: vec![stored],
         };
-        (closing, Some(Box::new(opening)))
+        let next = numbers.open(opening, &mut closing.stages);
+        (closing, next)
     }
 
     /// What is wanted once it is open, or was left out.
@@ -131,15 +99,10 @@ impl<Fact> ClosingStage<Fact> {
     pub fn absorb(
         &mut self,
         stage: StageId,
-        results: &mut dyn Iterator<Item = PathResult>,
-        fact: impl Fn(PathResult) -> Fact,
+        results: &mut dyn Iterator<Item = ItemResult>,
+        fact: impl Fn(ItemResult) -> Fact,
     ) {
-        let own = self
-            .stage
-            .as_mut()
-            .filter(|own| own.id == stage && !own.absorbed)
-            .expect("only an open stage is absorbed");
-        own.absorbed = true;
+        progress::absorb(&mut self.stages, stage);
         self.found = results.map(fact).collect();
         assert_eq!(
             self.found.len(),
@@ -153,14 +116,14 @@ impl<Fact> ClosingStage<Fact> {
     pub fn progress(
         closing: Option<&Self>,
         mut progress: Progress,
-        description: impl FnOnce(u64) -> String,
+        description: impl Fn(u64) -> String,
     ) -> Progress {
         let Some(closing) = closing else {
             progress.done = false;
             return progress;
         };
-        if let Some(stage) = closing.stage {
-            progress.stages.push(stage);
+        for stage in &closing.stages {
+            progress.stages.push(*stage);
             progress.done = stage.absorbed;
             if !stage.absorbed {
                 progress.description = description(stage.items);
@@ -171,7 +134,7 @@ impl<Fact> ClosingStage<Fact> {
 
     /// True when nothing more is to come.
     pub fn is_done(&self) -> bool {
-        self.stage.is_none_or(|stage| stage.absorbed)
+        self.stages.iter().all(|stage| stage.absorbed)
     }
 
     /// The facts by target and path.

@@ -1,56 +1,37 @@
-//! SharpenedSolve: any solve, and then its solutions with as many digits as are asked for.
-//!
-//! When the solve is done, one endpoint of each solution becomes a point of one more stage, which
-//! brings it to its digits, the singular ones by deflation where that is asked for.
+//! Digits: after the paths solutions are brought to more digits, singular ones by deflation.
 
-use crate::any_algorithm::AnyAlgorithm;
-use crate::closing_stage::{ClosingStage, FiniteEndpoints};
-use crate::{Completeness, Next, PathAlgorithm, Progress};
-use cognate_continuation::path_result::PathResult;
+use super::stage::ClosingStage;
+use crate::finite_endpoints::FiniteEndpoints;
+use crate::progress::Progress;
+use crate::solve::{Next, StageNumbers};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::sharpened::{Attempt, DIGITS_OF_DOUBLES, sharpen};
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
-/// A solve whose solutions get more digits.
+/// More digits for the solutions of a solve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SharpenedSolve {
-    solve: AnyAlgorithm,
+pub struct Digits {
     digits: u32,
     /// Whether isolated singular solutions get theirs.
     deflate: bool,
-    sharpening: Option<ClosingStage<Attempt>>,
+    /// `None` before the solve is done.
+    stage: Option<ClosingStage<Attempt>>,
 }
 
-impl SharpenedSolve {
-    /// The solve that begins with this one.
-    pub fn new(solve: AnyAlgorithm, digits: u32, deflate: bool) -> Self {
+impl Digits {
+    /// So many decimal digits; for singular solutions, too, where `deflate` says so.
+    pub fn new(digits: u32, deflate: bool) -> Self {
         Self {
-            solve,
             digits,
             deflate,
-            sharpening: None,
+            stage: None,
         }
     }
 
-    /// The solve whose solutions are sharpened.
-    pub fn solve(&self) -> &AnyAlgorithm {
-        &self.solve
-    }
-
-    /// The same with another limit of repetitions.
-    #[must_use]
-    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
-        self.solve = self.solve.with_max_retries(max_retries);
-        self
-    }
-
-    /// The last stage, now that the solve is done.
-    fn open(&mut self) -> Next {
-        let Some(mut endpoints) = self.solve.finite_endpoints() else {
-            return Next::Done;
-        };
+    /// Opens the stage for these endpoints.
+    pub fn open(&mut self, mut endpoints: FiniteEndpoints, numbers: &mut StageNumbers) -> Next {
         let mut points = std::mem::take(&mut endpoints.regular);
         let singular = std::mem::take(&mut endpoints.singular);
         if self.digits <= DIGITS_OF_DOUBLES {
@@ -60,71 +41,46 @@ impl SharpenedSolve {
             points.extend(singular);
             points.sort_by_key(|point| (point.target, point.path));
         }
-        let before = self.solve.progress().stages;
         let work = Work::Sharpen {
             digits: self.digits,
         };
-        let (stage, opening) = ClosingStage::open(endpoints, points, work, &before);
-        self.sharpening = Some(stage);
-        opening.map_or(Next::Done, Next::Open)
-    }
-}
-
-impl PathAlgorithm for SharpenedSolve {
-    fn next(&mut self) -> Next {
-        match (&self.sharpening, &mut self.solve) {
-            (Some(own), _) => own.next(),
-            (None, solve) => match solve.next() {
-                Next::Done => self.open(),
-                other => other,
-            },
-        }
+        let (stage, next) = ClosingStage::open(endpoints, points, work, numbers);
+        self.stage = Some(stage);
+        next
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
-        match &mut self.sharpening {
-            Some(own) => own.absorb(stage, results, |result| result.sharpening),
-            None => self.solve.absorb(stage, results),
-        }
+    /// What is wanted after the stage was opened; `None` before.
+    pub fn next(&self) -> Option<Next> {
+        self.stage.as_ref().map(ClosingStage::next)
     }
 
-    fn progress(&self) -> Progress {
-        let before = self.solve.progress();
-        if self.solve.failure().is_some() {
-            return before; // nothing is looked at
-        }
-        ClosingStage::progress(self.sharpening.as_ref(), before, |items| {
+    /// Takes the results of the stage.
+    pub fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+        let stage = self.stage.as_mut();
+        let stage = stage.expect("only an open stage is absorbed");
+        stage.absorb(id, results, |result| match result {
+            ItemResult::Sharpen(point) => point.into_fact(),
+            other => unreachable!("a stage that sharpens has no {other:?}"),
+        });
+    }
+
+    /// How far a solve is that this closes.
+    pub fn progress(&self, before: Progress) -> Progress {
+        ClosingStage::progress(self.stage.as_ref(), before, |items| {
             format!("bringing {items} solutions to {} digits", self.digits)
         })
     }
 
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::Sharpened(Box::new(self.clone())).to_bytes()
-    }
-
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        let mut sets = self.solve.solution_sets(system);
-        let Some(own) = &self.sharpening else {
-            return sets;
+    /// Writes the digits to the solutions, target by target.
+    pub fn apply(&self, sets: &mut [SolutionSet]) {
+        let Some(stage) = &self.stage else {
+            return;
         };
-        let attempts = own.facts();
-        for (target, set) in (0u64..).zip(&mut sets) {
+        let attempts = stage.facts();
+        for (target, set) in (0u64..).zip(sets) {
             let attempt = |path: u64| attempts.get(&(target, path)).map(|&found| found.clone());
             sharpen(set, self.digits, &attempt);
         }
-        sets
-    }
-
-    fn failure(&self) -> Option<String> {
-        self.solve.failure()
-    }
-
-    fn completeness(&self) -> Option<Completeness> {
-        self.solve.completeness()
-    }
-
-    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
-        self.solve.finite_endpoints()
     }
 }
 

@@ -1,13 +1,13 @@
-//! CertifiedSolve: any solve, and then the proof of what it found.
+//! Certificates: after the paths the nonsingular solutions are certified, each alone, by workers.
 //!
-//! When the solve is done, its finite nonsingular endpoints become the points
-//! of one more stage, which certifies them; its facts are judged together when
-//! the solution sets are made (`cognate_solutions::certificates`).
+//! A solution is found to be one only when a box shows that it is; two that overlap are one. What a
+//! certificate proves of several together, that they are distinct or real, is said once all are here.
 
-use crate::any_algorithm::AnyAlgorithm;
-use crate::closing_stage::{ClosingStage, FiniteEndpoints};
-use crate::{Completeness, Next, PathAlgorithm, Progress};
-use cognate_continuation::path_result::PathResult;
+use super::stage::ClosingStage;
+use crate::finite_endpoints::FiniteEndpoints;
+use crate::progress::Progress;
+use crate::solve::{Next, StageNumbers};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::points_at_targets::parameters_at_targets;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::certificates::{Attempt, certify};
@@ -15,112 +15,66 @@ use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
-/// A solve with its certificates.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CertifiedSolve {
-    solve: AnyAlgorithm,
-    certification: Option<ClosingStage<Attempt>>,
+/// The certificates of a solve's regular endpoints.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Certificates {
+    /// `None` before the solve is done.
+    stage: Option<ClosingStage<Attempt>>,
 }
 
-impl CertifiedSolve {
-    /// The solve that begins with this one.
-    pub fn new(solve: AnyAlgorithm) -> Self {
-        Self {
-            solve,
-            certification: None,
-        }
-    }
-
-    /// The solve whose solutions are certified.
-    pub fn solve(&self) -> &AnyAlgorithm {
-        &self.solve
-    }
-
-    /// The same with another limit of repetitions.
-    #[must_use]
-    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
-        self.solve = self.solve.with_max_retries(max_retries);
-        self
-    }
-
-    /// The last stage, now that the solve is done.
-    fn open(&mut self) -> Next {
-        let Some(mut endpoints) = self.solve.finite_endpoints() else {
-            return Next::Done;
-        };
+impl Certificates {
+    /// Opens the stage for these endpoints.
+    pub fn open(&mut self, mut endpoints: FiniteEndpoints, numbers: &mut StageNumbers) -> Next {
         let points = std::mem::take(&mut endpoints.regular);
-        let before = self.solve.progress().stages;
-        let (stage, opening) = ClosingStage::open(endpoints, points, Work::Certify, &before);
-        self.certification = Some(stage);
-        opening.map_or(Next::Done, Next::Open)
-    }
-}
-
-impl PathAlgorithm for CertifiedSolve {
-    fn next(&mut self) -> Next {
-        match (&self.certification, &mut self.solve) {
-            (Some(own), _) => own.next(),
-            (None, solve) => match solve.next() {
-                Next::Done => self.open(),
-                other => other,
-            },
-        }
+        let (stage, next) = ClosingStage::open(endpoints, points, Work::Certify, numbers);
+        self.stage = Some(stage);
+        next
     }
 
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = PathResult>) {
-        match &mut self.certification {
-            Some(own) => own.absorb(stage, results, |result| result.certification),
-            None => self.solve.absorb(stage, results),
-        }
+    /// What is wanted after the stage was opened; `None` before.
+    pub fn next(&self) -> Option<Next> {
+        self.stage.as_ref().map(ClosingStage::next)
     }
 
-    fn progress(&self) -> Progress {
-        let before = self.solve.progress();
-        if self.solve.failure().is_some() {
-            return before; // nothing is looked at
-        }
-        ClosingStage::progress(self.certification.as_ref(), before, |items| {
+    /// Takes the results of the stage.
+    pub fn absorb(&mut self, id: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+        let stage = self.stage.as_mut();
+        let stage = stage.expect("only an open stage is absorbed");
+        stage.absorb(id, results, |result| match result {
+            ItemResult::Certify(point) => point.into_fact(),
+            other => unreachable!("a stage that certifies has no {other:?}"),
+        });
+    }
+
+    /// How far a solve is that this closes.
+    pub fn progress(&self, before: Progress) -> Progress {
+        ClosingStage::progress(self.stage.as_ref(), before, |items| {
             format!("certifying {items} solutions")
         })
     }
 
-    fn snapshot(&self) -> Vec<u8> {
-        AnyAlgorithm::Certified(Box::new(self.clone())).to_bytes()
-    }
-
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        let mut sets = self.solve.solution_sets(system);
-        let Some(own) = &self.certification else {
-            return sets;
+    /// Writes the certificates to the solutions, target by target.
+    pub fn apply(&self, sets: &mut [SolutionSet], system: &System) {
+        let Some(stage) = &self.stage else {
+            return;
         };
-        let attempts = own.facts();
-        let targets = parameters_at_targets(own.homotopy(), system);
-        for ((target, set), parameters) in (0u64..).zip(&mut sets).zip(&targets) {
+        let attempts = stage.facts();
+        let targets = parameters_at_targets(stage.homotopy(), system);
+        for ((target, set), parameters) in (0u64..).zip(sets).zip(&targets) {
             let attempt = |path: u64| attempts.get(&(target, path)).map(|&found| found.clone());
-            certify(set, system, parameters, &attempt, own.seed());
+            certify(set, system, parameters, &attempt, stage.seed());
         }
-        sets
-    }
-
-    fn failure(&self) -> Option<String> {
-        self.solve.failure()
-    }
-
-    fn completeness(&self) -> Option<Completeness> {
-        self.solve.completeness()
-    }
-
-    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
-        self.solve.finite_endpoints()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Opening;
+    use crate::any_algorithm::AnyAlgorithm;
+    use crate::opening::Opening;
     use crate::plan::GivenStart;
     use crate::run_locally::{drive, run_locally};
+    use crate::solve::PathAlgorithm;
     use crate::{PlanOptions, plan};
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_points::StoredPoints;

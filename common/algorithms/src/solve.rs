@@ -1,0 +1,130 @@
+//! Solve: a plan that asks for stages and learns from their results. Solves stand inside others, and one of
+//! them inside whatever drives it, which numbers the stages.
+
+use crate::completeness_claim::CompletenessClaim;
+use crate::finite_endpoints::FiniteEndpoints;
+use crate::opening::Opening;
+use crate::progress::{Progress, StageProgress};
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::work::{Stage, StageId};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
+use serde::{Deserialize, Serialize};
+
+/// What a solve wants next.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Next {
+    /// Open this stage; several may be open.
+    Open(Box<Opening>),
+    /// Nothing until an open stage has been absorbed.
+    Wait,
+    /// All is known.
+    Done,
+}
+
+/// The numbers of a job's stages, in the order in which they are opened: kept once, at the root, and lent to
+/// whatever solve opens a stage.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StageNumbers {
+    next: u32,
+}
+
+impl StageNumbers {
+    /// Gives a stage the next number, and writes the stage down among those of the solve that opens it.
+    ///
+    /// # Panics
+    /// When the stage's items cannot be counted: a plan has no such stage.
+    pub fn open(&mut self, opening: Opening, stages: &mut Vec<StageProgress>) -> Next {
+        let stage = Stage {
+            id: StageId(self.next),
+            ..opening.stage
+        };
+        self.next += 1;
+        stages.push(StageProgress {
+            id: stage.id,
+            work: stage.work,
+            attempt: stage.attempt,
+            items: stage
+                .items()
+                .expect("a plan has only stages whose items can be counted"),
+            absorbed: false,
+        });
+        Next::Open(Box::new(Opening { stage, ..opening }))
+    }
+}
+
+/// A plan of stages.
+pub trait Solve: Send {
+    /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next;
+    /// Takes the results of one stage that this solve opened, complete and in item order.
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
+    /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
+    fn failure(&self) -> Option<String> {
+        None
+    }
+    /// How far it is.
+    fn progress(&self) -> Progress;
+    /// What was found, one set for each target; meant for when `next` has said `Done`.
+    /// `system` is the one that was planned for.
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
+    /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
+    /// say all that is known of that.
+    fn completeness(&self) -> Option<CompletenessClaim> {
+        None
+    }
+    /// Its finite endpoints when it is done; `None` where it does not say.
+    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
+        None
+    }
+}
+
+/// What drives itself from a first call of `next` to `Done`: a solve with the numbers of its stages.
+pub trait PathAlgorithm: Send {
+    /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
+    fn next(&mut self) -> Next;
+    /// Takes the results of one stage, complete and in item order.
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
+    /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
+    fn failure(&self) -> Option<String>;
+    /// How far it is.
+    fn progress(&self) -> Progress;
+    /// What was found, one set for each target; meant for when `next` has said `Done`.
+    /// `system` is the one that was planned for.
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
+}
+
+/// One solve alone, for examples, tests and tools; a job also has closings and can be written down (see
+/// [`crate::AnyAlgorithm`]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Root<S> {
+    /// The solve.
+    pub solve: S,
+    numbers: StageNumbers,
+}
+
+impl<S> Root<S> {
+    /// A solve that begins.
+    pub fn new(solve: S) -> Self {
+        let numbers = StageNumbers::default();
+        Self { solve, numbers }
+    }
+}
+
+impl<S: Solve> PathAlgorithm for Root<S> {
+    fn next(&mut self) -> Next {
+        self.solve.next(&mut self.numbers)
+    }
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+        self.solve.absorb(stage, results);
+    }
+    fn failure(&self) -> Option<String> {
+        self.solve.failure()
+    }
+    fn progress(&self) -> Progress {
+        self.solve.progress()
+    }
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+        self.solve.solution_sets(system)
+    }
+}
