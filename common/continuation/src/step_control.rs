@@ -2,8 +2,11 @@
 //!
 //! The first Newton correction measures the predictor's error e; with local
 //! order q the error of a step h scales as h^q, so the step that would have
-//! met the target is h (target/e)^(1/q). Roots are taken as chains of square
-//! roots, which are correctly rounded: nothing from libm decides a step.
+//! met the target is h (target/e)^(1/q). The target is also one from which Newton's
+//! method converges: where the second correction c is K e^2, what is left after it is
+//! K^2 e^3 (Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 5.1). Roots
+//! are taken as chains of square roots, which are correctly rounded: nothing from libm
+//! decides a step.
 
 use crate::predictor::hermite::{POINTS, at_least};
 use cognate_numeric::scalar::{Mask, Real};
@@ -14,6 +17,36 @@ const AIM: f64 = 0.25;
 const GROWTH: (f64, f64) = (0.3, 2.0);
 /// Largest and smallest shrinkage of a rejected step.
 const SHRINKAGE: (f64, f64) = (0.1, 0.5);
+
+/// The largest first Newton correction from which two corrections leave no more than `tolerance`, and at most `limit`.
+///
+/// `first`, `second`: the corrections of this step; a second one below `noise` says nothing of convergence.
+#[inline(always)]
+pub fn largest_error<C: Real<Context = (), Control = C>>(
+    first: &C,
+    second: &C,
+    limit: &C,
+    tolerance: &C,
+    noise: &C,
+) -> C {
+    // (tolerance e / c^2)^(1/3), about: 1/4 + 1/16.
+    let mut largest = tolerance.clone();
+    largest.mul(first);
+    let mut square = second.clone();
+    square.mul(second);
+    square.max(&C::from_f64((), 1e-60));
+    largest.div(&square);
+    largest.sqrt();
+    largest.sqrt();
+    let mut sixteenth = largest.clone();
+    sixteenth.sqrt();
+    sixteenth.sqrt();
+    largest.mul(&sixteenth);
+    largest.mul(first);
+    largest.min(limit);
+    largest.select(second.less_equal(noise), limit);
+    largest
+}
 
 /// `h` for the next step. `error` is the size of the first Newton correction, `limit` the largest accepted.
 ///
@@ -80,5 +113,19 @@ mod tests {
         assert!((same - 0.95).abs() < 1e-12, "{same}");
         assert_eq!(step(f64::NAN, false, false), 0.1);
         assert_eq!(step(f64::INFINITY, false, false), 0.1);
+    }
+
+    #[test]
+    fn predictions_stay_where_newton_converges() {
+        let largest =
+            |first: f64, second: f64| largest_error::<f64>(&first, &second, &1e-4, &1e-10, &1e-11);
+        // Far from every singularity, and where only noise is left.
+        assert_eq!(largest(2e-5, 1e-14), 1e-4);
+        assert_eq!(largest(1e-11, 1e-11), 1e-4);
+        // c = 5e4 e^2: below e = 3.4e-7 two corrections leave 1e-10.
+        for first in [1e-7, 3e-7, 1e-6] {
+            let ratio = largest(first, 5e4 * first * first) / 3.4e-7;
+            assert!((0.7..1.4).contains(&ratio), "{first}: {ratio}");
+        }
     }
 }

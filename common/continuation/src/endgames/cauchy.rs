@@ -22,6 +22,8 @@ const SHRINKAGE: f64 = 0.125;
 /// Sheets that branch points inside the radius join are followed further in, to this part of how far
 /// out the branch points are.
 const WITHIN: f64 = 0.1;
+/// But not at once further in than this part of the radius: a power sum that is an error shows sooner there.
+const BOLDEST: f64 = 1e-3;
 /// A power sum of a homogenising coordinate so many times the accuracy of the coefficients is one that other
 /// coefficients within their accuracy do not have.
 const WITHIN_DATA: f64 = 10.0;
@@ -318,7 +320,7 @@ impl Cauchy {
                     return self.diverging(Some(power_sum));
                 }
                 self.previous = None;
-                return self.inward(WITHIN * part, settings);
+                return self.inward((WITHIN * part).max(BOLDEST), settings);
             }
             Infinity::BelowNoise | Infinity::Unresolved | Infinity::Apart { .. } | Infinity::No => {
             }

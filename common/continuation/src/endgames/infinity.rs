@@ -18,6 +18,9 @@ pub(crate) type Homogenizing = Complex<DoubleDouble<f64>>;
 /// A homogenising coordinate is believed to vanish where solutions at which it is this or more would
 /// show: their norm is 1e10 or less.
 const FARTHEST: f64 = 1e-10;
+/// Where a path is alone, it may end as far out as coefficients with that many digits take it: its
+/// value at t = 0 is shown to be less than this.
+const FARTHEST_ALONE: f64 = 1e-12;
 /// Errors of homogenising coordinates are at most so many times the last Newton correction.
 const NOISE: f64 = 100.0;
 /// Aliasing errors are at most so many times their estimate.
@@ -116,7 +119,10 @@ pub(super) fn vanishes(
         let PowerMean { mean, aliasing } = PowerMean::of(&powers);
         let noise = f64::from(k) * noise * scale;
         scale *= largest;
-        limit = (limit * zero.value).max(zero.power_sum);
+        limit = match sheets {
+            1 => FARTHEST_ALONE.min(zero.value),
+            _ => (limit * zero.value).max(zero.power_sum),
+        };
         let bound = noise + aliasing;
         if !mean.is_finite() {
             return Infinity::No;
@@ -273,6 +279,8 @@ mod tests {
             );
         }
         assert_eq!(found(2, 1e-18, 1e-3, 1e-15), Infinity::BelowNoise);
+        // A solution of norm 2e11, below the noise of the samples.
+        assert_eq!(found(1, 5e-12, 1e-3, 1e-13), Infinity::BelowNoise);
     }
 
     #[test]

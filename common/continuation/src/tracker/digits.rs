@@ -12,18 +12,16 @@ impl Digits {
     /// The number in one lane.
     pub fn of<R: Real>(z: &Complex<R>, lane: usize) -> Self {
         let mut parts = vec![z.lane(lane)];
-        if R::WIDTH == 1 {
-            let context = z.re.context();
-            let mut rest = z.clone();
-            for _ in 1..R::bits(context).div_ceil(53) {
-                let last = parts[parts.len() - 1];
-                rest.sub(&Complex::from_f64(context, last.re, last.im));
-                let next = rest.lane(0);
-                if next == Complex64::default() || !(next.re + next.im).is_finite() {
-                    break;
-                }
-                parts.push(next);
+        let context = z.re.context();
+        let mut rest = z.clone();
+        for _ in 1..R::bits(context).div_ceil(53) {
+            let last = parts[parts.len() - 1];
+            rest.sub(&Complex::from_f64(context, last.re, last.im));
+            let next = rest.lane(lane);
+            if next == Complex64::default() || !(next.re + next.im).is_finite() {
+                break;
             }
+            parts.push(next);
         }
         Self(parts)
     }

@@ -28,6 +28,12 @@ pub enum Phase {
 }
 
 impl Phase {
+    /// Whether the path is in the endgame around t = 0.
+    #[inline(always)]
+    pub fn is_around_zero(self) -> bool {
+        !matches!(self, Self::Idle | Self::Starting | Self::Approaching)
+    }
+
     /// For tables and plots.
     pub fn name(self) -> &'static str {
         match self {

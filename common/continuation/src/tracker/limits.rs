@@ -3,8 +3,9 @@
 use super::settings::Settings;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, unit_roundoff};
 
-/// Newton rounds of a step on the way on the higher rungs, and around 0 above double-doubles; elsewhere
-/// two.
+/// Newton rounds of a step on the higher rungs; in doubles two. The tangent is that of the point before
+/// the last, and where the Jacobian is nearly singular, its error times the next step is the next
+/// prediction's error.
 pub(super) const MOST_ROUNDS: usize = 3;
 /// A refinement is accepted when its last correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
@@ -12,8 +13,8 @@ const REFINED: f64 = 1e-6;
 /// Relative sizes that an arithmetic can tell.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
-    /// Newton rounds of a step.
-    pub rounds: usize,
+    /// Which correction of a step decides whether it is accepted.
+    pub decisive: usize,
     /// A last correction below this need not contract.
     pub settled: f64,
     /// The same for a refinement.
@@ -25,10 +26,10 @@ pub(super) struct Limits {
 impl Limits {
     /// Those of doubles, but that less is taken for noise where there are more digits. Around 0
     /// that is all: there the endgame knows which noise it can bear. (Double-doubles have so much of it
-    /// at singular ends that a third correction says nothing; sheets that they mix up go up a rung.)
+    /// at singular ends that a third correction decides nothing; sheets that they mix up go up a rung.)
     pub fn around_zero(bits: u32, settings: &Settings) -> Self {
         Self {
-            rounds: if bits > DOUBLE_DOUBLE { MOST_ROUNDS } else { 2 },
+            decisive: if bits > DOUBLE_DOUBLE { MOST_ROUNDS } else { 2 },
             settled: 0.1 * settings.tolerance,
             refined: REFINED,
             noise: 0.01 * settings.predictor_tolerance * finer(bits),
@@ -42,12 +43,17 @@ impl Limits {
         let limits = Self::around_zero(bits, settings);
         let half = finer(bits).sqrt();
         Self {
-            rounds: if bits > DOUBLE { MOST_ROUNDS } else { 2 },
+            decisive: rounds(bits),
             settled: half * limits.settled,
             refined: half * limits.refined,
             ..limits
         }
     }
+}
+
+/// Newton rounds of a step.
+pub(super) fn rounds(bits: u32) -> usize {
+    if bits > DOUBLE { MOST_ROUNDS } else { 2 }
 }
 
 /// The unit roundoff as a part of that of doubles.

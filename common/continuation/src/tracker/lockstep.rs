@@ -10,7 +10,7 @@
 use super::batch::Batch;
 use super::digits::Digits;
 use super::lane::{Lane, Phase};
-use super::limits::{Limits, MOST_ROUNDS};
+use super::limits::{Limits, MOST_ROUNDS, rounds};
 use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
 use super::rooms::{Departure, Door, Ended, Room, Waiting};
@@ -23,7 +23,7 @@ use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
 use crate::predictor::hermite::{POINTS, weights};
 use crate::refine::Refiner;
 use crate::stage::PreparedStage;
-use crate::step_control::next_step;
+use crate::step_control::{largest_error, next_step};
 use cognate_machine_code::Evaluator;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
@@ -107,20 +107,33 @@ pub(super) struct Step {
     /// First and second Newton correction, relative.
     pub(super) predictor_error: f64,
     pub(super) correction: f64,
+    /// The last two.
+    pub(super) last: [f64; 2],
     /// Largest coordinate of the point that was tried.
     pub(super) size: f64,
 }
 
 impl Step {
-    /// What a third Newton correction would be, by quadratic convergence: with c_1 and c_2 the first
+    /// What one more Newton correction would be, by quadratic convergence: with c_1 and c_2 the last
     /// two, c_3 = c_2 (c_2 / c_1)^2.
     pub(super) fn left(&self) -> f64 {
-        if self.correction == 0.0 {
+        let [before, last] = self.last;
+        if last == 0.0 {
             return 0.0;
         }
-        let ratio = self.correction / self.predictor_error;
-        self.correction * ratio * ratio
+        let ratio = last / before;
+        last * ratio * ratio
     }
+}
+
+/// The lanes whose paths are in the endgame.
+#[inline(always)]
+fn around_zero<R: Real>(lanes: &[Lane]) -> R::Mask {
+    let mut around = R::Mask::splat(false);
+    for (lane, path) in lanes.iter().enumerate() {
+        around.set_lane(lane, path.phase.is_around_zero());
+    }
+    around
 }
 
 /// `sum += weight * value`. Within a function of its own, since a closure that is called in several places would
@@ -148,8 +161,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let parameters = homotopy.parameter_count();
         let settings = room.settings();
         assert!(
-            room.bits == DOUBLE || R::WIDTH == 1,
-            "on the higher rungs there is one lane"
+            room.bits <= DOUBLE_DOUBLE || R::WIDTH == 1,
+            "numbers of MPFR have one lane"
         );
         Self {
             stage: room.stage,
@@ -276,7 +289,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
         );
         let next = slots[POINTS - 1];
         let fine = self.room.bits > DOUBLE;
-        if fine {
+        // What a lane does must not depend on whether others move.
+        let keeps_history = self.room.bits > DOUBLE_DOUBLE;
+        if keeps_history {
             batch.keep_oldest(next);
         }
         let mut candidate = std::mem::take(&mut batch.x[next]);
@@ -336,6 +351,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
 
         // Newton; then Newton and tangent from one factorisation.
+        let around = around_zero::<R>(&self.lanes);
         let homotopy = self.room.homotopy;
         homotopy.path().at(
             self.context,
@@ -345,12 +361,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             &mut self.p,
             &mut self.dp,
         );
-        // In doubles both are the same, and above there is one lane.
-        let limits = match self.lanes[0].phase {
-            Phase::Idle | Phase::Starting | Phase::Approaching => self.on_the_way,
-            _ => self.around_zero,
-        };
-        let rounds = limits.rounds;
+        let rounds = rounds(self.room.bits);
         let mut corrections: [R::Control; MOST_ROUNDS] = std::array::from_fn(|_| control(0.0));
         let mut size = control(0.0);
         for (round, correction) in corrections.iter_mut().enumerate().take(rounds) {
@@ -408,19 +419,28 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let converging = second
             .less_equal(&contracted)
             .and(left.less_equal(&allowed));
-        // In doubles there are two corrections, and the second is the last.
-        let last = if rounds == MOST_ROUNDS { third } else { second };
-        let mut settled = last.less_equal(&control(limits.settled));
-        let mut refined = last.less_equal(&control(limits.refined));
-        if rounds == MOST_ROUNDS {
-            let mut quadratically = control(CONVERGENCE);
-            quadratically.mul(second);
-            let converging = converging.and(third.less_equal(&quadratically));
-            settled = settled.or(converging);
+        // Which correction decides, and how small it must be, is another thing on the way than around 0;
+        // in doubles both are the same.
+        let (way, zero) = (self.on_the_way, self.around_zero);
+        let of_phase = |way: f64, zero: f64| {
+            let mut value = control(way);
+            value.select(around, &control(zero));
+            value
+        };
+        let noise = of_phase(way.settled, zero.settled);
+        let mut last = if way.decisive == MOST_ROUNDS { third } else { second }.clone();
+        let second_decides = R::Mask::splat(zero.decisive < MOST_ROUNDS).and(around);
+        last.select(second_decides, second);
+        let mut quadratically = control(CONVERGENCE);
+        quadratically.mul(second);
+        let quadratically = third.less_equal(&quadratically).or(second_decides);
+        let quadratically = quadratically.or(R::Mask::splat(way.decisive < MOST_ROUNDS));
+        let converging = converging.and(quadratically);
+        let settled = last.less_equal(&noise).or(converging);
+        let mut refined = last.less_equal(&of_phase(way.refined, zero.refined));
+        if fine {
             // A start point has the digits of doubles, however many there are here.
-            refined = refined.or(converging);
-        } else {
-            settled = settled.or(converging);
+            refined = refined.or(converging.and(second_decides.not()));
         }
         let moved = first
             .less_equal(&limit)
@@ -430,7 +450,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .and(first.less_equal(&control(START_ERROR)))
             .and(batch.refine);
         let accepted = moved.or(refined);
-        let wanted = next_step(&batch.h, first, &limit, &counts, moved, batch.may_grow);
+        let largest = largest_error(first, second, &limit, &tolerance, &noise);
+        let wanted = next_step(&batch.h, first, &largest, &counts, moved, batch.may_grow);
         // A step that only reached its target says little about longer ones: keep the wish.
         let mut h = wanted;
         h.min(&control(settings.max_step));
@@ -444,9 +465,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let entering = entering.and(before.less_equal(&boundary).not());
 
         // Move: what stays where it is stands in the new slot, and no longer in the old one. The one
-        // lane of a higher rung keeps the points behind it.
+        // lane of numbers of MPFR keeps the points behind it.
         let stays = accepted.not();
-        let in_place = fine && !moved.any();
+        let in_place = keeps_history && !moved.any();
         if stays.any() {
             for i in 0..n {
                 candidate[i].select(stays, &batch.x[newest][i]);
@@ -474,13 +495,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 continue;
             }
             let path = &mut self.lanes[lane];
-            path.evaluations += limits.rounds as u32;
+            path.evaluations += rounds as u32;
             path.effort += u64::from((self.room.bits / DOUBLE_DOUBLE).max(1));
             let step = Step {
                 accepted: accepted.lane(lane),
                 arrived: accepted.lane(lane) && reaches.lane(lane),
                 predictor_error: first.lane(lane),
                 correction: second.lane(lane),
+                last: if fine { [second, third] } else { [first, second] }.map(|c| c.lane(lane)),
                 size: size.lane(lane),
             };
             if refining.lane(lane) {
@@ -498,7 +520,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 path.rejections += 1;
                 // A correction that neither Newton's method nor a shorter step makes smaller is
                 // noise.
-                let stuck = step.predictor_error <= limits.noise
+                let stuck = step.predictor_error <= zero.noise
                     && step.correction > CONTRACTION * step.predictor_error
                     && step.correction > 0.3 * path.last_rejected;
                 path.starved += u32::from(stuck);
@@ -654,7 +676,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 }
                 match phase {
                     Phase::Settling => self.begin_turns(lane, t, step),
-                    _ => self.sample(lane, t, step.correction),
+                    _ => self.sample(lane, t, step.last[1]),
                 }
             }
         }
@@ -757,12 +779,17 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
     }
 
-    /// Whether a path takes very many steps around 0 in doubles: it is their noise that it follows.
+    /// Whether a path takes very many steps around 0, or past the endgame's boundary, in doubles: it is their
+    /// noise that it follows.
     fn labours(&self, lane: usize) -> bool {
         let path = &self.lanes[lane];
-        let around_zero = matches!(path.phase, Phase::Turning | Phase::Inward);
+        let in_endgame = match path.phase {
+            Phase::Turning | Phase::Inward => true,
+            Phase::Approaching => self.batch.t(lane).re <= self.settings.endgame_boundary,
+            _ => false,
+        };
         let most = u64::from(self.settings.max_steps / LABOUR);
-        around_zero && self.room.bits == DOUBLE && self.room.up && path.effort > most
+        in_endgame && self.room.bits == DOUBLE && self.room.up && path.effort > most
     }
 
     /// A path that came up a rung from where fewer digits had lost it follows its whole way on

@@ -15,7 +15,10 @@ use crate::homotopies::Homotopy;
 use crate::path_result::PathResult;
 use crate::stage::PreparedStage;
 use cognate_numeric::lanes::Lanes;
-use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_on, dispatch_single};
+use cognate_numeric::lanes::dispatch::{
+    CompiledSet, InstructionSet, Job, JobOfSet, dispatch_on, dispatch_set, dispatch_single,
+};
+use cognate_numeric::lanes::double_doubles::DoubleDoubleLanes;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, rungs};
 use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
 use num_complex::Complex64;
@@ -51,6 +54,13 @@ pub(super) struct Waiting {
     pub items: Range<u64>,
     /// From where they left another room.
     pub departures: VecDeque<Departure>,
+}
+
+impl Waiting {
+    /// How many.
+    fn count(&self) -> u64 {
+        self.items.end - self.items.start + self.departures.len() as u64
+    }
 }
 
 /// How the paths of a room ended there.
@@ -127,6 +137,21 @@ impl<R: Real> Job for Work<'_, R> {
     }
 }
 
+/// Paths in lanes of double-doubles.
+struct DoubleDoublePaths<'a> {
+    room: Room<'a>,
+    waiting: Waiting,
+    observer: Option<&'a mut dyn Observer>,
+}
+
+impl JobOfSet for DoubleDoublePaths<'_> {
+    type Output = Ended;
+    #[inline(always)]
+    fn run<S: CompiledSet>(self) -> Ended {
+        Work::<DoubleDoubleLanes<S>>::new(self.room, (), self.waiting, self.observer).run()
+    }
+}
+
 /// Tracks what waits for this room, `width` paths at a time where it has lanes.
 fn work<'a>(
     room: Room<'a>,
@@ -139,8 +164,14 @@ fn work<'a>(
         (DOUBLE, 1) => dispatch_single(Work::<f64>::new(room, (), waiting, observer)),
         (DOUBLE, 8) => dispatch_on(set, Work::<Lanes<8>>::new(room, (), waiting, observer)),
         (DOUBLE, 16) => dispatch_on(set, Work::<Lanes<16>>::new(room, (), waiting, observer)),
-        // Few paths come here, one at a time; lanes of double-doubles multiply the time that
-        // this crate takes to compile by ten.
+        (DOUBLE_DOUBLE, 8 | 16) if waiting.count() > 1 => {
+            let paths = DoubleDoublePaths {
+                room,
+                waiting,
+                observer,
+            };
+            dispatch_set(set, paths)
+        }
         (DOUBLE_DOUBLE, 1 | 8 | 16) => {
             dispatch_single(Work::<DoubleDouble<f64>>::new(room, (), waiting, observer))
         }

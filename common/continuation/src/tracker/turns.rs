@@ -12,7 +12,7 @@ use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
 use crate::endgames::circle::VERTICES;
 use crate::endgames::infinity::Homogenizing;
-use cognate_numeric::precision::DOUBLE;
+use cognate_numeric::precision::{DOUBLE, unit_roundoff};
 use cognate_numeric::scalar::{Complex, Real};
 use num_complex::Complex64;
 
@@ -27,33 +27,34 @@ impl<R: Real> Lockstep<'_, R> {
     pub(super) fn begin_turns(&mut self, lane: usize, t: Complex64, step: &Step) {
         self.batch
             .read_here(lane, &mut self.point, &mut self.tangent);
-        let homogenizing = self.homogenizing(false);
+        let homogenizing = self.homogenizing(lane, false);
         self.batch.drop_anchor(lane);
         let digits = [self.fine(), self.room.up && self.room.bits < ENDGAME_BITS];
         let path = &mut self.lanes[lane];
         let begin = (t.re, self.batch.digits(lane));
-        if step.correction <= FIRM {
+        if step.last[1] <= FIRM {
             path.last_turn = Some(begin.clone());
         }
         path.first_turn.get_or_insert(begin);
         let next = path
             .cauchy
-            .begin(t.re, &self.point, step.correction, &homogenizing, digits);
+            .begin(t.re, &self.point, step.last[1], &homogenizing, digits);
         self.obey(lane, next);
     }
 
     /// Whether a step that reached a vertex leaves no more error there than the point had where the turn
-    /// began. Steps of more digits never do: their two corrections are those of doubles.
+    /// began.
     pub(super) fn is_sample(&self, lane: usize, step: &Step) -> bool {
-        !self.fine() && step.left() <= self.lanes[lane].cauchy.noise().max(f64::EPSILON)
+        let rounding = unit_roundoff(self.room.bits.min(ENDGAME_BITS));
+        step.left() <= self.lanes[lane].cauchy.noise().max(2.0 * rounding)
     }
 
     /// The path stands at a vertex, with this relative error.
     pub(super) fn sample(&mut self, lane: usize, t: Complex64, noise: f64) {
         self.batch
             .read_here(lane, &mut self.point, &mut self.tangent);
-        let homogenizing = self.homogenizing(false);
-        let valuations = self.valuations(t, &homogenizing);
+        let homogenizing = self.homogenizing(lane, false);
+        let valuations = self.valuations(lane, t, &homogenizing);
         let form = self.form_from_anchor(lane);
         let next = self.lanes[lane].cauchy.at_vertex(
             t,
@@ -79,8 +80,8 @@ impl<R: Real> Lockstep<'_, R> {
         }
         self.batch
             .read_here(lane, &mut self.point, &mut self.tangent);
-        let homogenizing = self.homogenizing(false);
-        let now = self.valuations(t, &homogenizing);
+        let homogenizing = self.homogenizing(lane, false);
+        let now = self.valuations(lane, t, &homogenizing);
         let before = self.lanes[lane].valuations.replace((t.re, now.clone()));
         before.is_some_and(|(_, before)| {
             let mut both = now.iter().zip(&before);
@@ -211,28 +212,29 @@ impl<R: Real> Lockstep<'_, R> {
             difference.sub(anchor);
             form.mul_add(&Complex::from_f64(self.context, c.re, c.im), &difference);
         }
-        form.lane(0)
+        form.lane(lane)
     }
 
-    /// Values of the homogenising coordinates at `self.point`, which is that of the one lane
-    /// where there is one: then with all its digits. With `back`, at the point less its tangent.
-    fn homogenizing(&self, back: bool) -> Vec<Homogenizing> {
+    /// Values of the homogenising coordinates at `self.point`, where the lane's path is; above doubles with
+    /// all its digits. With `back`, at the point less its tangent.
+    fn homogenizing(&self, lane: usize, back: bool) -> Vec<Homogenizing> {
         let homotopy = self.room.homotopy;
-        if R::WIDTH == 1 {
-            let here = self.batch.here();
-            let precise = |point: &[Complex<R>]| -> Vec<Homogenizing> {
-                let values = homotopy.homogenizing(self.context, point);
-                let values = values.iter().map(|z| Digits::of(z, 0).value(()));
-                values.collect()
-            };
-            if !back {
-                return precise(here);
-            }
-            let mut point = here.to_vec();
-            for (x, tangent) in point.iter_mut().zip(self.batch.tangent_here()) {
-                x.sub(tangent);
-            }
-            precise(&point)
+        if self.fine() {
+            let context = self.context;
+            let both = self.batch.here().iter().zip(self.batch.tangent_here());
+            let one = |z: &Complex<R>| Digits::of(z, lane).value::<R::Single>(context);
+            let point: Vec<Complex<R::Single>> = both
+                .map(|(x, tangent)| {
+                    let mut x = one(x);
+                    if back {
+                        x.sub(&one(tangent));
+                    }
+                    x
+                })
+                .collect();
+            let values = homotopy.homogenizing(context, &point);
+            let values = values.iter().map(|z| Digits::of(z, 0).value(()));
+            values.collect()
         } else {
             let native = |z: Complex64| Complex { re: z.re, im: z.im };
             let both = self.point.iter().zip(&self.tangent);
@@ -246,8 +248,8 @@ impl<R: Real> Lockstep<'_, R> {
     }
 
     /// t x'/x of the homogenising coordinates, which are linear in the chart's.
-    fn valuations(&self, t: Complex64, homogenizing: &[Homogenizing]) -> Vec<Complex64> {
-        let back = self.homogenizing(true);
+    fn valuations(&self, lane: usize, t: Complex64, homogenizing: &[Homogenizing]) -> Vec<Complex64> {
+        let back = self.homogenizing(lane, true);
         let both = homogenizing.iter().zip(back);
         both.map(|(x, back)| {
             let (x, back) = (x.lane(0), back.lane(0));

@@ -4,6 +4,7 @@
 //! this machine. The only `unsafe` code of the mathematics stands here.
 
 use std::cell::Cell;
+use std::marker::PhantomData;
 
 /// Work that is compiled once per instruction set.
 ///
@@ -76,12 +77,14 @@ impl InstructionSet {
 }
 
 #[cfg(target_arch = "x86_64")]
+#[inline(never)]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
 fn run_avx512<J: Job>(job: J) -> J::Output {
     job.run()
 }
 
 #[cfg(target_arch = "x86_64")]
+#[inline(never)]
 #[target_feature(enable = "avx2,fma")]
 fn run_avx2<J: Job>(job: J) -> J::Output {
     job.run()
@@ -160,6 +163,98 @@ pub fn dispatch_single<J: Job>(job: J) -> J::Output {
     #[cfg(not(target_arch = "x86_64"))]
     {
         job.run()
+    }
+}
+
+/// An instruction set as a type: what has it as a parameter calls functions that are compiled for it, from
+/// code that need not be. Such a type is had from [`dispatch_set`] only.
+pub trait CompiledSet: Copy + Send + Sync + std::fmt::Debug + 'static {
+    /// Runs the job, as a function that is never inlined.
+    fn call<J: Job>(job: J) -> J::Output;
+}
+
+/// Work on numbers whose operations are functions compiled for an instruction set.
+pub trait JobOfSet {
+    /// What the work gives.
+    type Output;
+    /// Does the work; it and everything below it is `#[inline(always)]`, as for [`Job`].
+    fn run<S: CompiledSet>(self) -> Self::Output;
+}
+
+mod compiled {
+    //! The types, which nothing else can name.
+
+    use super::{CompiledSet, Job};
+
+    #[cfg(target_arch = "x86_64")]
+    #[derive(Clone, Copy, Debug)]
+    pub struct Avx512;
+
+    #[cfg(target_arch = "x86_64")]
+    #[derive(Clone, Copy, Debug)]
+    pub struct Avx2;
+
+    #[cfg(not(target_arch = "x86_64"))]
+    #[derive(Clone, Copy, Debug)]
+    pub struct Baseline;
+
+    #[cfg(target_arch = "x86_64")]
+    impl CompiledSet for Avx512 {
+        #[inline(always)]
+        fn call<J: Job>(job: J) -> J::Output {
+            // SAFETY: `dispatch_set`, which alone names this type, has detected the features.
+            unsafe { super::run_avx512(job) }
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    impl CompiledSet for Avx2 {
+        #[inline(always)]
+        fn call<J: Job>(job: J) -> J::Output {
+            // SAFETY: as above.
+            unsafe { super::run_avx2(job) }
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    impl CompiledSet for Baseline {
+        #[inline(never)]
+        fn call<J: Job>(job: J) -> J::Output {
+            job.run()
+        }
+    }
+}
+
+/// A job that knows its set.
+struct OfSet<S, J>(J, PhantomData<S>);
+
+impl<S: CompiledSet, J: JobOfSet> Job for OfSet<S, J> {
+    type Output = J::Output;
+    #[inline(always)]
+    fn run(self) -> J::Output {
+        self.0.run::<S>()
+    }
+}
+
+/// [`dispatch_on`] for work that has the instruction set as a type.
+///
+/// # Panics
+/// On a machine without fused multiply-add, as [`dispatch_on`] does.
+pub fn dispatch_set<J: JobOfSet>(instruction_set: InstructionSet, job: J) -> J::Output {
+    let best = InstructionSet::best();
+    assert!(best != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");
+    #[cfg(target_arch = "x86_64")]
+    {
+        if best == InstructionSet::Avx512 && instruction_set != InstructionSet::Avx2 {
+            compiled::Avx512::call(OfSet::<compiled::Avx512, J>(job, PhantomData))
+        } else {
+            compiled::Avx2::call(OfSet::<compiled::Avx2, J>(job, PhantomData))
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        let _ = instruction_set;
+        OfSet::<compiled::Baseline, J>(job, PhantomData).run()
     }
 }
 

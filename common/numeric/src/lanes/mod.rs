@@ -5,6 +5,7 @@
 //! instruction set and becomes an order of magnitude slower, silently.
 
 pub mod dispatch;
+pub mod double_doubles;
 
 use crate::rational::Rational;
 use crate::scalar::{Mask, Real};
