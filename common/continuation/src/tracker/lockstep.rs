@@ -428,7 +428,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
             value
         };
         let noise = of_phase(way.settled, zero.settled);
-        let mut last = if way.decisive == MOST_ROUNDS { third } else { second }.clone();
+        let mut last = if way.decisive == MOST_ROUNDS {
+            third
+        } else {
+            second
+        }
+        .clone();
         let second_decides = R::Mask::splat(zero.decisive < MOST_ROUNDS).and(around);
         last.select(second_decides, second);
         let mut quadratically = control(CONVERGENCE);
@@ -502,7 +507,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 arrived: accepted.lane(lane) && reaches.lane(lane),
                 predictor_error: first.lane(lane),
                 correction: second.lane(lane),
-                last: if fine { [second, third] } else { [first, second] }.map(|c| c.lane(lane)),
+                last: if fine {
+                    [second, third]
+                } else {
+                    [first, second]
+                }
+                .map(|c| c.lane(lane)),
                 size: size.lane(lane),
             };
             if refining.lane(lane) {

@@ -248,7 +248,12 @@ impl<R: Real> Lockstep<'_, R> {
     }
 
     /// t x'/x of the homogenising coordinates, which are linear in the chart's.
-    fn valuations(&self, lane: usize, t: Complex64, homogenizing: &[Homogenizing]) -> Vec<Complex64> {
+    fn valuations(
+        &self,
+        lane: usize,
+        t: Complex64,
+        homogenizing: &[Homogenizing],
+    ) -> Vec<Complex64> {
         let back = self.homogenizing(lane, true);
         let both = homogenizing.iter().zip(back);
         both.map(|(x, back)| {
