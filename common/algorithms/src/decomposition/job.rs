@@ -97,6 +97,15 @@ impl Job {
         }
     }
 
+    /// The same, where it is of no interest whether singular ends are isolated.
+    #[must_use]
+    pub fn ends_only(mut self) -> Self {
+        if let Doing::Tracked(stages) = self.work {
+            self.work = Doing::Tracked(Box::new(stages.ends_only()));
+        }
+        self
+    }
+
     /// Whether these candidates at the only target are isolated.
     pub fn isolate(
         id: StageId,

@@ -154,13 +154,9 @@ impl Sieve {
             let points = of.doubles();
             self.asking = Asking::Membership { set, suspects };
             let system = deflations.of_stage(problem, &of.tracked());
-            return Some(Job::track(
-                id,
-                (of.tracked(), &system),
-                homotopy,
-                &points,
-                &problem.tracking,
-            ));
+            let system = (of.tracked(), &*system);
+            let job = Job::track(id, system, homotopy, &points, &problem.tracking);
+            return Some(job.ends_only());
         }
         None
     }

@@ -208,7 +208,7 @@ impl Split {
         };
         let system = deflations.of_stage(problem, &self.set.tracked());
         let system = (self.set.tracked(), &*system);
-        Job::track(id, system, homotopy, points, &problem.tracking)
+        Job::track(id, system, homotopy, points, &problem.tracking).ends_only()
     }
 
     fn give_up_loop(&mut self) {
