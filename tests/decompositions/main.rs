@@ -1,6 +1,6 @@
 //! Decompositions: systems whose components are known, each decomposed with several seeds and compared.
 //!
-//! `cargo run --release -p cognate-tests --bin decompositions -- [--seeds 3] [--first 1] [--limit 100] [--only NAME,NAME] [--folder PATH]`
+//! `cargo run --release -p cognate-tests --bin decompositions -- [--seeds 3] [--first 1] [--limit 100] [--only NAME,NAME] [--method NAME] [--verify true] [--folder PATH]`
 //!
 //! The systems stand beside the repository in `../shared/systems` (`--folder` names another place): each a
 //! folder with `system.bertini`, and `expected.components` in its `meta.json`. Without them the program says so and ends
@@ -11,7 +11,7 @@ use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve
 use cognate_algorithms::run_locally::drive;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
-use cognate_solutions::witness::Decomposition;
+use cognate_solutions::witness::{Decomposition, Method};
 use cognate_systems::formats;
 use cognate_systems::system::System;
 use cognate_tests::arguments::{number, options, or_exit};
@@ -28,6 +28,8 @@ struct Wanted {
     first: u64,
     limit: f64,
     only: Vec<String>,
+    method: Option<Method>,
+    verify: bool,
     folder: PathBuf,
 }
 
@@ -37,6 +39,8 @@ fn wanted() -> Result<Wanted, String> {
         first: 1,
         limit: 100.0,
         only: Vec::new(),
+        method: None,
+        verify: false,
         folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/systems"),
     };
     for (word, value) in options()? {
@@ -45,15 +49,28 @@ fn wanted() -> Result<Wanted, String> {
             "--first" => wanted.first = number(&word, &value)?,
             "--limit" => wanted.limit = number(&word, &value)?,
             "--only" => wanted.only = value.split(',').map(str::to_owned).collect(),
+            "--method" => wanted.method = method(&value)?,
+            "--verify" => wanted.verify = number(&word, &value)?,
             "--folder" => wanted.folder = value.into(),
             _ => {
                 return Err(format!(
-                    "{word}: expected --seeds N, --first N, --limit SECONDS, --only NAMES or --folder PATH"
+                    "{word}: expected --seeds N, --first N, --limit SECONDS, --only NAMES, --method NAME, --verify true or --folder PATH"
                 ));
             }
         }
     }
     Ok(wanted)
+}
+
+fn method(name: &str) -> Result<Option<Method>, String> {
+    let found = Method::ALL.into_iter().find(|method| method.name() == name);
+    match (name, found) {
+        ("auto", _) => Ok(None),
+        (_, Some(method)) => Ok(Some(method)),
+        _ => Err(format!(
+            "--method {name}: expected auto, cascade, equations or slices"
+        )),
+    }
 }
 
 /// Components by dimension, degree and multiplicity (0 where it is not known).
@@ -85,7 +102,9 @@ fn instances(wanted: &Wanted) -> Result<Vec<Instance>, String> {
         let Ok(content) = std::fs::read(folder.path().join("system.bertini")) else {
             continue;
         };
-        let system = formats::read(&name, &content).map_err(|e| e.to_string())?.system;
+        let system = formats::read(&name, &content)
+            .map_err(|e| e.to_string())?
+            .system;
         found.push(Instance {
             name,
             system,
@@ -101,7 +120,11 @@ fn components(listed: &Value) -> Option<Components> {
     let mut components = Components::new();
     for entry in listed.as_array()? {
         let field = |name: &str| entry.get(name).and_then(Value::as_u64);
-        let key = (field("dim")?, field("degree")?, field("multiplicity").unwrap_or(1));
+        let key = (
+            field("dim")?,
+            field("degree")?,
+            field("multiplicity").unwrap_or(1),
+        );
         *components.entry(key).or_default() += field("count").unwrap_or(1);
     }
     Some(components)
@@ -118,9 +141,11 @@ fn counted(found: &Decomposition) -> Components {
 }
 
 /// The decomposition; `None` where the time was over, or what went wrong.
-fn decompose(system: &System, seed: u64, limit: f64) -> Result<Option<Decomposition>, String> {
+fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decomposition>, String> {
     let options = DecompositionOptions {
         seed,
+        method: wanted.method,
+        verify: wanted.verify,
         ..DecompositionOptions::default()
     };
     let mut solve = DecompositionSolve::new(system, &options).map_err(|e| e.to_string())?;
@@ -129,7 +154,7 @@ fn decompose(system: &System, seed: u64, limit: f64) -> Result<Option<Decomposit
     let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
     let driven = drive::<Option<String>>(&mut solve, &mut |opening| {
         let now = cpu_seconds().map_err(|e| Some(e.to_string()))?;
-        if now - began > limit {
+        if now - began > wanted.limit {
             return Err(None);
         }
         let made = opening.objects.iter();
@@ -173,7 +198,12 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, instance: &Instance, seed: u64, found: Result<Option<Decomposition>, String>) {
+    fn add(
+        &mut self,
+        instance: &Instance,
+        seed: u64,
+        found: Result<Option<Decomposition>, String>,
+    ) {
         let found = match found {
             Ok(Some(found)) => found,
             Ok(None) => {
@@ -240,7 +270,7 @@ fn main() -> ExitCode {
         let mut tally = Tally::default();
         for seed in wanted.first..wanted.first + wanted.seeds {
             let began = or_exit(cpu_seconds().map_err(|e| e.to_string()));
-            let found = decompose(&instance.system, seed, wanted.limit);
+            let found = decompose(&instance.system, seed, &wanted);
             let now = or_exit(cpu_seconds().map_err(|e| e.to_string()));
             tally.seconds.push(now - began);
             tally.add(&instance, seed, found);

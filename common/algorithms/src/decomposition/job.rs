@@ -4,10 +4,11 @@ use crate::retried_stage::RetriedStage;
 use crate::{Next, Opening};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Decision, Tolerances, Verdict};
+use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::witness::TrackedPaths;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -38,6 +39,11 @@ pub(super) enum StageSystem {
         /// Rank of the Jacobian before each deflation.
         ranks: Vec<u32>,
         /// The dimension.
+        dimension: usize,
+    },
+    /// Combinations of the equations but the last, whose set of solutions has this dimension, and the last.
+    Cut {
+        /// The dimension before the last equation cuts.
         dimension: usize,
     },
     /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
@@ -94,6 +100,32 @@ impl Job {
             system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
             unsent: Some(points),
+        }
+    }
+
+    /// Paths from all solutions of a start system of these degrees, with these values of the parameters.
+    pub fn straight(
+        id: StageId,
+        (description, system): (StageSystem, &System),
+        parameters: Vec<Complex64>,
+        degrees: Vec<u32>,
+        with: &Tracking,
+    ) -> Self {
+        let first = Stage {
+            id,
+            system: None,
+            work: Work::Track,
+            homotopy: HomotopyKind::StraightLine { parameters },
+            start_points: StartPoints::TotalDegree { degrees },
+            settings: with.settings.clone(),
+            seed: with.seed,
+            attempt: 0,
+        };
+        let stages = RetriedStage::new(first, system, with.tolerances.clone(), 1);
+        Self {
+            system: description,
+            work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
+            unsent: None,
         }
     }
 
@@ -216,6 +248,14 @@ impl Job {
         };
         let pairs = stages.results().iter().zip(stages.decisions());
         pairs.map(|(r, d)| (r, d, values(r))).collect()
+    }
+
+    /// How the ends of its paths are laid out.
+    pub fn shape(&self) -> Option<&PointShape> {
+        match &self.work {
+            Doing::Tracked(stages) => Some(stages.shape()),
+            Doing::Asked { .. } => None,
+        }
     }
 
     /// Its paths, counted.

@@ -5,10 +5,10 @@
 //! says that it is not, paths on the sets of higher dimension to slices through the point ask whether it is on
 //! one of them; with `confirm_junk` also then. Where both speak they must agree.
 
-use super::cascade::{SingularEnd, Superset};
 use super::deflated::{Deflations, Multiple, PureSet};
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
+use super::superset::{SingularEnd, Superset};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
@@ -56,6 +56,8 @@ enum Asking {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sieve {
     supersets: VecDeque<Superset>,
+    /// Several paths may come to a reduced point: sets that meet there were cut one by one.
+    shared: bool,
     current: Option<Superset>,
     suspects: Vec<Suspect>,
     asking: Asking,
@@ -65,9 +67,11 @@ pub(super) struct Sieve {
 }
 
 impl Sieve {
-    pub fn new(supersets: Vec<Superset>) -> Self {
+    /// `shared`: whether several paths may come to a reduced point.
+    pub fn new(supersets: Vec<Superset>, shared: bool) -> Self {
         Self {
             supersets: supersets.into(),
+            shared,
             current: None,
             suspects: Vec::new(),
             asking: Asking::Nothing,
@@ -219,6 +223,12 @@ impl Sieve {
                         // The tracker called it singular for its condition.
                         Some(point) if point.is_reduced() => match paths {
                             1 => regular.push(point.refined),
+                            _ if self.shared => found.push(Multiple {
+                                point,
+                                scheme: Some(1),
+                                paths,
+                                dual_dimensions: Vec::new(),
+                            }),
                             _ => unclear += paths,
                         },
                         Some(point) => found.push(Multiple {
@@ -252,6 +262,12 @@ impl Sieve {
                 superset.unclear,
                 Doubt::Asked {
                     points: superset.unclear,
+                },
+            ),
+            (
+                superset.not_cut,
+                Doubt::NotCut {
+                    points: superset.not_cut,
                 },
             ),
             (unclear, Doubt::Junk { points: unclear }),

@@ -7,6 +7,7 @@ use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_solutions::witness::Method;
 use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
@@ -21,6 +22,9 @@ use std::sync::Arc;
 
 /// Singular values below this part of the largest are 0 at a random point.
 const RANK_AT_RANDOM: f64 = 1e-9;
+
+/// Most start points of a dimension by itself, where that way is chosen for comparison.
+const MOST_START_POINTS: f64 = 5e3;
 
 /// Why a system cannot be decomposed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -65,6 +69,8 @@ pub(super) struct Problem {
     /// The equations that are given, and patches; each scaled to about 1.
     pub given: Arc<System>,
     degrees: Degrees,
+    /// The equations in the order in which they cut: of small degree first.
+    pub order: Vec<usize>,
     /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
     /// others that are never reached.
     pub staircase: Arc<System>,
@@ -130,8 +136,11 @@ impl Problem {
         staircase.conjugates.clear();
         staircase.degenerate.clear();
         let row_degrees = degrees(&staircase)?.total;
+        let mut order: Vec<usize> = (0..given.equation_count()).collect();
+        order.sort_by_key(|&i| (of_given.total[i], i));
         Ok(Self {
             given: Arc::new(given),
+            order,
             degrees: of_given,
             staircase: Arc::new(staircase),
             row_degrees,
@@ -144,6 +153,70 @@ impl Problem {
             plain,
             scaling,
         })
+    }
+
+    /// The problem of the first equations alone, in the order in which they cut. It has no staircase of its own.
+    pub fn prefix(&self, count: usize) -> Self {
+        let chosen = &self.order[..count];
+        let given = with_equations(&self.given, chosen);
+        let of_chosen = Degrees {
+            by_group: chosen
+                .iter()
+                .map(|&i| self.degrees.by_group[i].clone())
+                .collect(),
+            total: chosen.iter().map(|&i| self.degrees.total[i]).collect(),
+        };
+        Self {
+            plain: SlicedEquations::new(&given, Vec::new()),
+            given: Arc::new(given),
+            degrees: of_chosen,
+            order: (0..count).collect(),
+            staircase: Arc::clone(&self.staircase),
+            row_degrees: Vec::new(),
+            levels: self.levels,
+            asked_levels: self.asked_levels,
+            asked: self.asked.clone(),
+            tracking: self.tracking.clone(),
+            idle_loops: self.idle_loops,
+            // Each equation is only a step on the way.
+            confirm_junk: false,
+            scaling: self.scaling.clone(),
+        }
+    }
+
+    /// A way to the answer that is compared with this one.
+    pub fn second(&self, first: Method) -> Method {
+        let degrees = self.row_degrees.iter().take(self.asked_levels);
+        let paths = degrees.fold(1.0, |product, &degree| product * f64::from(degree));
+        match first {
+            Method::Equations | Method::Slices => Method::Cascade,
+            Method::Cascade if paths <= MOST_START_POINTS => Method::Slices,
+            Method::Cascade => Method::Equations,
+        }
+    }
+
+    /// Degree of the last equation.
+    pub fn last_degree(&self) -> u32 {
+        self.degrees.total.last().copied().unwrap_or(0)
+    }
+
+    /// As many combinations of all equations but the last as cut out a set of this dimension, the last, and
+    /// others that are never reached.
+    pub fn cut(&self, dimension: usize) -> Result<System, ProblemError> {
+        let n = self.variables();
+        let (&last, before) = self.order.split_last().ok_or(ProblemError::Everything)?;
+        let mut cut = with_equations(&self.given, before);
+        if !before.is_empty() {
+            let of = degrees(&cut)?;
+            cut = combine(&cut, &of, n - dimension, self.seed());
+        }
+        cut.equations.push(self.given.equations[last]);
+        cut.equation_names.push("cut".into());
+        for v in cut.equations.len()..n {
+            cut.equations.push(cut.expressions.variable(v as u32));
+            cut.equation_names.push(format!("place {}", v + 1));
+        }
+        Ok(cut)
     }
 
     pub fn variables(&self) -> usize {
@@ -241,6 +314,18 @@ pub(super) const SINGULAR: Known = Known {
     distance: 1e-5,
     other_distance: 1e-4,
 };
+
+/// The system with these of its equations, and nothing that is attached to all of them.
+fn with_equations(system: &System, chosen: &[usize]) -> System {
+    let mut result = system.clone();
+    result.equations = chosen.iter().map(|&i| system.equations[i]).collect();
+    let names = chosen.iter().map(|&i| system.equation_names[i].clone());
+    result.equation_names = names.collect();
+    result.symmetry.clear();
+    result.conjugates.clear();
+    result.degenerate.clear();
+    result
+}
 
 /// The system with these values of its parameters.
 fn with_values<'a>(

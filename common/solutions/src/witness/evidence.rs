@@ -1,5 +1,6 @@
 //! Evidence: what the claim rests on that a witness set is one component.
 
+use super::method::Method;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -37,6 +38,19 @@ pub enum Doubt {
     },
     /// No deflation made these points regular.
     NotDeflated {
+        /// How many.
+        points: u64,
+    },
+    /// A second way found something else in this dimension.
+    Differs {
+        /// The second way.
+        method: Method,
+        /// What it found.
+        found: String,
+    },
+    /// Points of multiple sets, or that could not be sifted, which a further equation should have cut: what
+    /// it has in common with their sets is not known.
+    NotCut {
         /// How many.
         points: u64,
     },
@@ -92,6 +106,14 @@ impl fmt::Display for Doubt {
                 f,
                 "no deflation made {} regular",
                 counted(points, "multiple point")
+            ),
+            Self::Differs { method, found } => {
+                write!(f, "{} finds something else: {found}", method.name())
+            }
+            Self::NotCut { points } => write!(
+                f,
+                "a further equation could not cut the sets of {}, which are multiple or not told from junk",
+                counted(points, "point")
             ),
             Self::Asked { points } => write!(
                 f,
