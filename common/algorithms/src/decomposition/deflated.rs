@@ -174,8 +174,8 @@ impl Deflations {
         }
         let made = match wanted {
             StageSystem::Staircase => Arc::clone(&problem.staircase),
-            StageSystem::Cut { dimension } => {
-                let cut = problem.cut(*dimension);
+            StageSystem::Cut { dimension, factor } => {
+                let cut = problem.cut(*dimension, *factor as usize);
                 Arc::new(cut.expect("it has been made of equations with degrees"))
             }
             StageSystem::Sliced { dimension } => {

@@ -43,6 +43,12 @@ impl Prefixes {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Cut {
     dimension: usize,
+    /// The factor that cuts, its degree and its exponent.
+    factor: u32,
+    degree: u32,
+    exponent: u32,
+    /// The equation has no other factor.
+    alone: bool,
     /// Where the paths began; with slid ones once the slice moved.
     points: Vec<Vec<Complex64>>,
     sliding: bool,
@@ -180,15 +186,23 @@ impl Equations {
         }
         let lowest = *problem.asked.start() as usize;
         let cuts = cuts.into_iter().filter(|(m, _)| *m > lowest);
-        let left = cuts.map(|(dimension, points)| Cut {
-            dimension,
-            points,
-            sliding: false,
-        });
-        self.phase = Phase::Cutting {
-            left: left.collect(),
-            open: false,
-        };
+        let factors = problem.last_factors();
+        let factors = factors.expect("factors of equations with degrees have degrees");
+        let mut left = Vec::new();
+        for (dimension, points) in cuts {
+            for (factor, [degree, exponent]) in (0..).zip(factors.iter().copied()) {
+                left.push(Cut {
+                    dimension,
+                    factor,
+                    degree,
+                    exponent,
+                    alone: factors.len() == 1 && exponent == 1,
+                    points: points.clone(),
+                    sliding: false,
+                });
+            }
+        }
+        self.phase = Phase::Cutting { left, open: false };
     }
 
     fn take_supersets(&mut self, lowest: usize) -> Vec<Superset> {
@@ -236,15 +250,14 @@ fn unclear(dimension: &Dimension) -> u64 {
 fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut, id: StageId) -> Job {
     let n = problem.variables();
     let level = (n - cut.dimension) as u32;
-    let degree = problem.last_degree();
     let (parameters, order) = (Vec::new(), (0..n as u32).collect());
-    cut.sliding = !cut.sliding && degree > 1;
+    cut.sliding = !cut.sliding && cut.degree > 1;
     let homotopy = match cut.sliding {
         true => HomotopyKind::Slide {
             parameters,
             order,
             level,
-            forms: degree - 1,
+            forms: cut.degree - 1,
         },
         false => HomotopyKind::Intersect {
             parameters,
@@ -254,6 +267,7 @@ fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut, id: S
     };
     let wanted = StageSystem::Cut {
         dimension: cut.dimension,
+        factor: cut.factor,
     };
     let system = deflations.of_stage(problem, &wanted);
     let job = Job::track(
@@ -284,18 +298,29 @@ fn learn(
         }
         return (lost > 0).then_some(lost);
     }
-    let superset = superset(supersets, cut.dimension - 1);
+    let mut found = Superset::empty(cut.dimension - 1);
     let mut singular = Vec::new();
     for (place, (_, decision, values)) in job.ends().into_iter().enumerate() {
         match decision.verdict {
             Verdict::AtInfinity => {}
-            Verdict::Finite => superset.regular.push(values),
-            Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional => {
+            Verdict::Finite if cut.exponent == 1 => found.regular.push(values),
+            Verdict::Finite
+            | Verdict::Singular
+            | Verdict::Undecided
+            | Verdict::PositiveDimensional => {
                 singular.push(place);
             }
             Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => lost += 1,
         }
     }
-    superset.gather(problem, job, &singular);
+    found.gather(problem, job, &singular);
+    let superset = superset(supersets, cut.dimension - 1);
+    match cut.alone {
+        true => {
+            superset.regular.extend(found.regular);
+            superset.singular.extend(found.singular);
+        }
+        false => superset.join(found, u64::from(cut.exponent)),
+    }
     (lost > 0).then_some(lost)
 }

@@ -41,10 +41,13 @@ pub(super) enum StageSystem {
         /// The dimension.
         dimension: usize,
     },
-    /// Combinations of the equations but the last, whose set of solutions has this dimension, and the last.
+    /// Combinations of the equations but the last, whose set of solutions has this dimension, and a factor of the
+    /// last.
     Cut {
         /// The dimension before the last equation cuts.
         dimension: usize,
+        /// Which factor.
+        factor: u32,
     },
     /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
     Tracked {

@@ -104,6 +104,7 @@ impl Sieve {
                 self.settle(problem, deflations, sets);
             }
             let superset = self.supersets.pop_front()?;
+            let superset = self.regular_at_once(problem, deflations, superset);
             self.suspects = superset.singular.iter().map(Suspect::new).collect();
             self.sets_left = (0..sets.len()).collect();
             let dimension = superset.dimension;
@@ -113,6 +114,28 @@ impl Sieve {
                 return Some(self.isolate(problem, dimension, id));
             }
         }
+    }
+
+    /// The superset with its ends that the tracker called singular for their condition, and that Newton's method
+    /// finds regular, among the regular ones: these are isolated.
+    fn regular_at_once(
+        &self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        mut superset: Superset,
+    ) -> Superset {
+        let dimension = superset.dimension;
+        for end in std::mem::take(&mut superset.singular) {
+            let regular = end.paths == 1
+                && deflations
+                    .reduced_point(problem, dimension, &end.values)
+                    .is_some();
+            match regular {
+                true => superset.regular.push(end.values),
+                false => superset.singular.push(end),
+            }
+        }
+        superset
     }
 
     fn isolate(&self, problem: &Problem, dimension: usize, id: StageId) -> Job {

@@ -8,11 +8,12 @@ use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_solutions::witness::Method;
+use cognate_systems::expression::NodeId;
 use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::{
-    FixError, affine_chart, combine, equilibrate, fix_parameters, slice,
+    FixError, affine_chart, combine, equilibrate, factors, fix_parameters, slice,
 };
 use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
@@ -195,22 +196,37 @@ impl Problem {
         }
     }
 
-    /// Degree of the last equation.
-    pub fn last_degree(&self) -> u32 {
-        self.degrees.total.last().copied().unwrap_or(0)
+    /// The factors of the last equation, as it is written: their degrees and exponents.
+    pub fn last_factors(&self) -> Result<Vec<[u32; 2]>, ProblemError> {
+        let found = self.factors_of_last();
+        let mut apart = with_equations(&self.given, &[]);
+        apart.equations = found.iter().map(|(node, _)| *node).collect();
+        apart.equation_names = (0..found.len()).map(|k| format!("factor {k}")).collect();
+        let of = degrees(&apart)?.total;
+        let pairs = of.into_iter().zip(found);
+        Ok(pairs
+            .map(|(degree, (_, exponent))| [degree, exponent])
+            .collect())
     }
 
-    /// As many combinations of all equations but the last as cut out a set of this dimension, the last, and
-    /// others that are never reached.
-    pub fn cut(&self, dimension: usize) -> Result<System, ProblemError> {
+    fn factors_of_last(&self) -> Vec<(NodeId, u32)> {
+        let last = self.given.equations.last();
+        let factors = last.map(|&last| factors(&self.given.expressions, last));
+        factors.unwrap_or_default()
+    }
+
+    /// As many combinations of all equations but the last as cut out a set of this dimension, a factor of the last,
+    /// and others that are never reached.
+    pub fn cut(&self, dimension: usize, factor: usize) -> Result<System, ProblemError> {
         let n = self.variables();
-        let (&last, before) = self.order.split_last().ok_or(ProblemError::Everything)?;
+        let (_, before) = self.order.split_last().ok_or(ProblemError::Everything)?;
+        let (last, _) = self.factors_of_last()[factor];
         let mut cut = with_equations(&self.given, before);
         if !before.is_empty() {
             let of = degrees(&cut)?;
             cut = combine(&cut, &of, n - dimension, self.seed());
         }
-        cut.equations.push(self.given.equations[last]);
+        cut.equations.push(last);
         cut.equation_names.push("cut".into());
         for v in cut.equations.len()..n {
             cut.equations.push(cut.expressions.variable(v as u32));

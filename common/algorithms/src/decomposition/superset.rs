@@ -33,6 +33,18 @@ pub(super) struct Superset {
     pub not_cut: u64,
 }
 
+/// Ends nearer than this, relative to their size, are one point.
+const SAME: f64 = 1e-6;
+
+fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
+    let (mut apart, mut size) = (0.0, 1.0);
+    for (x, y) in a.iter().zip(b) {
+        apart += (x - y).norm_sqr();
+        size += x.norm_sqr();
+    }
+    (apart / size).sqrt()
+}
+
 impl Superset {
     /// Nothing in this dimension.
     pub fn empty(dimension: usize) -> Self {
@@ -71,6 +83,53 @@ impl Superset {
         self.failed += job.crossings_left();
         self.gather(problem, job, &singular);
         others
+    }
+
+    /// Takes points of its dimension that another factor left, each of them this many times. A point that both know
+    /// is one.
+    pub fn join(&mut self, other: Self, times: u64) {
+        let end = |values: Vec<Complex64>| SingularEnd {
+            values,
+            accuracy: f64::EPSILON,
+            paths: 1,
+        };
+        let mut all: Vec<(SingularEnd, bool)> = Vec::new();
+        all.extend(self.regular.drain(..).map(|values| (end(values), true)));
+        all.extend(self.singular.drain(..).map(|end| (end, false)));
+        all.extend(other.regular.into_iter().map(|values| (end(values), true)));
+        all.extend(other.singular.into_iter().map(|end| {
+            let paths = end.paths * times;
+            (SingularEnd { paths, ..end }, false)
+        }));
+        let first = |end: &SingularEnd| end.values.first().map_or(0.0, |z| z.re);
+        all.sort_by(|a, b| first(&a.0).total_cmp(&first(&b.0)));
+        // Windows of points that the first coordinate does not tell apart.
+        let mut taken = vec![false; all.len()];
+        for k in 0..all.len() {
+            if taken[k] {
+                continue;
+            }
+            let (mut one, mut regular) = all[k].clone();
+            for j in k + 1..all.len() {
+                let near = SAME * (1.0 + first(&one).abs());
+                if first(&all[j].0) - first(&one) > near {
+                    break;
+                }
+                if !taken[j] && distance(&one.values, &all[j].0.values) <= SAME {
+                    taken[j] = true;
+                    regular = false;
+                    let paths = one.paths + all[j].0.paths;
+                    if all[j].0.accuracy < one.accuracy {
+                        one = all[j].0.clone();
+                    }
+                    one.paths = paths;
+                }
+            }
+            match regular {
+                true => self.regular.push(one.values),
+                false => self.singular.push(one),
+            }
+        }
     }
 
     /// Takes singular ends of a job by their places: those that are one point together.
