@@ -143,6 +143,48 @@ pub(super) struct Multiple {
     pub dual_dimensions: Vec<u32>,
 }
 
+impl Multiple {
+    /// A point at which the given equations are regular, to which several paths came.
+    pub fn reduced(refined: RefinedPoint, paths: u64) -> Self {
+        Self {
+            point: DeflatedPoint {
+                ranks: Vec::new(),
+                refined,
+            },
+            scheme: Some(1),
+            paths,
+            dual_dimensions: Vec::new(),
+        }
+    }
+}
+
+/// Refined points with how many paths came to each, each point once.
+pub(super) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(RefinedPoint, u64)> {
+    let first = |k: usize| points[k].0.point.first().map_or(0.0, |z| rounded(z).re);
+    let mut by_first: Vec<usize> = (0..points.len()).collect();
+    by_first.sort_by(|&a, &b| first(a).total_cmp(&first(b)));
+    let mut into: Vec<usize> = (0..points.len()).collect();
+    for (place, &k) in by_first.iter().enumerate() {
+        for &j in &by_first[place + 1..] {
+            if first(j) - first(k)
+                > SAME * (1.0 + points[k].0.point.len() as f64) * (1.0 + first(k).abs())
+            {
+                break;
+            }
+            if into[j] == j && distance(&points[k].0.point, &points[j].0.point) < SAME {
+                into[j] = into[k];
+            }
+        }
+    }
+    let mut paths = vec![0; points.len()];
+    for (k, &into) in into.iter().enumerate() {
+        paths[into] += points[k].1;
+    }
+    let pairs = points.into_iter().zip(paths);
+    let merged = pairs.filter(|(_, paths)| *paths > 0);
+    merged.map(|((point, _), paths)| (point, paths)).collect()
+}
+
 /// Deflated equations by their ranks, made once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Deflations {

@@ -5,7 +5,7 @@
 //! says that it is not, paths on the sets of higher dimension to slices through the point ask whether it is on
 //! one of them; with `confirm_junk` also then. Where both speak they must agree.
 
-use super::deflated::{Deflations, Multiple, PureSet};
+use super::deflated::{Deflations, Multiple, PureSet, equal_ones_merged};
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use super::superset::{SingularEnd, Superset};
@@ -23,6 +23,9 @@ use std::collections::VecDeque;
 
 /// Highest order of functionals that are asked for.
 const DEPTH: u32 = 12;
+/// Condition number below which a point to which Newton's method comes is isolated without further question: on a
+/// set of higher dimension, where there is none, rounding errors of doubles leave 1e13 and more.
+const CLEARLY_REGULAR: f64 = 1e10;
 /// An end of a path is the point, relative to its size, within this many times their errors, or
 const NEAR_FACTOR: f64 = 100.0;
 /// ... within this,
@@ -129,7 +132,7 @@ impl Sieve {
             let regular = end.paths == 1
                 && deflations
                     .reduced_point(problem, dimension, &end.values)
-                    .is_some();
+                    .is_some_and(|refined| refined.condition < CLEARLY_REGULAR);
             match regular {
                 true => superset.regular.push(end.values),
                 false => superset.singular.push(end),
@@ -244,16 +247,7 @@ impl Sieve {
                     let end = &suspect.end;
                     match deflations.regular_point(problem, dimension, end) {
                         // The tracker called it singular for its condition.
-                        Some(point) if point.is_reduced() => match paths {
-                            1 => regular.push(point.refined),
-                            _ if self.shared => found.push(Multiple {
-                                point,
-                                scheme: Some(1),
-                                paths,
-                                dual_dimensions: Vec::new(),
-                            }),
-                            _ => unclear += paths,
-                        },
+                        Some(point) if point.is_reduced() => regular.push((point.refined, paths)),
                         Some(point) => found.push(Multiple {
                             point,
                             scheme,
@@ -267,11 +261,20 @@ impl Sieve {
         }
         for values in &superset.regular {
             match deflations.reduced_point(problem, dimension, values) {
-                Some(point) => regular.push(point),
+                Some(point) => regular.push((point, 1)),
                 None => not_deflated += 1,
             }
         }
-        sets.extend(Deflations::reduced_set(dimension, regular));
+        let mut single = Vec::new();
+        for (refined, paths) in equal_ones_merged(regular) {
+            match paths {
+                1 => single.push(refined),
+                _ if self.shared => found.push(Multiple::reduced(refined, paths)),
+                // Two paths that came to one regular point: one of them has left its way.
+                _ => unclear += paths,
+            }
+        }
+        sets.extend(Deflations::reduced_set(dimension, single));
         sets.extend(Deflations::multiple_sets(problem, dimension, found));
         let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
         let doubts = [
