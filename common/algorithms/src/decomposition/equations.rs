@@ -32,7 +32,9 @@ impl Prefixes {
     /// The problem of so many equations, and its deflations.
     pub fn of(&mut self, whole: &Problem, count: usize) -> (Arc<Problem>, &mut Deflations) {
         let made = self.made.entry(count).or_insert_with(|| {
-            let prefix = Arc::new(whole.prefix(count));
+            let prefix = whole.prefix(count);
+            let prefix = prefix.expect("equations that have degrees have factors that have");
+            let prefix = Arc::new(prefix);
             (prefix, Deflations::default())
         });
         (Arc::clone(&made.0), &mut made.1)

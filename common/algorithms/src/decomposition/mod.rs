@@ -477,12 +477,17 @@ mod tests {
     use std::collections::HashMap;
 
     /// Decomposes with a tracker that spoils the results of each stage of the cascade.
-    fn decompose(text: &str, spoil: impl Fn(&mut Vec<PathResult>)) -> Decomposition {
+    fn decompose(
+        text: &str,
+        method: Method,
+        spoil: impl Fn(&mut Vec<PathResult>),
+    ) -> Decomposition {
         let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
         let system = formats::read("test", text.as_bytes()).unwrap().system;
         let options = DecompositionOptions {
             // What is spoilt stays spoilt.
             max_retries: 0,
+            method: Some(method),
             ..DecompositionOptions::default()
         };
         let mut solve = DecompositionSolve::new(&system, &options).unwrap();
@@ -506,18 +511,20 @@ mod tests {
 
     #[test]
     fn two_curves_are_told_apart() {
-        let found = decompose(CURVES, |_| {});
-        let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
-        assert_eq!(degrees, [2, 2]);
-        assert!(found.settled() && found.adds_up(), "{found:?}");
-        for set in &found.components {
-            for point in &set.points {
-                let (x, y) = (point[0], point[1]);
-                let value = (y - x * x) * (x * x + y * y - 3.0);
-                assert!(value.norm_sqr() < 1e-24);
-                let slice = &set.slice[0];
-                let on_slice = slice[0] + slice[1] * x + slice[2] * y;
-                assert!(on_slice.norm_sqr() < 1e-24);
+        for method in Method::ALL {
+            let found = decompose(CURVES, method, |_| {});
+            let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
+            assert_eq!(degrees, [2, 2]);
+            assert!(found.settled() && found.adds_up(), "{found:?}");
+            for set in &found.components {
+                for point in &set.points {
+                    let (x, y) = (point[0], point[1]);
+                    let value = (y - x * x) * (x * x + y * y - 3.0);
+                    assert!(value.norm_sqr() < 1e-24);
+                    let slice = &set.slice[0];
+                    let on_slice = slice[0] + slice[1] * x + slice[2] * y;
+                    assert!(on_slice.norm_sqr() < 1e-24);
+                }
             }
         }
     }
@@ -530,7 +537,7 @@ mod tests {
                 result.outcome = PathOutcome::Failed(Failure::TooManySteps);
             }
         };
-        let found = decompose(CURVES, lost);
+        let found = decompose(CURVES, Method::Cascade, lost);
         assert!(!found.settled());
         let [dimension] = found.dimensions.as_slice() else {
             panic!("one equation in two unknowns has curves: {found:?}");
@@ -545,6 +552,45 @@ mod tests {
     }
 
     #[test]
+    fn a_path_lost_on_the_way_leaves_nothing_settled() {
+        // Each curve is cut by itself: its second path is lost.
+        let lost = |results: &mut Vec<PathResult>| {
+            for result in results.iter_mut().filter(|r| r.origin.0 == 1) {
+                result.outcome = PathOutcome::Failed(Failure::TooManySteps);
+            }
+        };
+        let found = decompose(CURVES, Method::Equations, lost);
+        assert!(!found.settled());
+        assert_eq!(found.dimensions[0].failed, 2, "{found:?}");
+    }
+
+    #[test]
+    fn a_second_way_is_compared() {
+        let text =
+            "variable_group x, y, z; function f, g; f = (z - x*y)*(x - 2); g = (y - x^2)*(x - 2);";
+        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
+        let system = formats::read("test", text.as_bytes()).unwrap().system;
+        for method in [None, Some(Method::Cascade), Some(Method::Slices)] {
+            let options = DecompositionOptions {
+                method,
+                verify: true,
+                ..DecompositionOptions::default()
+            };
+            let solve = DecompositionSolve::new(&system, &options).unwrap();
+            let mut found = run_locally(solve, 8).unwrap();
+            let second = found.verification.clone().unwrap();
+            assert!(second.agrees && second.settled && found.settled());
+            assert_ne!(second.method, found.method);
+            assert_eq!(found.components.len(), 2);
+            // What only one way finds is a difference.
+            let mut other = found.clone();
+            other.components.pop();
+            found.verify(&other);
+            assert!(!found.settled());
+        }
+    }
+
+    #[test]
     fn a_point_that_is_no_solution_is_not_taken() {
         // The first path's end is moved away.
         let moved = |results: &mut Vec<PathResult>| {
@@ -552,8 +598,10 @@ mod tests {
                 &mut results[0].endpoint;
             end[1] += 0.3;
         };
-        let found = decompose(CURVES, moved);
-        assert!(!found.settled(), "{found:?}");
+        for method in [Method::Cascade, Method::Slices] {
+            let found = decompose(CURVES, method, &moved);
+            assert!(!found.settled(), "{found:?}");
+        }
     }
 
     #[test]

@@ -18,7 +18,7 @@ use cognate_systems::transform::{
 use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use std::borrow::Cow;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 /// Singular values below this part of the largest are 0 at a random point.
@@ -87,8 +87,8 @@ pub(super) struct Problem {
     pub tracking: Tracking,
     pub idle_loops: u32,
     pub confirm_junk: bool,
-    /// The equations with nothing else, to evaluate.
-    plain: SlicedEquations,
+    /// The factors of the equations, to evaluate.
+    factors: FactorValues,
     /// The units in which all of it is tracked.
     scaling: Scaling,
 }
@@ -110,6 +110,7 @@ impl Problem {
         let of_given = degrees(&given)?;
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
+        let factors = FactorValues::new(&given)?;
         let levels = rank_at_random(&plain, variables, seed).min(given.equation_count());
         if levels == 0 {
             return Err(ProblemError::Everything);
@@ -151,13 +152,13 @@ impl Problem {
             tracking,
             idle_loops: options.idle_loops,
             confirm_junk: options.confirm_junk,
-            plain,
+            factors,
             scaling,
         })
     }
 
     /// The problem of the first equations alone, in the order in which they cut. It has no staircase of its own.
-    pub fn prefix(&self, count: usize) -> Self {
+    pub fn prefix(&self, count: usize) -> Result<Self, ProblemError> {
         let chosen = &self.order[..count];
         let given = with_equations(&self.given, chosen);
         let of_chosen = Degrees {
@@ -167,8 +168,8 @@ impl Problem {
                 .collect(),
             total: chosen.iter().map(|&i| self.degrees.total[i]).collect(),
         };
-        Self {
-            plain: SlicedEquations::new(&given, Vec::new()),
+        Ok(Self {
+            factors: FactorValues::new(&given)?,
             given: Arc::new(given),
             degrees: of_chosen,
             order: (0..count).collect(),
@@ -182,7 +183,7 @@ impl Problem {
             // Each equation is only a step on the way.
             confirm_junk: false,
             scaling: self.scaling.clone(),
-        }
+        })
     }
 
     /// A way to the answer that is compared with this one.
@@ -288,22 +289,68 @@ impl Problem {
     pub fn solves(&self, point: &[Number], known: &Known) -> Option<bool> {
         let sizes = point.iter().map(|z| rounded(z).norm_sqr());
         let largest = sizes.fold(1.0f64, f64::max).sqrt();
-        let mut answer = Some(true);
-        for ((value, distance), &degree) in
-            self.plain.residuals(point).iter().zip(&self.degrees.total)
-        {
+        let values = self.factors.equations.residuals(point);
+        let is_zero = |factor: usize| {
+            let ((value, distance), degree) = (values[factor], self.factors.degrees[factor]);
             let growth = (0..degree).fold(1.0, |power, _| power * largest);
             let relative = value / growth;
             // Where an equation has a multiple zero its derivative is rounding error, too.
-            if relative <= known.value || *distance <= known.distance {
-                continue;
+            if relative <= known.value || distance <= known.distance {
+                return Some(true);
             }
-            if relative > known.value * 100.0 && *distance > known.other_distance {
-                return Some(false);
+            let other = relative > known.value * 100.0 && distance > known.other_distance;
+            other.then_some(false)
+        };
+        let mut answer = Some(true);
+        for range in &self.factors.of_equation {
+            // A product is 0 where one of its factors is.
+            let mut product = Some(false);
+            for factor in range.clone() {
+                match is_zero(factor) {
+                    Some(true) => product = Some(true),
+                    Some(false) => {}
+                    None if product == Some(false) => product = None,
+                    None => {}
+                }
             }
-            answer = None;
+            match product {
+                Some(true) => {}
+                Some(false) => return Some(false),
+                None => answer = None,
+            }
         }
         answer
+    }
+}
+
+/// The factors of equations, as they are written.
+#[derive(Debug)]
+struct FactorValues {
+    /// All of them, equation by equation.
+    equations: SlicedEquations,
+    degrees: Vec<u32>,
+    /// Which are those of an equation.
+    of_equation: Vec<Range<usize>>,
+}
+
+impl FactorValues {
+    fn new(system: &System) -> Result<Self, ProblemError> {
+        let mut apart = with_equations(system, &[]);
+        let mut of_equation = Vec::with_capacity(system.equation_count());
+        for &equation in &system.equations {
+            let first = apart.equations.len();
+            let found = factors(&system.expressions, equation);
+            apart.equations.extend(found.iter().map(|(node, _)| *node));
+            of_equation.push(first..apart.equations.len());
+        }
+        apart.equation_names = (0..apart.equations.len())
+            .map(|k| format!("factor {k}"))
+            .collect();
+        Ok(Self {
+            degrees: degrees(&apart)?.total,
+            equations: SlicedEquations::new(&apart, Vec::new()),
+            of_equation,
+        })
     }
 }
 
