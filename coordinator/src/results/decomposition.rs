@@ -107,7 +107,7 @@ pub struct ComponentBlock {
     pub deflation: Vec<u32>,
     /// Degrees by groups of variables; not computed yet.
     pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
-    /// Whether it is its own conjugate; not asked yet.
+    /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
     pub self_conjugate: Option<bool>,
     /// Witness points that are proved; none yet.
     pub certified: Option<u64>,
@@ -235,7 +235,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
         irreducible: set.irreducible,
         deflation: set.deflation.clone(),
         multidegree: None,
-        self_conjugate: None,
+        self_conjugate: set.self_conjugate,
         certified: None,
         evidence: EvidenceBlock {
             trace_deviation: evidence.trace.and_then(|trace| finite(trace.deviation)),

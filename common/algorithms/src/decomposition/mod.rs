@@ -313,7 +313,7 @@ impl DecompositionSolve {
                 false => Completeness::NotKnown,
             };
         }
-        Decomposition {
+        let mut found = Decomposition {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
@@ -322,7 +322,9 @@ impl DecompositionSolve {
             dimensions,
             paths: self.state.paths,
             paths_of_loops: self.state.paths_of_loops,
-        }
+        };
+        found.check_counts();
+        found
     }
 
     /// What was found, when `next` has said `Done`.

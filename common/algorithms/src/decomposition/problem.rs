@@ -7,6 +7,7 @@ use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_solutions::involution::Involution;
 use cognate_solutions::witness::Method;
 use cognate_systems::expression::NodeId;
 use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
@@ -91,6 +92,8 @@ pub(super) struct Problem {
     factors: FactorValues,
     /// The units in which all of it is tracked.
     scaling: Scaling,
+    /// Complex conjugation, where it maps solutions to solutions.
+    pub involution: Option<Involution>,
 }
 
 impl Problem {
@@ -99,7 +102,10 @@ impl Problem {
         tracking: Tracking,
         options: &DecompositionOptions,
     ) -> Result<Self, ProblemError> {
-        let system = with_values(system, &options.parameters)?;
+        let system = without_vanishing(with_values(system, &options.parameters)?);
+        if system.equations.is_empty() {
+            return Err(ProblemError::Everything);
+        }
         let seed = tracking.seed;
         let system = System {
             scaling: scaling_of(&system, &[]),
@@ -110,7 +116,7 @@ impl Problem {
         let of_given = degrees(&given)?;
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
-        let factors = FactorValues::new(&given)?;
+        let factors = FactorValues::new(&given, seed)?;
         let levels = rank_at_random(&plain, variables, seed).min(given.equation_count());
         if levels == 0 {
             return Err(ProblemError::Everything);
@@ -138,6 +144,7 @@ impl Problem {
         staircase.conjugates.clear();
         staircase.degenerate.clear();
         let row_degrees = degrees(&staircase)?.total;
+        let involution = Involution::of(&given, &[]).ok();
         let mut order: Vec<usize> = (0..given.equation_count()).collect();
         order.sort_by_key(|&i| (of_given.total[i], i));
         Ok(Self {
@@ -154,6 +161,7 @@ impl Problem {
             confirm_junk: options.confirm_junk,
             factors,
             scaling,
+            involution,
         })
     }
 
@@ -169,7 +177,7 @@ impl Problem {
             total: chosen.iter().map(|&i| self.degrees.total[i]).collect(),
         };
         Ok(Self {
-            factors: FactorValues::new(&given)?,
+            factors: FactorValues::new(&given, self.seed())?,
             given: Arc::new(given),
             degrees: of_chosen,
             order: (0..count).collect(),
@@ -183,6 +191,7 @@ impl Problem {
             // Each equation is only a step on the way.
             confirm_junk: false,
             scaling: self.scaling.clone(),
+            involution: None,
         })
     }
 
@@ -334,7 +343,7 @@ struct FactorValues {
 }
 
 impl FactorValues {
-    fn new(system: &System) -> Result<Self, ProblemError> {
+    fn new(system: &System, seed: u64) -> Result<Self, ProblemError> {
         let mut apart = with_equations(system, &[]);
         let mut of_equation = Vec::with_capacity(system.equation_count());
         for &equation in &system.equations {
@@ -346,6 +355,7 @@ impl FactorValues {
         apart.equation_names = (0..apart.equations.len())
             .map(|k| format!("factor {k}"))
             .collect();
+        let apart = equilibrate(&apart, seed);
         Ok(Self {
             degrees: degrees(&apart)?.total,
             equations: SlicedEquations::new(&apart, Vec::new()),
@@ -388,6 +398,26 @@ fn with_equations(system: &System, chosen: &[usize]) -> System {
     result.conjugates.clear();
     result.degenerate.clear();
     result
+}
+
+/// The system without the equations that hold everywhere.
+fn without_vanishing(system: Cow<'_, System>) -> Cow<'_, System> {
+    let everywhere = |&equation: &usize| {
+        let alone = with_equations(&system, &[equation]);
+        matches!(degrees(&alone), Err(PolynomialError::Vanishes(_)))
+    };
+    let all = 0..system.equation_count();
+    let (vanishing, left): (Vec<usize>, Vec<usize>) = all.partition(everywhere);
+    if vanishing.is_empty() {
+        return system;
+    }
+    let mut whole = system.into_owned();
+    whole.equation_names = left
+        .iter()
+        .map(|&i| whole.equation_names[i].clone())
+        .collect();
+    whole.equations = left.iter().map(|&i| whole.equations[i]).collect();
+    Cow::Owned(whole)
 }
 
 /// The system with these values of its parameters.

@@ -115,13 +115,30 @@ impl Decomposition {
     /// Whether in every dimension the paths to its solutions are those to components, each as often as
     /// paths came to it, and to junk.
     pub fn adds_up(&self) -> bool {
-        self.dimensions.iter().all(|d| {
-            let own = self.components.iter();
-            let own = own.filter(|set| set.dimension() == d.number);
-            let paths: u64 = own.map(|set| set.degree * set.multiplicity.tracked).sum();
-            d.superset == paths + d.junk
-        })
+        let explained = |d: &Dimension| d.junk + paths_to(&self.components, d.number);
+        self.dimensions.iter().all(|d| d.superset == explained(d))
     }
+
+    /// Notes in each dimension by how much its counts do not add up, where nothing else explains that.
+    pub fn check_counts(&mut self) {
+        for dimension in &mut self.dimensions {
+            let explained = dimension.junk + paths_to(&self.components, dimension.number);
+            if dimension.superset != explained && dimension.doubts.is_empty() {
+                dimension.complete = Completeness::NotKnown;
+                dimension.doubts.push(Doubt::Counts {
+                    superset: dimension.superset,
+                    explained,
+                });
+            }
+        }
+    }
+}
+
+/// Paths to the witness points of a dimension.
+fn paths_to(components: &[WitnessSet], dimension: u32) -> u64 {
+    let own = components.iter();
+    let own = own.filter(|set| set.dimension() == dimension);
+    own.map(|set| set.degree * set.multiplicity.tracked).sum()
 }
 
 /// Components of a dimension by degree and multiplicity, with how many there are.

@@ -41,6 +41,14 @@ pub enum Doubt {
         /// How many.
         points: u64,
     },
+    /// The paths that came to solutions are not those to components, each as often as to its witness points, and
+    /// to junk.
+    Counts {
+        /// Paths to solutions.
+        superset: u64,
+        /// Paths to components and junk.
+        explained: u64,
+    },
     /// A second way found something else in this dimension.
     Differs {
         /// The second way.
@@ -106,6 +114,14 @@ impl fmt::Display for Doubt {
                 f,
                 "no deflation made {} regular",
                 counted(points, "multiple point")
+            ),
+            Self::Counts {
+                superset,
+                explained,
+            } => write!(
+                f,
+                "counts do not add up: {} to solutions, {explained} to components and junk",
+                counted(superset, "path")
             ),
             Self::Differs { method, found } => {
                 write!(f, "{} finds something else: {found}", method.name())
