@@ -643,6 +643,7 @@ pub struct SynthesisArguments {
 #[command(after_help = "\
 Examples:
   cognate info system.bertini
+  cognate info system.bertini --decompose
   cognate info system.bertini --groups \"x,y;z,w\" --format json")]
 pub struct Info {
     /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
@@ -653,6 +654,9 @@ pub struct Info {
     /// Sets of variables for the linear-product start instead of those that are found (JSON)
     #[arg(long, value_name = "FILE")]
     pub sets: Option<PathBuf>,
+    /// What each way to all irreducible components would cost, instead of each start
+    #[arg(long)]
+    pub decompose: bool,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

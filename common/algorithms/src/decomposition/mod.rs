@@ -10,6 +10,7 @@
 //! Stages differ in their systems, which their openings bring.
 
 mod cascade;
+mod costs;
 mod deflated;
 mod equations;
 mod job;
@@ -33,6 +34,7 @@ use cognate_solutions::witness::{
     ComponentId, Decomposition, Dimension, Doubt, Method, TrackedPaths, WitnessSet,
 };
 use cognate_systems::system::System;
+pub use costs::DecompositionCosts;
 use deflated::{Deflations, PureSet};
 use equations::{Equations, Prefixes};
 use job::{Job, StageSystem, Tracking};
@@ -132,14 +134,17 @@ impl TryFrom<State> for DecompositionSolve {
     }
 }
 
-fn problem_of(system: &System, options: &DecompositionOptions) -> Result<Problem, ProblemError> {
-    let tracking = Tracking {
+fn tracking_of(options: &DecompositionOptions) -> Tracking {
+    Tracking {
         settings: options.settings.clone(),
         tolerances: options.tolerances.clone(),
         max_retries: options.max_retries,
         seed: options.seed,
-    };
-    Problem::new(system, tracking, options)
+    }
+}
+
+fn problem_of(system: &System, options: &DecompositionOptions) -> Result<Problem, ProblemError> {
+    Problem::new(system, tracking_of(options), options)
 }
 
 impl DecompositionSolve {
