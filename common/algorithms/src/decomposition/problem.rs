@@ -188,8 +188,8 @@ impl Problem {
             asked: self.asked.clone(),
             tracking: self.tracking.clone(),
             idle_loops: self.idle_loops,
-            // Each equation is only a step on the way.
-            confirm_junk: false,
+            // A component that is taken for junk on the way is lost without a trace.
+            confirm_junk: self.confirm_junk,
             scaling: self.scaling.clone(),
             involution: None,
         })
