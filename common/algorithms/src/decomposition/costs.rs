@@ -88,9 +88,9 @@ mod tests {
         let system = formats::read("test", text).unwrap().system;
         let costs = DecompositionCosts::of(&system, &DecompositionOptions::default()).unwrap();
         assert_eq!(costs.dimensions, [1, 2]);
-        // Cascade: 5 paths to 3 points, each of these with 3 paths; equations: 3 to 2, these with 3.
-        assert_eq!(costs.paths["cascade"], Some(5 + 3 * 3));
+        // Cascade: 3 paths to 2 points of the quadric, each of these with 5; equations: as many, each with 3.
+        assert_eq!(costs.paths["cascade"], Some(3 + 2 * 5));
         assert_eq!(costs.paths["equations"], Some(3 + 2 * 3));
-        assert_eq!(costs.paths["slices"], Some(3 + 3 * 2));
+        assert_eq!(costs.paths["slices"], Some(2 + 2 * 3));
     }
 }
