@@ -30,6 +30,33 @@ fn components(summary: &Value) -> Vec<(u64, u64)> {
 }
 
 #[test]
+fn the_ways_agree_and_say_what_they_cost() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for method in ["auto", "cascade", "equations", "slices"] {
+        let options = ["--method", method, "--verify", "--format", "json"];
+        let output = decompose(folder.path(), UNION, &options);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let summary = json(&output);
+        assert_eq!(components(&summary), [(1, 2), (1, 1), (0, 1)], "{method}");
+        let second = &summary["decomposition"]["verification"];
+        assert_eq!(second["agrees"], true, "{method}: {second}");
+        let own = &summary["problem"]["method"];
+        assert!(*own != second["method"] && (method == "auto" || own == method));
+        let first = &summary["decomposition"]["components"][0];
+        assert_eq!(first["self_conjugate"], true);
+    }
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+    let file = folder.path().join("system.bertini");
+    let info = command
+        .arg("info")
+        .arg(&file)
+        .args(["--decompose", "--format", "json"]);
+    let costs = json(&info.output().expect("the program starts"));
+    assert_eq!(costs["dimensions"], serde_json::json!([0, 1]));
+    assert!(costs["paths"]["equations"].as_u64() < costs["paths"]["cascade"].as_u64());
+}
+
+#[test]
 fn components_stand_in_the_answer_and_in_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let here = folder.path().join("here");

@@ -10,7 +10,7 @@ use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_protocol::digest;
-use cognate_solutions::witness::Decomposition;
+use cognate_solutions::witness::{Decomposition, Method};
 use cognate_systems::system::System;
 use cognate_tests::systems::{shared, written};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -34,8 +34,14 @@ fn instance(name: &str) -> System {
 }
 
 fn decompose(system: &System, seed: u64) -> Decomposition {
+    decompose_by(system, seed, None)
+}
+
+/// By one way; `None`: by the one that is chosen.
+fn decompose_by(system: &System, seed: u64, method: Option<Method>) -> Decomposition {
     let options = DecompositionOptions {
         seed,
+        method,
         ..DecompositionOptions::default()
     };
     let solve = match DecompositionSolve::new(system, &options) {
@@ -152,6 +158,7 @@ instances! {
     fat_parabola: [(1, 2, 3, 1)];
     jets_a3: [(4, 4, 2, 1), (4, 4, 1, 2)];
     permanents_2x4: [(4, 1, 1, 2), (3, 2, 1, 6)];
+    grid_of_300_lines: [(1, 1, 1, 300)];
     kinematotropic: [(2, 4, 1, 1), (1, 2, 1, 2)];
     bennett_b: [(1, 4, 1, 1)];
     four_bar_loop_grashof: [(1, 6, 1, 1)];
@@ -265,4 +272,182 @@ fn systems_of_stages_survive_the_wire() {
         assert_eq!(driven, Ok(()));
         assert!(systems.len() > 1, "{name}");
     }
+}
+
+/// Equations that hold on a set of curves, points and surfaces whose ideals are known: products of one generator of
+/// each ideal. Dimension, degree and count of the sets beside them.
+struct Product {
+    generators: Vec<String>,
+    components: Vec<(u32, u64)>,
+}
+
+impl Product {
+    fn new() -> Self {
+        Self {
+            generators: vec!["1".into()],
+            components: Vec::new(),
+        }
+    }
+
+    /// The union with a set of this dimension and degree.
+    fn with(mut self, dimension: u32, degree: u64, ideal: &[String]) -> Self {
+        let pairs = self.generators.iter();
+        let pairs = pairs.flat_map(|g| ideal.iter().map(move |f| format!("{g}*({f})")));
+        self.generators = pairs.collect();
+        self.components.push((dimension, degree));
+        self
+    }
+
+    fn system(&self) -> System {
+        let names: Vec<String> = (1..=self.generators.len())
+            .map(|k| format!("f{k}"))
+            .collect();
+        let lines = names.iter().zip(&self.generators);
+        let lines: Vec<String> = lines.map(|(f, g)| format!("{f} = {g};")).collect();
+        let names = names.join(", ");
+        written(&format!(
+            "variable_group x, y, z; function {names}; {}",
+            lines.join(" ")
+        ))
+    }
+
+    fn expected(&self) -> Vec<Expected> {
+        let mut counts: BTreeMap<(u32, u64), u64> = BTreeMap::new();
+        for &key in &self.components {
+            *counts.entry(key).or_default() += 1;
+        }
+        let counts = counts.into_iter().rev();
+        counts
+            .map(|((dimension, degree), count)| (dimension, degree, 1, count))
+            .collect()
+    }
+}
+
+/// Random products of the ideals of lines, quadrics and rational curves have the components that they are made of,
+/// by each way.
+#[test]
+fn products_of_ideals_have_the_components_that_they_are_made_of() {
+    for number in 1..=5 {
+        let mut random = RandomStream::new(number, Purpose::Test, 21);
+        let mut c = || random.below(9) as i64 - 4;
+        let mut product = Product::new();
+        let shift = [c(), c(), c()].map(|n| 2 * n + 1);
+        let [x, y, z] = ["x", "y", "z"];
+        if number % 2 == 0 {
+            let quadric = format!(
+                "{x}^2 + 2*{y}^2 - {z}^2 + ({})*{x} - {}",
+                shift[0],
+                30 + number
+            );
+            product = product.with(2, 2, &[quadric]);
+        }
+        // The curve (t, t^2, t^3), moved.
+        let (u, v) = (
+            format!("({x} - ({}))", shift[0]),
+            format!("({y} - ({}))", shift[1]),
+        );
+        let cubic = [
+            format!("{v} - {u}^2"),
+            format!("({z} - ({})) - {u}*{v}", shift[2]),
+        ];
+        product = product.with(1, 3, &cubic);
+        for _ in 0..1 + number % 2 {
+            let line = [0, 1].map(|_| {
+                format!(
+                    "({})*{x} + ({})*{y} + {z} + ({})",
+                    c(),
+                    2 * c() + 1,
+                    3 * c() + 1
+                )
+            });
+            product = product.with(1, 1, &line);
+        }
+        let system = product.system();
+        for method in [None, Some(Method::Cascade), Some(Method::Slices)] {
+            let found = decompose_by(&system, number, method);
+            let (counts, doubts) = (counted(&found), doubts(&found));
+            assert!(
+                found.settled() && found.adds_up(),
+                "{number}, {method:?}: {counts:?}{doubts}"
+            );
+            assert_eq!(counts, product.expected(), "{number}, {method:?}");
+        }
+    }
+}
+
+/// What each way finds where it applies.
+#[test]
+fn three_ways_find_the_same() {
+    let instances = [
+        "twisted_cubic",
+        "nid_illustrative",
+        "sphere_line_point",
+        "permanents_2x4",
+        "double_line",
+        "cyclic_4",
+    ];
+    for name in instances {
+        let system = instance(name);
+        let known = counted(&decompose(&system, 1));
+        for method in Method::ALL {
+            let found = decompose_by(&system, 2, Some(method));
+            assert!(found.settled(), "{name}, {method:?}:{}", doubts(&found));
+            assert_eq!(counted(&found), known, "{name}, {method:?}");
+        }
+    }
+}
+
+/// A multiple surface that a further equation cuts is not followed by the equations, and it is said.
+#[test]
+fn what_the_equations_cannot_cut_is_said() {
+    let system = written(
+        "variable_group x, y, z; function f, g; f = x^2 + y^4 - 2*x*y^2; g = z^2 - x*y - 1;",
+    );
+    let found = decompose_by(&system, 1, Some(Method::Equations));
+    assert!(!found.settled(), "{}", doubts(&found));
+    assert!(doubts(&found).contains("NotCut"), "{}", doubts(&found));
+    // The cascade, to which the choice falls then, has no such limit.
+    let found = decompose_by(&system, 1, None);
+    assert_eq!(found.method, Method::Cascade);
+    assert!(found.settled(), "{}", doubts(&found));
+}
+
+#[test]
+fn equations_that_hold_everywhere_are_left_out() {
+    let system = written(
+        "variable_group x, y; function f, g; f = (x + y)^2 - x^2 - 2*x*y - y^2; g = x*y - 1;",
+    );
+    check("with 0 = 0", &system, &[(1, 2, 1, 1)]);
+}
+
+/// Of two conjugate lines neither is its own conjugate; of real ones each is.
+#[test]
+fn conjugate_components_are_told() {
+    let system = written(
+        "variable_group x, y, z; function f, g; f = (x^2 + y^2)*(x - 1); g = (z - 2)*(z + x);",
+    );
+    let found = decompose(&system, 1);
+    assert!(found.settled(), "{}", doubts(&found));
+    let own = found
+        .components
+        .iter()
+        .filter(|set| set.self_conjugate == Some(true));
+    assert_eq!((found.components.len(), own.count()), (6, 2));
+    assert!(
+        found
+            .components
+            .iter()
+            .all(|set| set.self_conjugate.is_some())
+    );
+    let cubic = decompose(&instance("twisted_cubic"), 1);
+    assert_eq!(cubic.components[0].self_conjugate, Some(true));
+}
+
+/// Sets in homogeneous groups have projective dimensions; in several groups the Segre degree of a chart.
+#[test]
+fn projective_sets_are_decomposed() {
+    let system = written(
+        "hom_variable_group x, y, z, w; function f, g; f = x*w - y*z; g = (x - w)*(y + z);",
+    );
+    check("two sections of a quadric", &system, &[(1, 2, 1, 2)]);
 }

@@ -11,6 +11,7 @@ use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::Stage;
 use cognate_numeric::lanes::dispatch::{InstructionSet, limited_to};
 use cognate_protocol::records;
+use cognate_solutions::witness::Method;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::HashMap;
@@ -73,6 +74,7 @@ impl Subject {
     pub fn of_decomposition(system: &System, wanted: &dyn Fn(&Stage) -> bool) -> Self {
         let options = DecompositionOptions {
             seed: 7,
+            method: Some(Method::Cascade),
             ..DecompositionOptions::default()
         };
         let solve = DecompositionSolve::new(system, &options);

@@ -75,6 +75,8 @@ pub struct RetriedStage {
     singular_points: Vec<Vec<u64>>,
     /// That stage is to be opened.
     isolation_wanted: bool,
+    /// Where it is of no interest whether singular endpoints are isolated.
+    ends_only: bool,
     /// Paths that belong to this stage and never began: lost in the one before.
     lost: u64,
 }
@@ -127,8 +129,16 @@ impl RetriedStage {
             wanted: None,
             singular_points: Vec::new(),
             isolation_wanted: false,
+            ends_only: false,
             lost: 0,
         }
+    }
+
+    /// The same, where it is of no interest whether singular endpoints are isolated.
+    #[must_use]
+    pub fn ends_only(mut self) -> Self {
+        self.ends_only = true;
+        self
     }
 
     /// The same with another limit of repetitions.
@@ -449,7 +459,7 @@ impl RetriedStage {
         if self.wanted.is_none() {
             self.singular_points = self.find_singular_points();
             // Some homotopies end at another system than the one that is asked.
-            let asked = self.first.homotopy.ends_at_the_system();
+            let asked = self.first.homotopy.ends_at_the_system() && !self.ends_only;
             self.isolation_wanted = asked && !self.singular_points.is_empty();
         }
     }

@@ -2,6 +2,7 @@
 
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::{Preset, Settings};
+use cognate_solutions::witness::Method;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -81,6 +82,10 @@ pub struct Decompose {
     pub dimensions: Option<[u32; 2]>,
     /// Loops in a row that bring no witness points together before these stay apart.
     pub idle_loops: Option<u32>,
+    /// How witness points are found; `None`: the coordinator chooses.
+    pub method: Option<Method>,
+    /// Whether a second way is compared with the first.
+    pub verify: bool,
 }
 
 /// The start system that a client asks for.

@@ -9,6 +9,7 @@ use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CellBr
 use cognate_continuation::work::{Stage, Work};
 use cognate_protocol::submission::{Decompose, Options, Source, Submission};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
+use cognate_solutions::witness::Method;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use prost::Message;
@@ -43,7 +44,8 @@ proptest! {
         let options = draw.options();
         let dimensions = (seed % 2 == 0).then_some([(seed % 5) as u32, 5 + (seed % 7) as u32]);
         let idle_loops = (seed % 3 == 0).then_some(1 + (seed % 200) as u32);
-        let decompose = Some(Decompose { dimensions, idle_loops });
+        let method = Method::ALL.get((seed % 5) as usize).copied();
+        let decompose = Some(Decompose { dimensions, idle_loops, method, verify: seed % 3 == 1 });
         for options in [Options { decompose, ..options.clone() }, options] {
             let submission = Submission { source: source.clone(), options };
             let message: v1::Problem = sent(&to_proto::problem::submission(&submission));

@@ -12,6 +12,7 @@ use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_protocol::submission::{PrecisionChoice, StartKind};
+use cognate_solutions::witness::Method;
 use cognate_worker::transport::connect::CredentialFiles;
 use std::path::PathBuf;
 
@@ -361,6 +362,49 @@ pub struct ComponentArguments {
     /// Loops in a row that bring no witness points together before these stay apart [default: 12]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200))]
     pub loops: Option<u32>,
+    /// How witness points are found: equation by equation, by a cascade of combinations, or dimension by
+    /// dimension on slices; auto takes the equations, and the cascade where these leave doubts
+    #[arg(long, value_enum, default_value_t)]
+    pub method: MethodName,
+    /// Find the components a second way, too, and compare: what differs is not settled
+    #[arg(long)]
+    pub verify: bool,
+}
+
+impl ComponentArguments {
+    /// Whether any of them was typed.
+    pub fn are_given(&self) -> bool {
+        self.dimension.is_some()
+            || self.loops.is_some()
+            || self.method != MethodName::Auto
+            || self.verify
+    }
+}
+
+/// How witness points are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// By the equations, and by the cascade where these leave doubts
+    #[default]
+    Auto,
+    /// Each dimension by itself, on its slices
+    Slices,
+    /// General combinations of the equations, one after the other
+    Cascade,
+    /// The equations themselves, one after the other
+    Equations,
+}
+
+impl MethodName {
+    /// The way that is asked for; `None`: the coordinator chooses.
+    pub fn method(self) -> Option<Method> {
+        match self {
+            Self::Auto => None,
+            Self::Slices => Some(Method::Slices),
+            Self::Cascade => Some(Method::Cascade),
+            Self::Equations => Some(Method::Equations),
+        }
+    }
 }
 
 /// `cognate decompose`.
@@ -368,6 +412,7 @@ pub struct ComponentArguments {
 #[command(after_help = "\
 Examples:
   cognate decompose twisted_cubic.bertini
+  cognate decompose system.bertini --verify
   cognate decompose system.bertini --dimension 1..2 --format json | jq .decomposition.components
   cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl")]
 pub struct Decompose {
@@ -613,6 +658,7 @@ pub struct SynthesisArguments {
 #[command(after_help = "\
 Examples:
   cognate info system.bertini
+  cognate info system.bertini --decompose
   cognate info system.bertini --groups \"x,y;z,w\" --format json")]
 pub struct Info {
     /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
@@ -623,6 +669,9 @@ pub struct Info {
     /// Sets of variables for the linear-product start instead of those that are found (JSON)
     #[arg(long, value_name = "FILE")]
     pub sets: Option<PathBuf>,
+    /// What each way to all irreducible components would cost, instead of each start
+    #[arg(long)]
+    pub decompose: bool,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -177,6 +177,8 @@ pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Pr
     options.decompose = Some(Decompose {
         dimensions: wanted.dimension.map(|d| [d.lowest, d.highest]),
         idle_loops: wanted.loops,
+        method: wanted.method.method(),
+        verify: wanted.verify,
     });
     prepared
 }

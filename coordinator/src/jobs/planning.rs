@@ -209,6 +209,8 @@ fn plan_decomposition(
         tolerances: options.tolerances,
         max_retries: options.max_retries,
         idle_loops: wanted.idle_loops.unwrap_or(default.idle_loops),
+        method: wanted.method,
+        verify: wanted.verify,
         ..default
     };
     let solve = DecompositionSolve::new(system, &options)?;
@@ -217,8 +219,8 @@ fn plan_decomposition(
         algorithm: AnySolve::Decomposition(Box::new(solve)).into(),
         start: PlannedStart::Cascade,
         paths: None,
-        why: "all components are asked for; equation by equation, and in each dimension the points that solve \
-              all equations are taken out"
+        why: "all components are asked for: equation by equation the sets that they have in common are cut, or \
+              combination by combination in a cascade"
             .into(),
     })
 }

@@ -8,13 +8,13 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{Contribution, JobRow, StageRow};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
-    Decomposition, Dimension, Doubt, Irreducible, TrackedPaths, WitnessSet,
+    Decomposition, Dimension, Doubt, Irreducible, TrackedPaths, Verification, WitnessSet,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Decompositions as objects.
-pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC01");
+pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC02");
 
 /// More isolated points than these stand together, by multiplicity.
 const MOST_POINTS_LISTED: usize = 1000;
@@ -51,7 +51,7 @@ pub struct DecomposedProblem {
     pub variables: u64,
     /// Number of equations.
     pub equations: u64,
-    /// How the witness superset is found: `cascade`.
+    /// How the witness superset is found: `equations`, `cascade` or `slices`.
     pub method: String,
     /// Seed of everything random.
     pub seed: u64,
@@ -80,6 +80,8 @@ pub struct DecompositionBlock {
     pub by_dimension: BTreeMap<u32, DimensionBlock>,
     /// Components inside others, of which only multiplicities tell: `not searched`.
     pub embedded: String,
+    /// What a second way found; `null` where none was asked for.
+    pub verification: Option<Verification>,
     /// What keeps the answer from being settled, in words; empty where it is.
     pub unsettled: Vec<String>,
 }
@@ -105,7 +107,7 @@ pub struct ComponentBlock {
     pub deflation: Vec<u32>,
     /// Degrees by groups of variables; not computed yet.
     pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
-    /// Whether it is its own conjugate; not asked yet.
+    /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
     pub self_conjugate: Option<bool>,
     /// Witness points that are proved; none yet.
     pub certified: Option<u64>,
@@ -181,6 +183,7 @@ impl DecompositionBlock {
                 .map(|dimension| (dimension.number, block(dimension, &found.components)))
                 .collect(),
             embedded: "not searched".into(),
+            verification: found.verification.clone(),
             unsettled,
         }
     }
@@ -232,7 +235,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
         irreducible: set.irreducible,
         deflation: set.deflation.clone(),
         multidegree: None,
-        self_conjugate: None,
+        self_conjugate: set.self_conjugate,
         certified: None,
         evidence: EvidenceBlock {
             trace_deviation: evidence.trace.and_then(|trace| finite(trace.deviation)),
@@ -280,7 +283,7 @@ impl DecompositionSummary {
                 digest: planned.problem.to_string(),
                 variables: planned.variables,
                 equations: planned.equations,
-                method: planned.start.clone(),
+                method: found.method.name().into(),
                 seed: planned.seed,
             },
             decomposition: DecompositionBlock::new(found),

@@ -6,39 +6,14 @@
 //! further; one that does not is regular with probability 1 and begins the next level.
 
 use super::job::{Job, StageSystem};
-use super::problem::{Problem, REFINED, SINGULAR};
-use cognate_continuation::bend::exactly;
+use super::problem::Problem;
+use super::superset::Superset;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
 use cognate_continuation::work::StageId;
 use cognate_solutions::classification::Verdict;
-use cognate_solutions::path_crossing::coincidences;
-use cognate_solutions::point_shape::PointShape;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-
-/// A point at which several paths end, or one that is singular.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct SingularEnd {
-    pub values: Vec<Complex64>,
-    pub accuracy: f64,
-    /// How many paths end there.
-    pub paths: u64,
-}
-
-/// Ends of one level that solve all equations.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Superset {
-    pub dimension: usize,
-    pub regular: Vec<Vec<Complex64>>,
-    pub singular: Vec<SingularEnd>,
-    /// Ends that solve combinations only, at the last level.
-    pub excess: u64,
-    /// Paths lost up to this level.
-    pub failed: u64,
-    /// Ends of which it is not clear whether they solve all equations.
-    pub unclear: u64,
-}
 
 /// Level by level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -136,58 +111,16 @@ impl Cascade {
         let dimension = problem.variables() - self.level - 1;
         let mut superset = Superset {
             dimension,
+            failed: self.failed,
             ..Superset::default()
         };
-        let equations = problem.level_equations(dimension);
-        let mut singular = Vec::new();
-        let ends = job.ends();
-        self.points.clear();
-        for (place, (_, decision, values)) in ends.iter().enumerate() {
-            let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
-            match decision.verdict {
-                Verdict::AtInfinity => {}
-                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => self.failed += 1,
-                Verdict::Finite => {
-                    let refined = equations.refine(&exact);
-                    match refined.and_then(|refined| problem.solves(&refined.point, &REFINED)) {
-                        Some(true) => superset.regular.push(values.clone()),
-                        Some(false) => self.points.push(values.clone()),
-                        None => superset.unclear += 1,
-                    }
-                }
-                Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional => {
-                    match problem.solves(&exact, &SINGULAR) {
-                        Some(true) => singular.push(place),
-                        _ => superset.unclear += 1,
-                    }
-                }
-            }
-        }
-        let shape = PointShape::of(&problem.staircase);
-        let results = job.results();
-        let (tolerances, seed) = (&problem.tracking.tolerances, problem.seed());
-        let chosen = |place: usize| singular.binary_search(&place).is_ok();
-        for members in coincidences(results, &shape, tolerances, seed, chosen) {
-            let accuracy = |&m: &usize| results[m].accuracy;
-            let best = members
-                .iter()
-                .copied()
-                .min_by(|a, b| accuracy(a).total_cmp(&accuracy(b)));
-            let best = best.expect("a cluster has members");
-            superset.singular.push(SingularEnd {
-                values: ends[best].2.clone(),
-                accuracy: accuracy(&best),
-                paths: members.len() as u64,
-            });
-        }
-        self.failed += job.crossings_left();
+        self.points = superset.sort(problem, job);
         self.level += 1;
         if self.level == problem.levels {
             superset.excess = std::mem::take(&mut self.points).len() as u64;
         }
-        superset.failed = self.failed;
         // What is not gone on from may lead to sets of lower dimension.
-        self.failed += superset.unclear;
+        self.failed = superset.failed + superset.unclear;
         self.supersets.push(superset);
     }
 }

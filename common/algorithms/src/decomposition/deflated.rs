@@ -5,9 +5,9 @@
 //! ranks depend on the component alone, since its witness points are general on it (Hauenstein, Wampler:
 //! Isosingular sets and deflation, Found. Comput. Math. 13, 2013): points of other ranks are on others.
 
-use super::cascade::SingularEnd;
 use super::job::StageSystem;
 use super::problem::Problem;
+use super::superset::SingularEnd;
 use cognate_continuation::bend::{Number, RefinedPoint, SlicedEquations, exactly, rounded};
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -58,6 +58,37 @@ pub(super) struct PureSet {
 }
 
 impl PureSet {
+    /// The whole space of the problem's variables, by the point on all slices.
+    pub fn everything(point: Option<Vec<Complex64>>) -> Option<Self> {
+        let point = point?;
+        let refined = RefinedPoint {
+            point: point.iter().map(|&z| exactly(z)).collect(),
+            correction: 0.0,
+            moved: 0.0,
+            residual: 0.0,
+            condition: 1.0,
+        };
+        Deflations::reduced_set(point.len(), vec![refined])
+    }
+
+    /// The point as one of a superset, where it is regular and one path came to it.
+    pub fn keeps(&self, point: &RefinedPoint, own: usize) -> Option<Vec<Complex64>> {
+        self.is_plain().then(|| doubles(point, own))
+    }
+
+    /// The point as one of a superset, where it is not.
+    pub fn keeps_multiple(&self, point: &RefinedPoint, own: usize) -> Option<SingularEnd> {
+        (!self.is_plain()).then(|| SingularEnd {
+            values: doubles(point, own),
+            accuracy: f64::EPSILON,
+            paths: self.multiplicity.tracked,
+        })
+    }
+
+    fn is_plain(&self) -> bool {
+        self.ranks.is_empty() && self.multiplicity.tracked == 1
+    }
+
     /// The points in the unknowns that are tracked.
     pub fn doubles(&self) -> Vec<Vec<Complex64>> {
         let double = |p: &RefinedPoint| p.point.iter().map(rounded).collect();
@@ -80,6 +111,11 @@ impl PureSet {
             dimension: self.dimension,
         }
     }
+}
+
+/// The first coordinates of a point.
+pub(super) fn doubles(point: &RefinedPoint, own: usize) -> Vec<Complex64> {
+    point.point[..own].iter().map(rounded).collect()
 }
 
 /// A point of a multiple set at which the equations are regular after these deflations.
@@ -105,6 +141,48 @@ pub(super) struct Multiple {
     /// Paths that ended there.
     pub paths: u64,
     pub dual_dimensions: Vec<u32>,
+}
+
+impl Multiple {
+    /// A point at which the given equations are regular, to which several paths came.
+    pub fn reduced(refined: RefinedPoint, paths: u64) -> Self {
+        Self {
+            point: DeflatedPoint {
+                ranks: Vec::new(),
+                refined,
+            },
+            scheme: Some(1),
+            paths,
+            dual_dimensions: Vec::new(),
+        }
+    }
+}
+
+/// Refined points with how many paths came to each, each point once.
+pub(super) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(RefinedPoint, u64)> {
+    let first = |k: usize| points[k].0.point.first().map_or(0.0, |z| rounded(z).re);
+    let mut by_first: Vec<usize> = (0..points.len()).collect();
+    by_first.sort_by(|&a, &b| first(a).total_cmp(&first(b)));
+    let mut into: Vec<usize> = (0..points.len()).collect();
+    for (place, &k) in by_first.iter().enumerate() {
+        for &j in &by_first[place + 1..] {
+            if first(j) - first(k)
+                > SAME * (1.0 + points[k].0.point.len() as f64) * (1.0 + first(k).abs())
+            {
+                break;
+            }
+            if into[j] == j && distance(&points[k].0.point, &points[j].0.point) < SAME {
+                into[j] = into[k];
+            }
+        }
+    }
+    let mut paths = vec![0; points.len()];
+    for (k, &into) in into.iter().enumerate() {
+        paths[into] += points[k].1;
+    }
+    let pairs = points.into_iter().zip(paths);
+    let merged = pairs.filter(|(_, paths)| *paths > 0);
+    merged.map(|((point, _), paths)| (point, paths)).collect()
 }
 
 /// Deflated equations by their ranks, made once.
@@ -138,6 +216,10 @@ impl Deflations {
         }
         let made = match wanted {
             StageSystem::Staircase => Arc::clone(&problem.staircase),
+            StageSystem::Cut { dimension, factor } => {
+                let cut = problem.cut(*dimension, *factor as usize);
+                Arc::new(cut.expect("it has been made of equations with degrees"))
+            }
             StageSystem::Sliced { dimension } => {
                 Arc::new(slice(&problem.given, *dimension, problem.variables()))
             }

@@ -6,10 +6,11 @@ use crate::solve::{Next, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Decision, Tolerances, Verdict};
+use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::witness::TrackedPaths;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -41,6 +42,14 @@ pub(super) enum StageSystem {
         ranks: Vec<u32>,
         /// The dimension.
         dimension: usize,
+    },
+    /// Combinations of the equations but the last, whose set of solutions has this dimension, and a factor of the
+    /// last.
+    Cut {
+        /// The dimension before the last equation cuts.
+        dimension: usize,
+        /// Which factor.
+        factor: u32,
     },
     /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
     Tracked {
@@ -95,6 +104,41 @@ impl Job {
             system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
         }
+    }
+
+    /// Paths from all solutions of a start system of these degrees, with these values of the parameters.
+    pub fn straight(
+        id: StageId,
+        (description, system): (StageSystem, &System),
+        parameters: Vec<Complex64>,
+        degrees: Vec<u32>,
+        with: &Tracking,
+    ) -> Self {
+        let first = Stage {
+            id,
+            system: None,
+            work: Work::Track,
+            homotopy: HomotopyKind::StraightLine { parameters },
+            start_points: StartPoints::TotalDegree { degrees },
+            settings: with.settings.clone(),
+            seed: with.seed,
+            attempt: 0,
+        };
+        let stages = RetriedStage::new(first, system, with.tolerances.clone(), 1);
+        Self {
+            system: description,
+            work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
+            unsent: None,
+        }
+    }
+
+    /// The same, where it is of no interest whether singular ends are isolated.
+    #[must_use]
+    pub fn ends_only(mut self) -> Self {
+        if let Doing::Tracked(stages) = self.work {
+            self.work = Doing::Tracked(Box::new(stages.ends_only()));
+        }
+        self
     }
 
     /// Whether these candidates at the only target are isolated.
@@ -200,6 +244,14 @@ impl Job {
         };
         let pairs = stages.results().iter().zip(stages.decisions());
         pairs.map(|(r, d)| (r, d, values(r))).collect()
+    }
+
+    /// How the ends of its paths are laid out.
+    pub fn shape(&self) -> Option<&PointShape> {
+        match &self.work {
+            Doing::Tracked(stages) => Some(stages.shape()),
+            Doing::Asked { .. } => None,
+        }
     }
 
     /// Its paths, counted.

@@ -5,10 +5,10 @@
 //! says that it is not, paths on the sets of higher dimension to slices through the point ask whether it is on
 //! one of them; with `confirm_junk` also then. Where both speak they must agree.
 
-use super::cascade::{SingularEnd, Superset};
-use super::deflated::{Deflations, Multiple, PureSet};
+use super::deflated::{Deflations, Multiple, PureSet, equal_ones_merged};
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
+use super::superset::{SingularEnd, Superset};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
@@ -24,6 +24,9 @@ use std::collections::VecDeque;
 
 /// Highest order of functionals that are asked for.
 const DEPTH: u32 = 12;
+/// Condition number below which a point to which Newton's method comes is isolated without further question: on a
+/// set of higher dimension, where there is none, rounding errors of doubles leave 1e13 and more.
+const CLEARLY_REGULAR: f64 = 1e10;
 /// An end of a path is the point, relative to its size, within this many times their errors, or
 const NEAR_FACTOR: f64 = 100.0;
 /// ... within this,
@@ -57,6 +60,8 @@ enum Asking {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sieve {
     supersets: VecDeque<Superset>,
+    /// Several paths may come to a reduced point: sets that meet there were cut one by one.
+    shared: bool,
     current: Option<Superset>,
     suspects: Vec<Suspect>,
     asking: Asking,
@@ -66,9 +71,11 @@ pub(super) struct Sieve {
 }
 
 impl Sieve {
-    pub fn new(supersets: Vec<Superset>) -> Self {
+    /// `shared`: whether several paths may come to a reduced point.
+    pub fn new(supersets: Vec<Superset>, shared: bool) -> Self {
         Self {
             supersets: supersets.into(),
+            shared,
             current: None,
             suspects: Vec::new(),
             asking: Asking::Nothing,
@@ -101,6 +108,7 @@ impl Sieve {
                 self.settle(problem, deflations, sets);
             }
             let superset = self.supersets.pop_front()?;
+            let superset = self.regular_at_once(problem, deflations, superset);
             self.suspects = superset.singular.iter().map(Suspect::new).collect();
             self.sets_left = (0..sets.len()).collect();
             let dimension = superset.dimension;
@@ -110,6 +118,28 @@ impl Sieve {
                 return Some(self.isolate(problem, dimension, id));
             }
         }
+    }
+
+    /// The superset with its ends that the tracker called singular for their condition, and that Newton's method
+    /// finds regular, among the regular ones: these are isolated.
+    fn regular_at_once(
+        &self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        mut superset: Superset,
+    ) -> Superset {
+        let dimension = superset.dimension;
+        for end in std::mem::take(&mut superset.singular) {
+            let regular = end.paths == 1
+                && deflations
+                    .reduced_point(problem, dimension, &end.values)
+                    .is_some_and(|refined| refined.condition < CLEARLY_REGULAR);
+            match regular {
+                true => superset.regular.push(end.values),
+                false => superset.singular.push(end),
+            }
+        }
+        superset
     }
 
     fn isolate(&self, problem: &Problem, dimension: usize, id: StageId) -> Job {
@@ -155,13 +185,9 @@ impl Sieve {
             let points = of.doubles();
             self.asking = Asking::Membership { set, suspects };
             let system = deflations.of_stage(problem, &of.tracked());
-            return Some(Job::track(
-                id,
-                (of.tracked(), &system),
-                homotopy,
-                &points,
-                &problem.tracking,
-            ));
+            let system = (of.tracked(), &*system);
+            let job = Job::track(id, system, homotopy, &points, &problem.tracking);
+            return Some(job.ends_only());
         }
         None
     }
@@ -226,10 +252,7 @@ impl Sieve {
                     let end = &suspect.end;
                     match deflations.regular_point(problem, dimension, end) {
                         // The tracker called it singular for its condition.
-                        Some(point) if point.is_reduced() => match paths {
-                            1 => regular.push(point.refined),
-                            _ => unclear += paths,
-                        },
+                        Some(point) if point.is_reduced() => regular.push((point.refined, paths)),
                         Some(point) => found.push(Multiple {
                             point,
                             scheme,
@@ -243,11 +266,20 @@ impl Sieve {
         }
         for values in &superset.regular {
             match deflations.reduced_point(problem, dimension, values) {
-                Some(point) => regular.push(point),
+                Some(point) => regular.push((point, 1)),
                 None => not_deflated += 1,
             }
         }
-        sets.extend(Deflations::reduced_set(dimension, regular));
+        let mut single = Vec::new();
+        for (refined, paths) in equal_ones_merged(regular) {
+            match paths {
+                1 => single.push(refined),
+                _ if self.shared => found.push(Multiple::reduced(refined, paths)),
+                // Two paths that came to one regular point: one of them has left its way.
+                _ => unclear += paths,
+            }
+        }
+        sets.extend(Deflations::reduced_set(dimension, single));
         sets.extend(Deflations::multiple_sets(problem, dimension, found));
         let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
         let doubts = [
@@ -261,6 +293,12 @@ impl Sieve {
                 superset.unclear,
                 Doubt::Asked {
                     points: superset.unclear,
+                },
+            ),
+            (
+                superset.not_cut,
+                Doubt::NotCut {
+                    points: superset.not_cut,
                 },
             ),
             (unclear, Doubt::Junk { points: unclear }),

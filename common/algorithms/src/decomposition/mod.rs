@@ -1,7 +1,8 @@
 //! Decomposition: every irreducible component of every dimension, by witness sets.
 //!
-//! A cascade finds, for each dimension, points on general slices: a witness superset ([`cascade`]).
-//! What lies on sets of higher dimension is junk ([`junk`]); points of multiple sets get equations that
+//! For each dimension points on general slices are found, a witness superset: by a cascade of combinations of the
+//! equations ([`cascade`]), by the equations one after the other ([`equations`]), or on the slices of each dimension
+//! by itself ([`slices`]). What lies on sets of higher dimension is junk ([`junk`]); points of multiple sets get equations that
 //! are regular there ([`deflated`]); derivatives of the witness points along a moving slice, and loops of
 //! the slice, tell components apart ([`split`]). (Hauenstein, Sommese, Wampler: Regenerative cascade
 //! homotopies, 2011; Brake, Hauenstein, Liddell: Decomposing solution sets using derivatives, 2016.)
@@ -9,12 +10,16 @@
 //! Stages differ in their systems, which their openings bring.
 
 mod cascade;
+mod costs;
 mod deflated;
+mod equations;
 mod job;
 mod junk;
 mod options;
 mod problem;
+mod slices;
 mod split;
+mod superset;
 
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
@@ -26,24 +31,31 @@ use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::{
-    ComponentId, Decomposition, Dimension, Doubt, TrackedPaths, WitnessSet,
+    ComponentId, Decomposition, Dimension, Doubt, Method, TrackedPaths, WitnessSet,
 };
 use cognate_systems::system::System;
+pub use costs::DecompositionCosts;
 use deflated::{Deflations, PureSet};
-use job::{Job, Tracking};
+use equations::{Equations, Prefixes};
+use job::{Job, StageSystem, Tracking};
 use junk::Sieve;
 pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
 use serde::{Deserialize, Serialize};
+use slices::Slices;
 use split::Split;
 use std::sync::Arc;
 
 /// Where a decomposition is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Step {
-    /// Equation by equation: points of all dimensions.
+    /// Combination by combination: points of all dimensions.
     Cascade(Cascade),
+    /// Equation by equation.
+    Equations(Equations),
+    /// Dimension by dimension.
+    Slices(Slices),
     /// Dimension by dimension, highest first: what is junk and what is multiple.
     Sieve(Sieve),
     /// Set by set: components.
@@ -52,11 +64,26 @@ enum Step {
     Done(Box<Decomposition>),
 }
 
+/// Why a decomposition is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Purpose {
+    /// It is the first.
+    First,
+    /// The first left something in doubt.
+    Again,
+    /// It is compared with the first.
+    Verify,
+}
+
 /// What is written down of a decomposition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct State {
     system: Arc<System>,
     options: DecompositionOptions,
+    method: Method,
+    purpose: Purpose,
+    /// What the first way found.
+    first: Option<Box<Decomposition>>,
     step: Step,
     job: Option<Job>,
     /// The stages that were opened.
@@ -79,6 +106,7 @@ pub struct DecompositionSolve {
     problem: Arc<Problem>,
     /// Systems that were made of the problem.
     deflations: Deflations,
+    prefixes: Prefixes,
 }
 
 impl PartialEq for DecompositionSolve {
@@ -100,30 +128,38 @@ impl TryFrom<State> for DecompositionSolve {
         Ok(Self {
             problem: Arc::new(problem_of(&state.system, &state.options)?),
             deflations: Deflations::default(),
+            prefixes: Prefixes::default(),
             state,
         })
     }
 }
 
-fn problem_of(system: &System, options: &DecompositionOptions) -> Result<Problem, ProblemError> {
-    let tracking = Tracking {
+fn tracking_of(options: &DecompositionOptions) -> Tracking {
+    Tracking {
         settings: options.settings.clone(),
         tolerances: options.tolerances.clone(),
         max_retries: options.max_retries,
         seed: options.seed,
-    };
-    Problem::new(system, tracking, options)
+    }
+}
+
+fn problem_of(system: &System, options: &DecompositionOptions) -> Result<Problem, ProblemError> {
+    Problem::new(system, tracking_of(options), options)
 }
 
 impl DecompositionSolve {
     /// The decomposition of a system that has been checked.
     pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
         let problem = problem_of(system, options)?;
+        let method = options.method.unwrap_or(Method::Equations);
         Ok(Self {
             state: State {
                 system: Arc::new(system.clone()),
                 options: options.clone(),
-                step: Step::Cascade(Cascade::new(&problem)),
+                method,
+                purpose: Purpose::First,
+                first: None,
+                step: first_step(method, &problem),
                 job: None,
                 stages: Vec::new(),
                 dimensions: Vec::new(),
@@ -134,6 +170,7 @@ impl DecompositionSolve {
             },
             problem: Arc::new(problem),
             deflations: Deflations::default(),
+            prefixes: Prefixes::default(),
         })
     }
 
@@ -158,6 +195,14 @@ impl DecompositionSolve {
                 state.paths.add(&paths);
                 cascade.advance(problem, done.as_ref(), id)
             }
+            Step::Equations(equations) => {
+                state.paths.add(&paths);
+                equations.advance(problem, &mut self.prefixes, done.as_ref(), id)
+            }
+            Step::Slices(slices) => {
+                state.paths.add(&paths);
+                slices.advance(made, done.as_ref(), id)
+            }
             Step::Sieve(sieve) => {
                 state.paths.add(&paths);
                 sieve.advance(made, done.as_ref(), id, &mut state.sets)
@@ -174,7 +219,15 @@ impl DecompositionSolve {
         let (state, problem) = (&mut self.state, &*self.problem);
         match &mut state.step {
             Step::Cascade(cascade) => {
-                state.step = Step::Sieve(Sieve::new(cascade.supersets(problem)));
+                state.step = Step::Sieve(Sieve::new(cascade.supersets(problem), false));
+                return;
+            }
+            Step::Equations(equations) => {
+                state.step = Step::Sieve(Sieve::new(equations.supersets(problem), true));
+                return;
+            }
+            Step::Slices(slices) => {
+                state.step = Step::Sieve(Sieve::new(slices.supersets(), false));
                 return;
             }
             Step::Sieve(sieve) => {
@@ -198,8 +251,42 @@ impl DecompositionSolve {
                 let set = self.state.sets.remove(0);
                 Step::Split(Split::new(set))
             }
-            true => Step::Done(Box::new(self.summary())),
+            true => {
+                let found = self.summary();
+                self.conclude(found)
+            }
         };
+    }
+
+    /// What comes after one way to the answer: another way, or the end.
+    fn conclude(&mut self, mut found: Decomposition) -> Step {
+        let second = self.problem.second(self.state.method);
+        let verify = self.state.options.verify;
+        let (purpose, method) = match (self.state.purpose, self.state.first.take()) {
+            (Purpose::First, _) if self.state.options.method.is_none() && !found.settled() => {
+                (Purpose::Again, Method::Cascade)
+            }
+            (Purpose::First, _) if verify => (Purpose::Verify, second),
+            (Purpose::Verify, Some(first)) => {
+                let second = std::mem::replace(&mut found, *first);
+                found.verify(&second);
+                found.paths = second.paths;
+                found.paths_of_loops = second.paths_of_loops;
+                return Step::Done(Box::new(found));
+            }
+            (Purpose::Again, Some(first)) if !found.settled() && fewer_doubts(&first, &found) => {
+                let second = std::mem::replace(&mut found, *first);
+                found.paths = second.paths;
+                found.paths_of_loops = second.paths_of_loops;
+                return Step::Done(Box::new(found));
+            }
+            (Purpose::Again, _) if verify && found.settled() => (Purpose::Verify, second),
+            _ => return Step::Done(Box::new(found)),
+        };
+        self.state.first = Some(Box::new(found));
+        self.state.purpose = purpose;
+        self.state.method = method;
+        first_step(method, &self.problem)
     }
 
     fn summary(&mut self) -> Decomposition {
@@ -231,23 +318,58 @@ impl DecompositionSolve {
                 false => Completeness::NotKnown,
             };
         }
-        Decomposition {
+        let mut found = Decomposition {
             variables: self.state.system.variables.clone(),
+            method: self.state.method,
+            verification: None,
             asked: [*self.problem.asked.start(), *self.problem.asked.end()],
             components,
             dimensions,
             paths: self.state.paths,
             paths_of_loops: self.state.paths_of_loops,
-        }
+        };
+        found.check_counts();
+        found
     }
 
     /// What was found, when `next` has said `Done`.
     pub fn decomposition(&self) -> Option<&Decomposition> {
         match &self.state.step {
             Step::Done(found) => Some(found),
-            Step::Cascade(_) | Step::Sieve(_) | Step::Split(_) => None,
+            _ => None,
         }
     }
+
+    /// The system of the open job.
+    fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
+        match &self.state.step {
+            Step::Equations(equations) => {
+                let count = equations.prefix();
+                let (problem, deflations) = self.prefixes.of(&self.problem, count);
+                deflations.of_stage(&problem, wanted)
+            }
+            _ => self.deflations.of_stage(&self.problem, wanted),
+        }
+    }
+}
+
+/// Where a way to the answer begins.
+fn first_step(method: Method, problem: &Problem) -> Step {
+    match method {
+        Method::Cascade => Step::Cascade(Cascade::new(problem)),
+        Method::Equations => Step::Equations(Equations::new(problem)),
+        Method::Slices => Step::Slices(Slices::new()),
+    }
+}
+
+/// Whether the first leaves no more in doubt than the second.
+fn fewer_doubts(first: &Decomposition, second: &Decomposition) -> bool {
+    let doubts = |of: &Decomposition| -> usize {
+        let sets = of.components.iter().map(|set| set.evidence.doubts.len());
+        let dimensions = of.dimensions.iter().map(|d| d.doubts.len());
+        sets.chain(dimensions).sum()
+    };
+    doubts(first) <= doubts(second)
 }
 
 impl Solve for DecompositionSolve {
@@ -256,8 +378,8 @@ impl Solve for DecompositionSolve {
             if let Some(job) = &mut self.state.job {
                 match job.next(numbers) {
                     Next::Open(mut opening) => {
-                        let system = self.deflations.of_stage(&self.problem, &job.system);
-                        opening.system = Some(system);
+                        let wanted = job.system.clone();
+                        opening.system = Some(self.system_of(&wanted));
                         let stage = &opening.stage;
                         self.state.stages.push(StageProgress {
                             id: stage.id,
@@ -295,6 +417,8 @@ impl Solve for DecompositionSolve {
         Progress {
             description: match &self.state.step {
                 Step::Cascade(cascade) => cascade.description(&self.problem),
+                Step::Equations(equations) => equations.description(&self.problem),
+                Step::Slices(slices) => slices.description(&self.problem),
                 Step::Sieve(_) => "telling junk from witness points".into(),
                 Step::Split(_) => "telling components apart".into(),
                 Step::Done(_) => "done".into(),
@@ -355,12 +479,13 @@ mod tests {
     use std::collections::HashMap;
 
     /// Decomposes with a tracker that spoils the results of each stage of the cascade.
-    fn decompose(text: &str, spoil: impl Fn(&mut PathResult)) -> Decomposition {
+    fn decompose(text: &str, method: Method, spoil: impl Fn(&mut PathResult)) -> Decomposition {
         let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
         let system = formats::read("test", text.as_bytes()).unwrap().system;
         let options = DecompositionOptions {
             // What is spoilt stays spoilt.
             max_retries: 0,
+            method: Some(method),
             ..DecompositionOptions::default()
         };
         let mut root = Root::new(DecompositionSolve::new(&system, &options).unwrap());
@@ -388,18 +513,20 @@ mod tests {
 
     #[test]
     fn two_curves_are_told_apart() {
-        let found = decompose(CURVES, |_| {});
-        let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
-        assert_eq!(degrees, [2, 2]);
-        assert!(found.settled() && found.adds_up(), "{found:?}");
-        for set in &found.components {
-            for point in &set.points {
-                let (x, y) = (point[0], point[1]);
-                let value = (y - x * x) * (x * x + y * y - 3.0);
-                assert!(value.norm_sqr() < 1e-24);
-                let slice = &set.slice[0];
-                let on_slice = slice[0] + slice[1] * x + slice[2] * y;
-                assert!(on_slice.norm_sqr() < 1e-24);
+        for method in Method::ALL {
+            let found = decompose(CURVES, method, |_| {});
+            let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
+            assert_eq!(degrees, [2, 2]);
+            assert!(found.settled() && found.adds_up(), "{found:?}");
+            for set in &found.components {
+                for point in &set.points {
+                    let (x, y) = (point[0], point[1]);
+                    let value = (y - x * x) * (x * x + y * y - 3.0);
+                    assert!(value.norm_sqr() < 1e-24);
+                    let slice = &set.slice[0];
+                    let on_slice = slice[0] + slice[1] * x + slice[2] * y;
+                    assert!(on_slice.norm_sqr() < 1e-24);
+                }
             }
         }
     }
@@ -412,7 +539,7 @@ mod tests {
                 path.outcome = PathOutcome::Failed(Failure::TooManySteps);
             }
         };
-        let found = decompose(CURVES, lost);
+        let found = decompose(CURVES, Method::Cascade, lost);
         assert!(!found.settled());
         let [dimension] = found.dimensions.as_slice() else {
             panic!("one equation in two unknowns has curves: {found:?}");
@@ -427,6 +554,45 @@ mod tests {
     }
 
     #[test]
+    fn a_path_lost_on_the_way_leaves_nothing_settled() {
+        // Each curve is cut by itself: its second path is lost.
+        let lost = |results: &mut Vec<PathResult>| {
+            for result in results.iter_mut().filter(|r| r.origin.0 == 1) {
+                result.outcome = PathOutcome::Failed(Failure::TooManySteps);
+            }
+        };
+        let found = decompose(CURVES, Method::Equations, lost);
+        assert!(!found.settled());
+        assert_eq!(found.dimensions[0].failed, 2, "{found:?}");
+    }
+
+    #[test]
+    fn a_second_way_is_compared() {
+        let text =
+            "variable_group x, y, z; function f, g; f = (z - x*y)*(x - 2); g = (y - x^2)*(x - 2);";
+        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
+        let system = formats::read("test", text.as_bytes()).unwrap().system;
+        for method in [None, Some(Method::Cascade), Some(Method::Slices)] {
+            let options = DecompositionOptions {
+                method,
+                verify: true,
+                ..DecompositionOptions::default()
+            };
+            let solve = DecompositionSolve::new(&system, &options).unwrap();
+            let mut found = run_locally(solve, 8).unwrap();
+            let second = found.verification.clone().unwrap();
+            assert!(second.agrees && second.settled && found.settled());
+            assert_ne!(second.method, found.method);
+            assert_eq!(found.components.len(), 2);
+            // What only one way finds is a difference.
+            let mut other = found.clone();
+            other.components.pop();
+            found.verify(&other);
+            assert!(!found.settled());
+        }
+    }
+
+    #[test]
     fn a_point_that_is_no_solution_is_not_taken() {
         // The first path's end is moved away.
         let moved = |path: &mut PathResult| {
@@ -435,8 +601,10 @@ mod tests {
                 end[1] += 0.3;
             }
         };
-        let found = decompose(CURVES, moved);
-        assert!(!found.settled(), "{found:?}");
+        for method in [Method::Cascade, Method::Slices] {
+            let found = decompose(CURVES, method, &moved);
+            assert!(!found.settled(), "{found:?}");
+        }
     }
 
     #[test]

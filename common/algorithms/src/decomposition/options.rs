@@ -3,6 +3,7 @@
 use crate::retried_stage::MAX_RETRIES;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_solutions::classification::Tolerances;
+use cognate_solutions::witness::Method;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -17,6 +18,10 @@ pub struct DecompositionOptions {
     /// Dimensions of the components that are wanted; `None`: all. Sets of higher dimension are found then, to
     /// tell junk, and not split.
     pub dimensions: Option<RangeInclusive<u32>>,
+    /// How witness points are found; `None`: equation by equation, and by the cascade where that leaves doubts.
+    pub method: Option<Method>,
+    /// Whether a second way is compared with the first.
+    pub verify: bool,
     /// How paths are tracked.
     pub settings: Settings,
     /// How verdicts are reached.
@@ -36,6 +41,8 @@ impl Default for DecompositionOptions {
             seed: 0,
             parameters: Vec::new(),
             dimensions: None,
+            method: None,
+            verify: false,
             settings: Settings::default(),
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,

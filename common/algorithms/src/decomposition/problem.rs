@@ -7,20 +7,26 @@ use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_solutions::involution::Involution;
+use cognate_solutions::witness::Method;
+use cognate_systems::expression::NodeId;
 use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::{
-    FixError, affine_chart, combine, equilibrate, fix_parameters, slice,
+    FixError, affine_chart, combine, equilibrate, factors, fix_parameters, slice,
 };
 use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use std::borrow::Cow;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 /// Singular values below this part of the largest are 0 at a random point.
 const RANK_AT_RANDOM: f64 = 1e-9;
+
+/// Most start points of a dimension by itself, where that way is chosen for comparison.
+const MOST_START_POINTS: f64 = 5e3;
 
 /// Why a system cannot be decomposed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -65,6 +71,8 @@ pub(super) struct Problem {
     /// The equations that are given, and patches; each scaled to about 1.
     pub given: Arc<System>,
     degrees: Degrees,
+    /// The equations in the order in which they cut: of small degree first.
+    pub order: Vec<usize>,
     /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
     /// others that are never reached.
     pub staircase: Arc<System>,
@@ -80,10 +88,12 @@ pub(super) struct Problem {
     pub tracking: Tracking,
     pub idle_loops: u32,
     pub confirm_junk: bool,
-    /// The equations with nothing else, to evaluate.
-    plain: SlicedEquations,
+    /// The factors of the equations, to evaluate.
+    factors: FactorValues,
     /// The units in which all of it is tracked.
     scaling: Scaling,
+    /// Complex conjugation, where it maps solutions to solutions.
+    pub involution: Option<Involution>,
 }
 
 impl Problem {
@@ -92,7 +102,10 @@ impl Problem {
         tracking: Tracking,
         options: &DecompositionOptions,
     ) -> Result<Self, ProblemError> {
-        let system = with_values(system, &options.parameters)?;
+        let system = without_vanishing(with_values(system, &options.parameters)?);
+        if system.equations.is_empty() {
+            return Err(ProblemError::Everything);
+        }
         let seed = tracking.seed;
         let system = System {
             scaling: scaling_of(&system, &[]),
@@ -103,6 +116,7 @@ impl Problem {
         let of_given = degrees(&given)?;
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
+        let factors = FactorValues::new(&given, seed)?;
         let levels = rank_at_random(&plain, variables, seed).min(given.equation_count());
         if levels == 0 {
             return Err(ProblemError::Everything);
@@ -130,8 +144,12 @@ impl Problem {
         staircase.conjugates.clear();
         staircase.degenerate.clear();
         let row_degrees = degrees(&staircase)?.total;
+        let involution = Involution::of(&given, &[]).ok();
+        let mut order: Vec<usize> = (0..given.equation_count()).collect();
+        order.sort_by_key(|&i| (of_given.total[i], i));
         Ok(Self {
             given: Arc::new(given),
+            order,
             degrees: of_given,
             staircase: Arc::new(staircase),
             row_degrees,
@@ -141,9 +159,90 @@ impl Problem {
             tracking,
             idle_loops: options.idle_loops,
             confirm_junk: options.confirm_junk,
-            plain,
+            factors,
             scaling,
+            involution,
         })
+    }
+
+    /// The problem of the first equations alone, in the order in which they cut. It has no staircase of its own.
+    pub fn prefix(&self, count: usize) -> Result<Self, ProblemError> {
+        let chosen = &self.order[..count];
+        let given = with_equations(&self.given, chosen);
+        let of_chosen = Degrees {
+            by_group: chosen
+                .iter()
+                .map(|&i| self.degrees.by_group[i].clone())
+                .collect(),
+            total: chosen.iter().map(|&i| self.degrees.total[i]).collect(),
+        };
+        Ok(Self {
+            factors: FactorValues::new(&given, self.seed())?,
+            given: Arc::new(given),
+            degrees: of_chosen,
+            order: (0..count).collect(),
+            staircase: Arc::clone(&self.staircase),
+            row_degrees: Vec::new(),
+            levels: self.levels,
+            asked_levels: self.asked_levels,
+            asked: self.asked.clone(),
+            tracking: self.tracking.clone(),
+            idle_loops: self.idle_loops,
+            // A component that is taken for junk on the way is lost without a trace.
+            confirm_junk: self.confirm_junk,
+            scaling: self.scaling.clone(),
+            involution: None,
+        })
+    }
+
+    /// A way to the answer that is compared with this one.
+    pub fn second(&self, first: Method) -> Method {
+        let degrees = self.row_degrees.iter().take(self.asked_levels);
+        let paths = degrees.fold(1.0, |product, &degree| product * f64::from(degree));
+        match first {
+            Method::Equations | Method::Slices => Method::Cascade,
+            Method::Cascade if paths <= MOST_START_POINTS => Method::Slices,
+            Method::Cascade => Method::Equations,
+        }
+    }
+
+    /// The factors of the last equation, as it is written: their degrees and exponents.
+    pub fn last_factors(&self) -> Result<Vec<[u32; 2]>, ProblemError> {
+        let found = self.factors_of_last();
+        let mut apart = with_equations(&self.given, &[]);
+        apart.equations = found.iter().map(|(node, _)| *node).collect();
+        apart.equation_names = (0..found.len()).map(|k| format!("factor {k}")).collect();
+        let of = degrees(&apart)?.total;
+        let pairs = of.into_iter().zip(found);
+        Ok(pairs
+            .map(|(degree, (_, exponent))| [degree, exponent])
+            .collect())
+    }
+
+    fn factors_of_last(&self) -> Vec<(NodeId, u32)> {
+        let last = self.given.equations.last();
+        let factors = last.map(|&last| factors(&self.given.expressions, last));
+        factors.unwrap_or_default()
+    }
+
+    /// As many combinations of all equations but the last as cut out a set of this dimension, a factor of the last,
+    /// and others that are never reached.
+    pub fn cut(&self, dimension: usize, factor: usize) -> Result<System, ProblemError> {
+        let n = self.variables();
+        let (_, before) = self.order.split_last().ok_or(ProblemError::Everything)?;
+        let (last, _) = self.factors_of_last()[factor];
+        let mut cut = with_equations(&self.given, before);
+        if !before.is_empty() {
+            let of = degrees(&cut)?;
+            cut = combine(&cut, &of, n - dimension, self.seed());
+        }
+        cut.equations.push(last);
+        cut.equation_names.push("cut".into());
+        for v in cut.equations.len()..n {
+            cut.equations.push(cut.expressions.variable(v as u32));
+            cut.equation_names.push(format!("place {}", v + 1));
+        }
+        Ok(cut)
     }
 
     pub fn variables(&self) -> usize {
@@ -199,22 +298,69 @@ impl Problem {
     pub fn solves(&self, point: &[Number], known: &Known) -> Option<bool> {
         let sizes = point.iter().map(|z| rounded(z).norm_sqr());
         let largest = sizes.fold(1.0f64, f64::max).sqrt();
-        let mut answer = Some(true);
-        for ((value, distance), &degree) in
-            self.plain.residuals(point).iter().zip(&self.degrees.total)
-        {
+        let values = self.factors.equations.residuals(point);
+        let is_zero = |factor: usize| {
+            let ((value, distance), degree) = (values[factor], self.factors.degrees[factor]);
             let growth = (0..degree).fold(1.0, |power, _| power * largest);
             let relative = value / growth;
             // Where an equation has a multiple zero its derivative is rounding error, too.
-            if relative <= known.value || *distance <= known.distance {
-                continue;
+            if relative <= known.value || distance <= known.distance {
+                return Some(true);
             }
-            if relative > known.value * 100.0 && *distance > known.other_distance {
-                return Some(false);
+            let other = relative > known.value * 100.0 && distance > known.other_distance;
+            other.then_some(false)
+        };
+        let mut answer = Some(true);
+        for range in &self.factors.of_equation {
+            // A product is 0 where one of its factors is.
+            let mut product = Some(false);
+            for factor in range.clone() {
+                match is_zero(factor) {
+                    Some(true) => product = Some(true),
+                    Some(false) => {}
+                    None if product == Some(false) => product = None,
+                    None => {}
+                }
             }
-            answer = None;
+            match product {
+                Some(true) => {}
+                Some(false) => return Some(false),
+                None => answer = None,
+            }
         }
         answer
+    }
+}
+
+/// The factors of equations, as they are written.
+#[derive(Debug)]
+struct FactorValues {
+    /// All of them, equation by equation.
+    equations: SlicedEquations,
+    degrees: Vec<u32>,
+    /// Which are those of an equation.
+    of_equation: Vec<Range<usize>>,
+}
+
+impl FactorValues {
+    fn new(system: &System, seed: u64) -> Result<Self, ProblemError> {
+        let mut apart = with_equations(system, &[]);
+        let mut of_equation = Vec::with_capacity(system.equation_count());
+        for &equation in &system.equations {
+            let first = apart.equations.len();
+            let found = factors(&system.expressions, equation);
+            apart.equations.extend(found.iter().map(|(node, _)| *node));
+            of_equation.push(first..apart.equations.len());
+        }
+        apart.equation_names = (0..apart.equations.len())
+            .map(|k| format!("factor {k}"))
+            .collect();
+        let apart = equilibrate(&apart, seed);
+        Ok(Self {
+            degrees: degrees(&apart)?.total,
+            equations: SlicedEquations::new(&apart, Vec::new()),
+            of_equation,
+        })
     }
 }
 
@@ -241,6 +387,38 @@ pub(super) const SINGULAR: Known = Known {
     distance: 1e-5,
     other_distance: 1e-4,
 };
+
+/// The system with these of its equations, and nothing that is attached to all of them.
+fn with_equations(system: &System, chosen: &[usize]) -> System {
+    let mut result = system.clone();
+    result.equations = chosen.iter().map(|&i| system.equations[i]).collect();
+    let names = chosen.iter().map(|&i| system.equation_names[i].clone());
+    result.equation_names = names.collect();
+    result.symmetry.clear();
+    result.conjugates.clear();
+    result.degenerate.clear();
+    result
+}
+
+/// The system without the equations that hold everywhere.
+fn without_vanishing(system: Cow<'_, System>) -> Cow<'_, System> {
+    let everywhere = |&equation: &usize| {
+        let alone = with_equations(&system, &[equation]);
+        matches!(degrees(&alone), Err(PolynomialError::Vanishes(_)))
+    };
+    let all = 0..system.equation_count();
+    let (vanishing, left): (Vec<usize>, Vec<usize>) = all.partition(everywhere);
+    if vanishing.is_empty() {
+        return system;
+    }
+    let mut whole = system.into_owned();
+    whole.equation_names = left
+        .iter()
+        .map(|&i| whole.equation_names[i].clone())
+        .collect();
+    whole.equations = left.iter().map(|&i| whole.equations[i]).collect();
+    Cow::Owned(whole)
+}
 
 /// The system with these values of its parameters.
 fn with_values<'a>(

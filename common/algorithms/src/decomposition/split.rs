@@ -22,7 +22,7 @@ use cognate_solutions::witness::{
 };
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A sum is 0 within this many times its error,
 const CLOSED: f64 = 1e3;
@@ -38,6 +38,8 @@ const MOST_CLASSES: usize = 16;
 const MOST_LOOPS: u32 = 200;
 /// A path that came back is at a witness point within this, relative to the point.
 const BACK: f64 = 1e-6;
+/// Most points of a set whose conjugates are followed.
+const MOST_CONJUGATES: usize = 5000;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
 
@@ -63,6 +65,11 @@ pub(super) struct Split {
     /// The leg that is open, its points, and the witness points where its paths began.
     leg: usize,
     travellers: Vec<usize>,
+    /// Conjugates of the witness points are under way.
+    mirroring: bool,
+    /// The witness point where the conjugate of each is after its slice has moved back; `None` where that was not
+    /// asked or is not clear.
+    mirrored: Option<Vec<usize>>,
 }
 
 impl Split {
@@ -81,6 +88,8 @@ impl Split {
             broken: 0,
             leg: 0,
             travellers: Vec::new(),
+            mirroring: false,
+            mirrored: None,
         }
     }
 
@@ -91,16 +100,24 @@ impl Split {
         done: Option<&Job>,
         id: StageId,
     ) -> Option<Job> {
+        let own = problem.variables();
         if self.set.dimension == 0 {
+            let conjugates = self.conjugates(problem);
+            self.mirrored = self.images(&conjugates, own);
             return None;
         }
-        let own = problem.variables();
+        if self.mirroring {
+            let ends = done.and_then(arrivals);
+            self.mirrored = ends.and_then(|ends| self.images(&ends, own));
+            return None;
+        }
         let Some(_) = &self.bends else {
             let Some(job) = done else {
                 return Some(self.ask_bends(problem, id));
             };
             self.bends = Some(self.read_bends(job.answers()));
-            return self.next_loop(problem, deflations, id);
+            let next = self.next_loop(problem, deflations, id);
+            return next.or_else(|| self.mirror(problem, deflations, id));
         };
         let mut points = self.travelling();
         if let Some(job) = done {
@@ -115,7 +132,46 @@ impl Split {
                 return Some(self.track(problem, deflations, &points, id));
             }
         }
-        self.next_loop(problem, deflations, id)
+        let next = self.next_loop(problem, deflations, id);
+        next.or_else(|| self.mirror(problem, deflations, id))
+    }
+
+    /// The conjugates of the points; none where conjugation means nothing or the set has many points.
+    fn conjugates(&mut self, problem: &Problem) -> Vec<Vec<Complex64>> {
+        self.travellers = (0..self.set.points.len()).collect();
+        let Some(involution) = &problem.involution else {
+            return Vec::new();
+        };
+        if !self.set.ranks.is_empty() || self.set.points.len() > MOST_CONJUGATES {
+            return Vec::new();
+        }
+        let points = self.set.doubles().into_iter();
+        points.map(|point| involution.image(&point)).collect()
+    }
+
+    /// The stage that moves the conjugates of the points from the conjugate slices back to their own.
+    fn mirror(
+        &mut self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        id: StageId,
+    ) -> Option<Job> {
+        let points = self.conjugates(problem);
+        let involution = problem.involution.as_ref().filter(|_| !points.is_empty())?;
+        self.mirroring = true;
+        let target = problem.slices(self.set.dimension);
+        let mut start = Vec::new();
+        for row in &target {
+            start.push(row[0].conj());
+            start.extend(involution.image(&row[1..]));
+        }
+        let homotopy = HomotopyKind::Parameter {
+            start,
+            targets: vec![target.concat()],
+        };
+        let system = deflations.of_stage(problem, &self.set.tracked());
+        let system = (self.set.tracked(), &*system);
+        Some(Job::track(id, system, homotopy, &points, &problem.tracking).ends_only())
     }
 
     /// The stage that asks how the points move when the slices do.
@@ -211,7 +267,7 @@ impl Split {
         };
         let system = deflations.of_stage(problem, &self.set.tracked());
         let system = (self.set.tracked(), &*system);
-        Job::track(id, system, homotopy, points, &problem.tracking)
+        Job::track(id, system, homotopy, points, &problem.tracking).ends_only()
     }
 
     fn give_up_loop(&mut self) {
@@ -446,6 +502,18 @@ impl Split {
         (components, dimension)
     }
 
+    /// Whether the conjugates of these points come to them again, all or none.
+    fn is_self_conjugate(&self, points: &[usize]) -> Option<bool> {
+        let images = self.mirrored.as_ref()?;
+        let own: BTreeSet<usize> = points.iter().copied().collect();
+        let inside = points.iter().filter(|&&k| own.contains(&images[k])).count();
+        match inside {
+            0 => Some(false),
+            all if all == points.len() => Some(true),
+            _ => None,
+        }
+    }
+
     fn component(
         &self,
         problem: &Problem,
@@ -476,6 +544,7 @@ impl Split {
             multiplicity: set.multiplicity.clone(),
             irreducible,
             deflation: set.ranks.clone(),
+            self_conjugate: self.is_self_conjugate(points),
             slice: problem.slices_of_variables(set.dimension),
             points: points.iter().map(values).collect(),
             evidence: Evidence {

@@ -12,6 +12,7 @@ use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_solutions::witness::Method;
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::formats::limits as sizes;
 use cognate_systems::scaling::Scaling;
@@ -190,9 +191,24 @@ fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
             expected,
         ));
     }
+    let method = match m.method.map(v1::DecompositionMethod::try_from) {
+        None => None,
+        Some(Ok(v1::DecompositionMethod::Cascade)) => Some(Method::Cascade),
+        Some(Ok(v1::DecompositionMethod::Equations)) => Some(Method::Equations),
+        Some(Ok(v1::DecompositionMethod::Slices)) => Some(Method::Slices),
+        Some(Ok(v1::DecompositionMethod::Unspecified) | Err(_)) => {
+            return Err(ProtocolError::invalid(
+                "decompose.method",
+                m.method.unwrap_or_default(),
+                "cascade, equations or slices",
+            ));
+        }
+    };
     Ok(Decompose {
         dimensions,
         idle_loops: m.idle_loops,
+        method,
+        verify: m.verify,
     })
 }
 

@@ -7,6 +7,7 @@ use crate::submission::{
 use crate::v1;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
+use cognate_solutions::witness::Method;
 use cognate_systems::expression::{Function, Node, NodeId};
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System};
 
@@ -100,7 +101,17 @@ pub fn options(options: &Options) -> v1::Options {
             lowest_dimension: wanted.dimensions.map(|[lowest, _]| lowest),
             highest_dimension: wanted.dimensions.map(|[_, highest]| highest),
             idle_loops: wanted.idle_loops,
+            method: wanted.method.map(|method| method_number(method) as i32),
+            verify: wanted.verify,
         }),
+    }
+}
+
+fn method_number(method: Method) -> v1::DecompositionMethod {
+    match method {
+        Method::Cascade => v1::DecompositionMethod::Cascade,
+        Method::Equations => v1::DecompositionMethod::Equations,
+        Method::Slices => v1::DecompositionMethod::Slices,
     }
 }
 

@@ -1,9 +1,11 @@
 //! Decomposition: all components of all dimensions, and how the paths that found them add up.
 
 use super::evidence::Doubt;
+use super::method::{Method, Verification};
 use super::witness_set::WitnessSet;
 use crate::completeness::Completeness;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What the paths to one dimension came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +59,10 @@ impl TrackedPaths {
 pub struct Decomposition {
     /// Names of the variables, in the order of the coordinates.
     pub variables: Vec<String>,
+    /// How its witness points were found.
+    pub method: Method,
+    /// What a second way found; `None` where none was asked for.
+    pub verification: Option<Verification>,
     /// Lowest and highest dimension of the components that are wanted.
     pub asked: [u32; 2],
     /// The components: by dimension, degree and multiplicity, largest first.
@@ -80,14 +86,85 @@ impl Decomposition {
                 .all(|d| d.doubts.is_empty() && d.complete == Completeness::Yes)
     }
 
+    /// Compares with what a second way found: dimension by dimension, in degrees, multiplicities and counts. A
+    /// difference is a doubt in its dimension.
+    pub fn verify(&mut self, second: &Self) {
+        let mut agrees = true;
+        for dimension in &mut self.dimensions {
+            let number = dimension.number;
+            let (own, other) = (
+                listed(&self.components, number),
+                listed(&second.components, number),
+            );
+            if own != other {
+                agrees = false;
+                dimension.complete = Completeness::NotKnown;
+                dimension.doubts.push(Doubt::Differs {
+                    method: second.method,
+                    found: in_words(&other),
+                });
+            }
+        }
+        self.verification = Some(Verification {
+            method: second.method,
+            agrees,
+            settled: second.settled(),
+        });
+    }
+
     /// Whether in every dimension the paths to its solutions are those to components, each as often as
     /// paths came to it, and to junk.
     pub fn adds_up(&self) -> bool {
-        self.dimensions.iter().all(|d| {
-            let own = self.components.iter();
-            let own = own.filter(|set| set.dimension() == d.number);
-            let paths: u64 = own.map(|set| set.degree * set.multiplicity.tracked).sum();
-            d.superset == paths + d.junk
-        })
+        let explained = |d: &Dimension| d.junk + paths_to(&self.components, d.number);
+        self.dimensions.iter().all(|d| d.superset == explained(d))
+    }
+
+    /// Notes in each dimension by how much its counts do not add up, where nothing else explains that.
+    pub fn check_counts(&mut self) {
+        for dimension in &mut self.dimensions {
+            let explained = dimension.junk + paths_to(&self.components, dimension.number);
+            if dimension.superset != explained && dimension.doubts.is_empty() {
+                dimension.complete = Completeness::NotKnown;
+                dimension.doubts.push(Doubt::Counts {
+                    superset: dimension.superset,
+                    explained,
+                });
+            }
+        }
+    }
+}
+
+/// Paths to the witness points of a dimension.
+fn paths_to(components: &[WitnessSet], dimension: u32) -> u64 {
+    let own = components.iter();
+    let own = own.filter(|set| set.dimension() == dimension);
+    own.map(|set| set.degree * set.multiplicity.tracked).sum()
+}
+
+/// Components of a dimension by degree and multiplicity, with how many there are.
+type Listed = BTreeMap<(u64, Option<u64>), u64>;
+
+fn listed(components: &[WitnessSet], dimension: u32) -> Listed {
+    let mut listed = Listed::new();
+    for set in components.iter().filter(|set| set.dimension() == dimension) {
+        *listed
+            .entry((set.degree, set.multiplicity.scheme))
+            .or_default() += 1;
+    }
+    listed
+}
+
+fn in_words(listed: &Listed) -> String {
+    let each = listed.iter().rev().map(|((degree, multiplicity), count)| {
+        let multiplicity = match multiplicity {
+            Some(1) => String::new(),
+            Some(m) => format!(" and multiplicity {m}"),
+            None => " and unknown multiplicity".into(),
+        };
+        format!("{count} of degree {degree}{multiplicity}")
+    });
+    match listed.is_empty() {
+        true => "nothing".into(),
+        false => each.collect::<Vec<_>>().join(", "),
     }
 }

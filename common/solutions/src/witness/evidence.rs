@@ -1,6 +1,10 @@
 //! Evidence: what the claim rests on that a witness set is one component.
 
-use serde::{Deserialize, Serialize};
+use super::method::Method;
+use serde::de::Error as _;
+use serde::ser::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value};
 use std::fmt;
 
 /// Second derivatives of all witness points along a moving slice, summed: 0 over a component.
@@ -16,7 +20,7 @@ pub struct Trace {
 
 /// Why something is not settled.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
+#[serde(remote = "Self", rename_all = "snake_case")]
 pub enum Doubt {
     /// The sum of second derivatives over all points of the dimension is not 0: points are missing.
     PointsMissing,
@@ -40,6 +44,27 @@ pub enum Doubt {
         /// How many.
         points: u64,
     },
+    /// The paths that came to solutions are not those to components, each as often as to its witness points, and
+    /// to junk.
+    Counts {
+        /// Paths to solutions.
+        superset: u64,
+        /// Paths to components and junk.
+        explained: u64,
+    },
+    /// A second way found something else in this dimension.
+    Differs {
+        /// The second way.
+        method: Method,
+        /// What it found.
+        found: String,
+    },
+    /// Points of multiple sets, or that could not be sifted, which a further equation should have cut: what
+    /// it has in common with their sets is not known.
+    NotCut {
+        /// How many.
+        points: u64,
+    },
     /// Points of which it is not clear whether they solve all equations.
     Asked {
         /// How many.
@@ -52,6 +77,44 @@ pub enum Doubt {
         /// How many loops.
         loops: u64,
     },
+}
+
+/// In formats for people an object with its kind and its fields; elsewhere as a variant by number, since a format
+/// without names cannot look for the kind.
+impl Serialize for Doubt {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if !serializer.is_human_readable() {
+            return Self::serialize(self, serializer);
+        }
+        let value = Self::serialize(self, serde_json::value::Serializer);
+        let (kind, mut fields) = match value.map_err(S::Error::custom)? {
+            Value::Object(variant) => match variant.into_iter().next() {
+                Some((kind, Value::Object(fields))) => (kind, fields),
+                _ => return Err(S::Error::custom("a doubt has named fields")),
+            },
+            Value::String(kind) => (kind, Map::new()),
+            _ => return Err(S::Error::custom("a doubt has a name")),
+        };
+        fields.insert("kind".into(), Value::String(kind));
+        fields.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Doubt {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        if !deserializer.is_human_readable() {
+            return Self::deserialize(deserializer);
+        }
+        let mut fields = Map::deserialize(deserializer)?;
+        let Some(Value::String(kind)) = fields.remove("kind") else {
+            return Err(D::Error::missing_field("kind"));
+        };
+        let variant = match fields.is_empty() {
+            true => Value::String(kind),
+            false => Value::Object(Map::from_iter([(kind, Value::Object(fields))])),
+        };
+        Self::deserialize(variant).map_err(D::Error::custom)
+    }
 }
 
 impl fmt::Display for Doubt {
@@ -93,6 +156,22 @@ impl fmt::Display for Doubt {
                 "no deflation made {} regular",
                 counted(points, "multiple point")
             ),
+            Self::Counts {
+                superset,
+                explained,
+            } => write!(
+                f,
+                "counts do not add up: {} to solutions, {explained} to components and junk",
+                counted(superset, "path")
+            ),
+            Self::Differs { method, found } => {
+                write!(f, "{} finds something else: {found}", method.name())
+            }
+            Self::NotCut { points } => write!(
+                f,
+                "a further equation could not cut the sets of {}, which are multiple or not told from junk",
+                counted(points, "point")
+            ),
             Self::Asked { points } => write!(
                 f,
                 "whether {} solve all equations is not clear",
@@ -127,4 +206,33 @@ pub struct Evidence {
     pub worst_condition: f64,
     /// What is not clear.
     pub doubts: Vec<Doubt>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doubts_come_back_from_json_and_from_objects() {
+        let doubts = [
+            Doubt::PointsMissing,
+            Doubt::Open { classes: 3 },
+            Doubt::Differs {
+                method: Method::Slices,
+                found: "nothing".into(),
+            },
+        ];
+        for doubt in doubts {
+            let json = serde_json::to_string(&doubt).unwrap();
+            assert!(json.contains("\"kind\":"), "{json}");
+            assert_eq!(serde_json::from_str::<Doubt>(&json).unwrap(), doubt);
+            let bytes = postcard::to_stdvec(&doubt).unwrap();
+            assert_eq!(postcard::from_bytes::<Doubt>(&bytes).unwrap(), doubt);
+        }
+        let text = r#"{"kind": "junk", "points": 2}"#;
+        assert_eq!(
+            serde_json::from_str::<Doubt>(text).unwrap(),
+            Doubt::Junk { points: 2 }
+        );
+    }
 }

@@ -1,13 +1,15 @@
 //! Witness sets: solution sets of every dimension, by the points that general linear slices cut out of them.
 //!
 //! [`witness_set`] is one irreducible component, or what could not be told apart; [`evidence`] says what
-//! the claim rests on; [`decomposition`] is all of them, with counts that add up in each dimension.
+//! the claim rests on; [`decomposition`] is all of them, with counts that add up in each dimension; [`method`] how they were found.
 //! (Sommese, Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 and 15.)
 
 pub mod decomposition;
 pub mod evidence;
+pub mod method;
 pub mod witness_set;
 
 pub use decomposition::{Decomposition, Dimension, TrackedPaths};
 pub use evidence::{Doubt, Evidence, Trace};
+pub use method::{Method, Verification};
 pub use witness_set::{ComponentId, Irreducible, Multiplicity, WitnessSet};

@@ -54,6 +54,9 @@ pub struct WitnessSet {
     pub irreducible: Irreducible,
     /// Rank of the Jacobian before each deflation; empty where the equations are regular.
     pub deflation: Vec<u32>,
+    /// Whether complex conjugation maps it to itself; `None` where it maps no solutions to solutions, or that was
+    /// not found out.
+    pub self_conjugate: Option<bool>,
     /// The slice, a row for each dimension: constant first, then a coefficient for each variable.
     pub slice: Vec<Vec<Complex64>>,
     /// Values of the variables at the witness points.

@@ -5,8 +5,10 @@ use crate::client::error::{ClientError, Exit};
 use crate::client::output;
 use crate::client::output::text::{Look, count, counted, wrapped};
 use crate::client::problem;
+use cognate_algorithms::decomposition::{DecompositionCosts, DecompositionOptions};
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_systems::formats::Problem;
+use num_complex::Complex64;
 use std::fmt::Write as _;
 
 /// Reads and counts; solves nothing.
@@ -16,6 +18,9 @@ pub fn run(a: &Info) -> Result<Exit, ClientError> {
         eprintln!("warning: {warning}");
     }
     let name = problem::short_name(&a.file);
+    if a.decompose {
+        return components(a, &name, &read);
+    }
     let sets = problem::read_sets(a.sets.as_deref(), &read.system)?;
     let costs =
         StartCosts::with_sets(&read.system, sets.as_ref()).map_err(|e| ClientError::Input {
@@ -34,6 +39,52 @@ pub fn run(a: &Info) -> Result<Exit, ClientError> {
     };
     output::print(&text)?;
     Ok(Exit::Solved)
+}
+
+/// What each way to all components would cost.
+fn components(a: &Info, name: &str, read: &Problem) -> Result<Exit, ClientError> {
+    let options = DecompositionOptions {
+        parameters: vec![Complex64::new(1.0, 0.0); read.system.parameters.len()],
+        ..DecompositionOptions::default()
+    };
+    let costs = DecompositionCosts::of(&read.system, &options);
+    let costs = costs.map_err(|e| ClientError::Input {
+        origin: name.to_owned(),
+        message: e.to_string(),
+    })?;
+    let text = match a.format {
+        Format::Table => table_of_components(name, &costs, Look::of_standard_output()),
+        Format::Json => {
+            let json = serde_json::to_string_pretty(&costs);
+            format!(
+                "{}\n",
+                json.expect("counts and names can be written as JSON")
+            )
+        }
+    };
+    output::print(&text)?;
+    Ok(Exit::Solved)
+}
+
+fn table_of_components(name: &str, costs: &DecompositionCosts, look: Look) -> String {
+    let [lowest, highest] = costs.dimensions;
+    let mut text = format!(
+        "{}: {}, {}; components have dimensions {lowest} to {highest}\n\n  {}\n",
+        look.bold(name),
+        counted(costs.variables, "variable"),
+        counted(costs.equations, "equation"),
+        look.bold(&format!("{:<LABEL$}paths at most", "method")),
+    );
+    for (method, paths) in &costs.paths {
+        let paths = paths.map_or_else(|| "more than 2^64".into(), count);
+        let _ = writeln!(text, "  {method:<LABEL$}{paths}");
+    }
+    text.push('\n');
+    let why = format!("auto takes {}: {}", costs.choice, costs.why);
+    for part in wrapped(&why, look.width - 2) {
+        let _ = writeln!(text, "  {part}");
+    }
+    text
 }
 
 /// Width of the column of names.

@@ -22,9 +22,9 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     let components = &a.components;
     if a.decompose {
         prepared = problem::for_components(prepared, components);
-    } else if components.dimension.is_some() || components.loops.is_some() {
+    } else if components.are_given() {
         return Err(ClientError::Input {
-            origin: "--dimension, --loops".into(),
+            origin: "--dimension, --loops, --method, --verify".into(),
             message: "only go with --decompose".into(),
         });
     }

@@ -113,6 +113,18 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
     for line in wrapped(&what, look.width) {
         let _ = writeln!(text, "{}", look.dim(&line));
     }
+    if let Some(second) = &found.verification {
+        let said = match (second.agrees, second.settled) {
+            (true, true) => "finds the same",
+            (true, false) => "finds the same, and leaves something in doubt",
+            (false, _) => "finds something else",
+        };
+        let _ = writeln!(
+            text,
+            "{}",
+            look.dim(&format!("verified: {} {said}", second.method.name()))
+        );
+    }
     for doubt in found.unsettled.iter().take(DOUBTS_SHOWN) {
         for (i, line) in wrapped(doubt, look.width - 15).iter().enumerate() {
             let lead = match i {

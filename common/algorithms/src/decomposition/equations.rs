@@ -1,0 +1,328 @@
+//! Equation by equation: the sets that the equations so far have in common are cut by the next, where it does not
+//! hold on them.
+//!
+//! From a set of dimension m its slice m moves to as many forms as the next equation has degrees, and their
+//! product becomes that equation: a set of dimension m - 1. What comes out is sifted before the next equation
+//! cuts it, so that paths begin at regular points of sets that are there. Systems that are products stay in pieces.
+//! A multiple set that is to be cut ends this way: its points are counted as not cut.
+//! (Hauenstein, Wampler: Unification and extension of intersection algorithms, Appl. Math. Comput. 293, 2017.)
+
+use super::deflated::{Deflations, PureSet, doubles};
+use super::job::{Job, StageSystem};
+use super::junk::Sieve;
+use super::problem::{Problem, REFINED};
+use super::superset::Superset;
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::start_systems::slices::common_point;
+use cognate_continuation::work::StageId;
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::{Dimension, Doubt};
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The first equations in the order in which they cut, and what is made of them; each made once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Prefixes {
+    made: BTreeMap<usize, (Arc<Problem>, Deflations)>,
+}
+
+impl Prefixes {
+    /// The problem of so many equations, and its deflations.
+    pub fn of(&mut self, whole: &Problem, count: usize) -> (Arc<Problem>, &mut Deflations) {
+        let made = self.made.entry(count).or_insert_with(|| {
+            let prefix = whole.prefix(count);
+            let prefix = prefix.expect("equations that have degrees have factors that have");
+            let prefix = Arc::new(prefix);
+            (prefix, Deflations::default())
+        });
+        (Arc::clone(&made.0), &mut made.1)
+    }
+}
+
+/// Points of one dimension on their way to the next equation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Cut {
+    dimension: usize,
+    /// The factor that cuts, its degree and its exponent.
+    factor: u32,
+    degree: u32,
+    exponent: u32,
+    /// The equation has no other factor.
+    alone: bool,
+    /// Where the paths began; with slid ones once the slice moved.
+    points: Vec<Vec<Complex64>>,
+    sliding: bool,
+}
+
+/// What is done with an equation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    /// Which sets it cuts is not known yet.
+    Begin,
+    /// The sets that are still to be cut; the last is open, where it is said.
+    Cutting { left: Vec<Cut>, open: bool },
+    /// What came out is sifted.
+    Sifting(Box<Sieve>),
+}
+
+/// Equation by equation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Equations {
+    /// How many equations hold on the sets.
+    taken: usize,
+    phase: Phase,
+    /// Sets on which they hold, highest dimension first.
+    sets: Vec<PureSet>,
+    /// What the next equation leaves of them, by dimension.
+    supersets: BTreeMap<usize, Superset>,
+    /// Paths lost, and points not cut, that may have led to sets of at most this dimension.
+    lost: BTreeMap<usize, [u64; 2]>,
+}
+
+impl Equations {
+    pub fn new(problem: &Problem) -> Self {
+        let point = common_point(problem.seed(), problem.variables());
+        Self {
+            taken: 0,
+            phase: Phase::Begin,
+            sets: PureSet::everything(point).into_iter().collect(),
+            supersets: BTreeMap::new(),
+            lost: BTreeMap::new(),
+        }
+    }
+
+    /// How many equations the open stage knows.
+    pub fn prefix(&self) -> usize {
+        self.taken + 1
+    }
+
+    /// What it does, in a few words.
+    pub fn description(&self, problem: &Problem) -> String {
+        let of = problem.order.len();
+        match &self.phase {
+            Phase::Sifting(_) => format!("sifting what {} of {of} equations leave", self.prefix()),
+            Phase::Begin | Phase::Cutting { .. } => {
+                format!("cutting by equation {} of {of}", self.prefix())
+            }
+        }
+    }
+
+    /// Learns from the stage that is done, and says which comes next.
+    pub fn advance(
+        &mut self,
+        whole: &Problem,
+        prefixes: &mut Prefixes,
+        mut done: Option<&Job>,
+        id: StageId,
+    ) -> Option<Job> {
+        let last = whole.order.len();
+        loop {
+            if self.taken == last {
+                return None;
+            }
+            let (problem, deflations) = prefixes.of(whole, self.taken + 1);
+            match &mut self.phase {
+                Phase::Begin => self.begin(&problem),
+                Phase::Cutting { left, open } => {
+                    if let Some(job) = done.take().filter(|_| *open) {
+                        *open = false;
+                        let mut cut = left.pop().expect("the open one is there");
+                        if let Some(more) = learn(&problem, job, &mut cut, &mut self.supersets) {
+                            add(&mut self.lost, cut.dimension - 1, [more, 0]);
+                        }
+                        left.extend(cut.sliding.then_some(cut));
+                        continue;
+                    }
+                    if let Some(cut) = left.last_mut() {
+                        *open = true;
+                        return Some(next_job(&problem, deflations, cut, id));
+                    }
+                    if self.taken + 1 == last {
+                        self.taken = last;
+                        return None;
+                    }
+                    let sieve = Sieve::new(self.take_supersets(0), true);
+                    self.sets.clear();
+                    self.phase = Phase::Sifting(Box::new(sieve));
+                }
+                Phase::Sifting(sieve) => {
+                    let made = (&*problem, deflations);
+                    if let Some(job) = sieve.advance(made, done.take(), id, &mut self.sets) {
+                        return Some(job);
+                    }
+                    for dimension in sieve.dimensions() {
+                        let number = dimension.number as usize;
+                        add(&mut self.lost, number, [0, unclear(&dimension)]);
+                    }
+                    self.taken += 1;
+                    self.phase = Phase::Begin;
+                }
+            }
+        }
+    }
+
+    /// Tells the points at which the next equation holds from those where it cuts.
+    fn begin(&mut self, problem: &Problem) {
+        let own = problem.variables();
+        let mut cuts: BTreeMap<usize, Vec<Vec<Complex64>>> = BTreeMap::new();
+        for set in &self.sets {
+            let m = set.dimension;
+            for point in &set.points {
+                match problem.solves(&point.point[..own], &REFINED) {
+                    Some(true) => {
+                        let superset = superset(&mut self.supersets, m);
+                        superset.regular.extend(set.keeps(point, own));
+                        superset.singular.extend(set.keeps_multiple(point, own));
+                    }
+                    // A point that lies on no further hypersurface is gone.
+                    Some(false) if m == 0 => {}
+                    Some(false) if set.ranks.is_empty() => {
+                        cuts.entry(m).or_default().push(doubles(point, own));
+                    }
+                    Some(false) => add(&mut self.lost, m - 1, [0, 1]),
+                    None => add(&mut self.lost, m, [0, 1]),
+                }
+            }
+        }
+        let lowest = *problem.asked.start() as usize;
+        let cuts = cuts.into_iter().filter(|(m, _)| *m > lowest);
+        let factors = problem.last_factors();
+        let factors = factors.expect("factors of equations with degrees have degrees");
+        let mut left = Vec::new();
+        for (dimension, points) in cuts {
+            for (factor, [degree, exponent]) in (0..).zip(factors.iter().copied()) {
+                left.push(Cut {
+                    dimension,
+                    factor,
+                    degree,
+                    exponent,
+                    alone: factors.len() == 1 && exponent == 1,
+                    points: points.clone(),
+                    sliding: false,
+                });
+            }
+        }
+        self.phase = Phase::Cutting { left, open: false };
+    }
+
+    fn take_supersets(&mut self, lowest: usize) -> Vec<Superset> {
+        let supersets = std::mem::take(&mut self.supersets);
+        let wanted = supersets.into_iter().rev();
+        let wanted = wanted.filter(|(dimension, _)| *dimension >= lowest);
+        wanted.map(|(_, superset)| superset).collect()
+    }
+
+    /// The supersets of all dimensions that are asked and of those above, highest first.
+    pub fn supersets(&mut self, problem: &Problem) -> Vec<Superset> {
+        let lowest = *problem.asked.start() as usize;
+        for dimension in lowest..problem.variables() {
+            let superset = superset(&mut self.supersets, dimension);
+            for (_, [failed, not_cut]) in self.lost.range(dimension..) {
+                superset.failed += failed;
+                superset.not_cut += not_cut;
+            }
+        }
+        self.take_supersets(lowest)
+    }
+}
+
+fn superset(supersets: &mut BTreeMap<usize, Superset>, dimension: usize) -> &mut Superset {
+    let known = supersets.entry(dimension);
+    known.or_insert_with(|| Superset::empty(dimension))
+}
+
+fn add(lost: &mut BTreeMap<usize, [u64; 2]>, dimension: usize, more: [u64; 2]) {
+    let known = lost.entry(dimension).or_default();
+    known[0] += more[0];
+    known[1] += more[1];
+}
+
+/// Points of a dimension of which a sieve does not know what they are.
+fn unclear(dimension: &Dimension) -> u64 {
+    let points = |doubt: &Doubt| match doubt {
+        Doubt::Junk { points } | Doubt::NotDeflated { points } | Doubt::Asked { points } => *points,
+        _ => 0,
+    };
+    dimension.doubts.iter().map(points).sum()
+}
+
+/// The stage that moves the slice of a set, or that cuts it.
+fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut, id: StageId) -> Job {
+    let n = problem.variables();
+    let level = (n - cut.dimension) as u32;
+    let (parameters, order) = (Vec::new(), (0..n as u32).collect());
+    cut.sliding = !cut.sliding && cut.degree > 1;
+    let homotopy = match cut.sliding {
+        true => HomotopyKind::Slide {
+            parameters,
+            order,
+            level,
+            forms: cut.degree - 1,
+        },
+        false => HomotopyKind::Intersect {
+            parameters,
+            order,
+            level,
+        },
+    };
+    let wanted = StageSystem::Cut {
+        dimension: cut.dimension,
+        factor: cut.factor,
+    };
+    let system = deflations.of_stage(problem, &wanted);
+    let job = Job::track(
+        id,
+        (wanted, &*system),
+        homotopy,
+        &cut.points,
+        &problem.tracking,
+    );
+    job.ends_only()
+}
+
+/// Takes the ends of a stage; paths that were lost, where some were.
+fn learn(
+    problem: &Problem,
+    job: &Job,
+    cut: &mut Cut,
+    supersets: &mut BTreeMap<usize, Superset>,
+) -> Option<u64> {
+    let mut lost = job.crossings_left();
+    if cut.sliding {
+        for (_, decision, values) in job.ends() {
+            match decision.verdict {
+                Verdict::Finite => cut.points.push(values),
+                // From one general slice to another all solutions are regular.
+                _ => lost += 1,
+            }
+        }
+        return (lost > 0).then_some(lost);
+    }
+    let mut found = Superset::empty(cut.dimension - 1);
+    let mut singular = Vec::new();
+    for (place, (_, decision, values)) in job.ends().into_iter().enumerate() {
+        match decision.verdict {
+            Verdict::AtInfinity => {}
+            Verdict::Finite if cut.exponent == 1 => found.regular.push(values),
+            Verdict::Finite
+            | Verdict::Singular
+            | Verdict::Undecided
+            | Verdict::PositiveDimensional => {
+                singular.push(place);
+            }
+            Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => lost += 1,
+        }
+    }
+    found.gather(problem, job, &singular);
+    let superset = superset(supersets, cut.dimension - 1);
+    match cut.alone {
+        true => {
+            superset.regular.extend(found.regular);
+            superset.singular.extend(found.singular);
+        }
+        false => superset.join(found, u64::from(cut.exponent)),
+    }
+    (lost > 0).then_some(lost)
+}

@@ -1,0 +1,285 @@
+//! Decompositions: systems whose components are known, each decomposed with several seeds and compared.
+//!
+//! `cargo run --release -p cognate-tests --bin decompositions -- [--seeds 3] [--first 1] [--limit 100] [--only NAME,NAME] [--method NAME] [--verify true] [--folder PATH]`
+//!
+//! The systems stand beside the repository in `../shared/systems` (`--folder` names another place): each a
+//! folder with `system.bertini`, and `expected.components` in its `meta.json`. Without them the program says so and ends
+//! with 0. Prints a line of a table for each system. After `--limit` seconds no further stage of a
+//! decomposition is begun. A wrong answer that is called settled makes the exit code 1.
+
+use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
+use cognate_algorithms::run_locally::drive;
+use cognate_continuation::prepared_work::PreparedWork;
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_solutions::witness::{Decomposition, Method};
+use cognate_systems::formats;
+use cognate_systems::system::System;
+use cognate_tests::arguments::{number, options, or_exit};
+use cognate_tests::measures::cpu_seconds;
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// What is asked for.
+struct Wanted {
+    seeds: u64,
+    first: u64,
+    limit: f64,
+    only: Vec<String>,
+    method: Option<Method>,
+    verify: bool,
+    folder: PathBuf,
+}
+
+fn wanted() -> Result<Wanted, String> {
+    let mut wanted = Wanted {
+        seeds: 3,
+        first: 1,
+        limit: 100.0,
+        only: Vec::new(),
+        method: None,
+        verify: false,
+        folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/systems"),
+    };
+    for (word, value) in options()? {
+        match word.as_str() {
+            "--seeds" => wanted.seeds = number(&word, &value)?,
+            "--first" => wanted.first = number(&word, &value)?,
+            "--limit" => wanted.limit = number(&word, &value)?,
+            "--only" => wanted.only = value.split(',').map(str::to_owned).collect(),
+            "--method" => wanted.method = method(&value)?,
+            "--verify" => wanted.verify = number(&word, &value)?,
+            "--folder" => wanted.folder = value.into(),
+            _ => {
+                return Err(format!(
+                    "{word}: expected --seeds N, --first N, --limit SECONDS, --only NAMES, --method NAME, --verify true or --folder PATH"
+                ));
+            }
+        }
+    }
+    Ok(wanted)
+}
+
+fn method(name: &str) -> Result<Option<Method>, String> {
+    let found = Method::ALL.into_iter().find(|method| method.name() == name);
+    match (name, found) {
+        ("auto", _) => Ok(None),
+        (_, Some(method)) => Ok(Some(method)),
+        _ => Err(format!(
+            "--method {name}: expected auto, cascade, equations or slices"
+        )),
+    }
+}
+
+/// Components by dimension, degree and multiplicity (0 where it is not known).
+type Components = BTreeMap<(u64, u64, u64), u64>;
+
+/// A system, and its components.
+struct Instance {
+    name: String,
+    system: System,
+    expected: Components,
+}
+
+/// The systems of the folder whose components are known, by name.
+fn instances(wanted: &Wanted) -> Result<Vec<Instance>, String> {
+    let mut found = Vec::new();
+    let folders = std::fs::read_dir(&wanted.folder).map_err(|e| e.to_string())?;
+    for folder in folders.flatten() {
+        let name = folder.file_name().to_string_lossy().into_owned();
+        if !wanted.only.is_empty() && !wanted.only.contains(&name) {
+            continue;
+        }
+        let Ok(meta) = std::fs::read(folder.path().join("meta.json")) else {
+            continue;
+        };
+        let meta: Value = serde_json::from_slice(&meta).map_err(|e| format!("{name}: {e}"))?;
+        let Some(expected) = components(&meta["expected"]["components"]) else {
+            continue;
+        };
+        let Ok(content) = std::fs::read(folder.path().join("system.bertini")) else {
+            continue;
+        };
+        let system = formats::read(&name, &content)
+            .map_err(|e| e.to_string())?
+            .system;
+        found.push(Instance {
+            name,
+            system,
+            expected,
+        });
+    }
+    found.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(found)
+}
+
+/// Components that are listed by dimension and degree; a list of anything else is none.
+fn components(listed: &Value) -> Option<Components> {
+    let mut components = Components::new();
+    for entry in listed.as_array()? {
+        let field = |name: &str| entry.get(name).and_then(Value::as_u64);
+        let key = (
+            field("dim")?,
+            field("degree")?,
+            field("multiplicity").unwrap_or(1),
+        );
+        *components.entry(key).or_default() += field("count").unwrap_or(1);
+    }
+    Some(components)
+}
+
+fn counted(found: &Decomposition) -> Components {
+    let mut components = Components::new();
+    for set in &found.components {
+        let multiplicity = set.multiplicity.scheme.unwrap_or(0);
+        let key = (u64::from(set.dimension()), set.degree, multiplicity);
+        *components.entry(key).or_default() += 1;
+    }
+    components
+}
+
+/// The decomposition; `None` where the time was over, or what went wrong.
+fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decomposition>, String> {
+    let options = DecompositionOptions {
+        seed,
+        method: wanted.method,
+        verify: wanted.verify,
+        ..DecompositionOptions::default()
+    };
+    let mut solve = DecompositionSolve::new(system, &options).map_err(|e| e.to_string())?;
+    let began = cpu_seconds().map_err(|e| e.to_string())?;
+    let verbose = std::env::var_os("STAGES").is_some();
+    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+    let driven = drive::<Option<String>>(&mut solve, &mut |opening| {
+        let now = cpu_seconds().map_err(|e| Some(e.to_string()))?;
+        if now - began > wanted.limit {
+            return Err(None);
+        }
+        let made = opening.objects.iter();
+        objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+        let find = |digest: Digest| objects.get(&digest).cloned();
+        let system = opening.system.as_deref().unwrap_or(system);
+        let prepared = PreparedWork::new(system, &opening.stage, &find);
+        let prepared = prepared.map_err(|e| Some(e.to_string()))?;
+        let results = prepared.run(0..prepared.items(), 8);
+        if verbose {
+            let kind = format!("{:?}", opening.stage.homotopy);
+            let after = cpu_seconds().map_err(|e| Some(e.to_string()))?;
+            eprintln!(
+                "    {:.2} s: {:?} {}, attempt {}, {} items, {:.3} s",
+                now - began,
+                opening.stage.work,
+                kind.split([' ', '(']).next().unwrap_or_default(),
+                opening.stage.attempt,
+                prepared.items(),
+                after - now
+            );
+        }
+        Ok(results)
+    });
+    match driven {
+        Ok(()) => Ok(solve.decomposition().cloned()),
+        Err(None) => Ok(None),
+        Err(Some(error)) => Err(error),
+    }
+}
+
+/// What all seeds of one system came to.
+#[derive(Default)]
+struct Tally {
+    right: u64,
+    unsettled: u64,
+    wrong: u64,
+    unfinished: u64,
+    seconds: Vec<f64>,
+    notes: Vec<String>,
+}
+
+impl Tally {
+    fn add(
+        &mut self,
+        instance: &Instance,
+        seed: u64,
+        found: Result<Option<Decomposition>, String>,
+    ) {
+        let found = match found {
+            Ok(Some(found)) => found,
+            Ok(None) => {
+                self.unfinished += 1;
+                return;
+            }
+            Err(error) => {
+                self.unfinished += 1;
+                return self.notes.push(format!("seed {seed}: {error}"));
+            }
+        };
+        let components = counted(&found);
+        let mut what = Vec::new();
+        if components != instance.expected {
+            what.push(format!("{components:?} instead of {:?}", instance.expected));
+        }
+        if !found.adds_up() {
+            what.push("counts do not add up".into());
+        }
+        let doubts = found.dimensions.iter().map(|d| (d.number, &d.doubts));
+        let of_sets = found.components.iter();
+        let of_sets = of_sets.map(|set| (set.dimension(), &set.evidence.doubts));
+        for (dimension, doubts) in doubts.chain(of_sets) {
+            let said = doubts.iter().map(|d| format!("dimension {dimension}: {d}"));
+            what.extend(said);
+        }
+        match (found.settled(), what.is_empty()) {
+            (true, true) => self.right += 1,
+            (true, false) => self.wrong += 1,
+            (false, _) => self.unsettled += 1,
+        }
+        if !what.is_empty() {
+            self.notes.push(format!("seed {seed}: {}", what.join("; ")));
+        }
+    }
+
+    fn line(&mut self, name: &str) -> String {
+        self.seconds.sort_by(f64::total_cmp);
+        let second = |place: usize| self.seconds.get(place).copied().unwrap_or(0.0);
+        let most = self.seconds.len().saturating_sub(1);
+        format!(
+            "| {name} | {} | {} | {} | {} | {:.2} | {:.2} | {:.2} |",
+            self.right,
+            self.unsettled,
+            self.wrong,
+            self.unfinished,
+            second(0),
+            second(most / 2),
+            second(most)
+        )
+    }
+}
+
+fn main() -> ExitCode {
+    let wanted = or_exit(wanted());
+    if !wanted.folder.is_dir() {
+        println!("skipped: {} is not there", wanted.folder.display());
+        return ExitCode::SUCCESS;
+    }
+    println!("| system | right | unsettled | wrong | not done | least CPU s | median | most |");
+    println!("|---|---|---|---|---|---|---|---|");
+    let mut wrong = 0;
+    for instance in or_exit(instances(&wanted)) {
+        let mut tally = Tally::default();
+        for seed in wanted.first..wanted.first + wanted.seeds {
+            let began = or_exit(cpu_seconds().map_err(|e| e.to_string()));
+            let found = decompose(&instance.system, seed, &wanted);
+            let now = or_exit(cpu_seconds().map_err(|e| e.to_string()));
+            tally.seconds.push(now - began);
+            tally.add(&instance, seed, found);
+        }
+        println!("{}", tally.line(&instance.name));
+        for note in &tally.notes {
+            println!("  {note}");
+        }
+        wrong += tally.wrong;
+    }
+    ExitCode::from(u8::from(wrong > 0))
+}
