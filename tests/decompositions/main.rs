@@ -9,6 +9,7 @@
 
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::run_locally::drive;
+use cognate_algorithms::solve::Root;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_solutions::witness::{Decomposition, Method};
@@ -148,11 +149,12 @@ fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decom
         verify: wanted.verify,
         ..DecompositionOptions::default()
     };
-    let mut solve = DecompositionSolve::new(system, &options).map_err(|e| e.to_string())?;
+    let solve = DecompositionSolve::new(system, &options).map_err(|e| e.to_string())?;
+    let mut root = Root::new(solve);
     let began = cpu_seconds().map_err(|e| e.to_string())?;
     let verbose = std::env::var_os("STAGES").is_some();
     let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-    let driven = drive::<Option<String>>(&mut solve, &mut |opening| {
+    let driven: Result<(), Option<String>> = drive(&mut root, &mut |opening| {
         let now = cpu_seconds().map_err(|e| Some(e.to_string()))?;
         if now - began > wanted.limit {
             return Err(None);
@@ -180,7 +182,7 @@ fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decom
         Ok(results)
     });
     match driven {
-        Ok(()) => Ok(solve.decomposition().cloned()),
+        Ok(()) => Ok(root.solve.decomposition().cloned()),
         Err(None) => Ok(None),
         Err(Some(error)) => Err(error),
     }

@@ -128,7 +128,6 @@ impl Job {
         Self {
             system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
-            unsent: None,
         }
     }
 

@@ -556,9 +556,9 @@ mod tests {
     #[test]
     fn a_path_lost_on_the_way_leaves_nothing_settled() {
         // Each curve is cut by itself: its second path is lost.
-        let lost = |results: &mut Vec<PathResult>| {
-            for result in results.iter_mut().filter(|r| r.origin.0 == 1) {
-                result.outcome = PathOutcome::Failed(Failure::TooManySteps);
+        let lost = |path: &mut PathResult| {
+            if path.origin.0 == 1 {
+                path.outcome = PathOutcome::Failed(Failure::TooManySteps);
             }
         };
         let found = decompose(CURVES, Method::Equations, lost);

@@ -222,6 +222,7 @@ mod tests {
     use super::super::dispatch::{InstructionSet, JobOfSet, dispatch_set};
     use super::*;
     use crate::random::{Purpose, RandomStream};
+    use crate::scalar::Mask;
 
     /// Some operations of each kind on numbers of a stream.
     struct Formula;
