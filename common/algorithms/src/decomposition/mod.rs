@@ -602,7 +602,7 @@ mod tests {
             }
         };
         for method in [Method::Cascade, Method::Slices] {
-            let found = decompose(CURVES, method, &moved);
+            let found = decompose(CURVES, method, moved);
             assert!(!found.settled(), "{found:?}");
         }
     }
