@@ -10,11 +10,14 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Where the built programs are: beside the folder of the running test.
+/// Where the built programs are: beside the running program, or beside the folder of the running test.
 fn built() -> PathBuf {
-    let test = std::env::current_exe().expect("a test knows its own program");
-    let deps = test.parent().expect("a program is in a folder");
-    deps.parent().expect("cargo's layout").to_owned()
+    let running = std::env::current_exe().expect("a test knows its own program");
+    let folder = running.parent().expect("a program is in a folder");
+    match folder.ends_with("deps") {
+        true => folder.parent().expect("cargo's layout").to_owned(),
+        false => folder.to_owned(),
+    }
 }
 
 /// The `cognate` program, built now if it is not up to date.
