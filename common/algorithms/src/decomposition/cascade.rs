@@ -10,7 +10,6 @@ use super::problem::Problem;
 use super::superset::Superset;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
-use cognate_continuation::work::StageId;
 use cognate_solutions::classification::Verdict;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -55,7 +54,7 @@ impl Cascade {
     }
 
     /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(&mut self, problem: &Problem, done: Option<&Job>, id: StageId) -> Option<Job> {
+    pub fn advance(&mut self, problem: &Problem, done: Option<&Job>) -> Option<Job> {
         match done {
             None if self.started => return None,
             None => self.started = true,
@@ -84,7 +83,7 @@ impl Cascade {
         };
         let system = (StageSystem::Staircase, &*problem.staircase);
         let with = &problem.tracking;
-        Some(Job::track(id, system, homotopy, &self.points, with))
+        Some(Job::track(system, homotopy, &self.points, with))
     }
 
     /// What the level is for, in a few words.

@@ -14,7 +14,6 @@ use super::problem::{Problem, REFINED};
 use super::superset::Superset;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
-use cognate_continuation::work::StageId;
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::{Dimension, Doubt};
 use num_complex::Complex64;
@@ -115,7 +114,6 @@ impl Equations {
         whole: &Problem,
         prefixes: &mut Prefixes,
         mut done: Option<&Job>,
-        id: StageId,
     ) -> Option<Job> {
         let last = whole.order.len();
         loop {
@@ -137,7 +135,7 @@ impl Equations {
                     }
                     if let Some(cut) = left.last_mut() {
                         *open = true;
-                        return Some(next_job(&problem, deflations, cut, id));
+                        return Some(next_job(&problem, deflations, cut));
                     }
                     if self.taken + 1 == last {
                         self.taken = last;
@@ -149,7 +147,7 @@ impl Equations {
                 }
                 Phase::Sifting(sieve) => {
                     let made = (&*problem, deflations);
-                    if let Some(job) = sieve.advance(made, done.take(), id, &mut self.sets) {
+                    if let Some(job) = sieve.advance(made, done.take(), &mut self.sets) {
                         return Some(job);
                     }
                     for dimension in sieve.dimensions() {
@@ -249,7 +247,7 @@ fn unclear(dimension: &Dimension) -> u64 {
 }
 
 /// The stage that moves the slice of a set, or that cuts it.
-fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut, id: StageId) -> Job {
+fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut) -> Job {
     let n = problem.variables();
     let level = (n - cut.dimension) as u32;
     let (parameters, order) = (Vec::new(), (0..n as u32).collect());
@@ -272,13 +270,7 @@ fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut, id: S
         factor: cut.factor,
     };
     let system = deflations.of_stage(problem, &wanted);
-    let job = Job::track(
-        id,
-        (wanted, &*system),
-        homotopy,
-        &cut.points,
-        &problem.tracking,
-    );
+    let job = Job::track((wanted, &*system), homotopy, &cut.points, &problem.tracking);
     job.ends_only()
 }
 

@@ -90,41 +90,36 @@ fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
 impl Job {
     /// Paths from these points. `system` is the one of this description.
     pub fn track(
-        id: StageId,
         (description, system): (StageSystem, &System),
         homotopy: HomotopyKind,
         points: &[Vec<Complex64>],
         with: &Tracking,
     ) -> Self {
-        let points = stored(points);
-        let targets = homotopy.targets();
-        let first = opening(id, Work::Track, homotopy, points, with);
-        let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
-        Self {
-            system: description,
-            work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
-        }
+        let first = opening(Work::Track, homotopy, stored(points), with);
+        Self::tracked((description, system), first, with)
     }
 
     /// Paths from all solutions of a start system of these degrees, with these values of the parameters.
     pub fn straight(
-        id: StageId,
         (description, system): (StageSystem, &System),
         parameters: Vec<Complex64>,
         degrees: Vec<u32>,
         with: &Tracking,
     ) -> Self {
-        let first = Stage {
-            id,
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::StraightLine { parameters },
-            start_points: StartPoints::TotalDegree { degrees },
-            settings: with.settings.clone(),
-            seed: with.seed,
-            attempt: 0,
-        };
-        let stages = RetriedStage::new(first, system, with.tolerances.clone(), 1);
+        let homotopy = HomotopyKind::StraightLine { parameters };
+        let start_points = StartPoints::TotalDegree { degrees };
+        let first = stage(Work::Track, homotopy, start_points, with);
+        Self::tracked((description, system), first, with)
+    }
+
+    fn tracked(
+        (description, system): (StageSystem, &System),
+        first: impl Into<Opening>,
+        with: &Tracking,
+    ) -> Self {
+        let first: Opening = first.into();
+        let targets = first.stage.homotopy.targets();
+        let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
         Self {
             system: description,
             work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
@@ -142,7 +137,6 @@ impl Job {
 
     /// Whether these candidates at the only target are isolated.
     pub fn isolate(
-        id: StageId,
         system: StageSystem,
         parameters: Vec<Complex64>,
         candidates: StoredPoints,
@@ -153,7 +147,6 @@ impl Job {
             targets: vec![parameters],
         };
         Self::ask(
-            id,
             system,
             Work::LocalDimension,
             homotopy,
@@ -164,7 +157,6 @@ impl Job {
 
     /// How these witness points move when the parameters go from the first to the second.
     pub fn bend(
-        id: StageId,
         system: StageSystem,
         [start, target]: [Vec<Complex64>; 2],
         points: &[Vec<Complex64>],
@@ -174,18 +166,17 @@ impl Job {
             start,
             targets: vec![target],
         };
-        Self::ask(id, system, Work::Bend, homotopy, stored(points), with)
+        Self::ask(system, Work::Bend, homotopy, stored(points), with)
     }
 
     fn ask(
-        id: StageId,
         system: StageSystem,
         work: Work,
         homotopy: HomotopyKind,
         points: Arc<StoredPoints>,
         with: &Tracking,
     ) -> Self {
-        let opening = opening(id, work, homotopy, points, with);
+        let opening = opening(work, homotopy, points, with);
         Self {
             system,
             work: Doing::Asked {
@@ -281,25 +272,29 @@ impl Job {
     }
 }
 
+/// A stage that the root numbers when it is opened, and of which it names the system.
+fn stage(work: Work, homotopy: HomotopyKind, start_points: StartPoints, with: &Tracking) -> Stage {
+    Stage {
+        id: StageId(0),
+        system: None,
+        work,
+        homotopy,
+        start_points,
+        settings: with.settings.clone(),
+        seed: with.seed,
+        attempt: 0,
+    }
+}
+
+/// The same with the points where it starts.
 fn opening(
-    id: StageId,
     work: Work,
     homotopy: HomotopyKind,
     points: Arc<StoredPoints>,
     with: &Tracking,
 ) -> Opening {
     Opening {
-        stage: Stage {
-            id,
-            system: None,
-            work,
-            homotopy,
-            start_points: points.as_start(),
-            settings: with.settings.clone(),
-            seed: with.seed,
-            attempt: 0,
-        },
-        system: None,
-        objects: vec![points],
+        objects: vec![Arc::clone(&points)],
+        ..stage(work, homotopy, points.as_start(), with).into()
     }
 }

@@ -14,7 +14,6 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::StageId;
 use cognate_solutions::classification::{Isolation, Verdict, isolation_by};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{Dimension, Doubt};
@@ -94,7 +93,6 @@ impl Sieve {
         &mut self,
         (problem, deflations): (&Problem, &mut Deflations),
         done: Option<&Job>,
-        id: StageId,
         sets: &mut Vec<PureSet>,
     ) -> Option<Job> {
         if let Some(job) = done {
@@ -102,7 +100,7 @@ impl Sieve {
         }
         loop {
             if self.current.is_some() {
-                if let Some(job) = self.membership(problem, deflations, id, sets) {
+                if let Some(job) = self.membership(problem, deflations, sets) {
                     return Some(job);
                 }
                 self.settle(problem, deflations, sets);
@@ -115,7 +113,7 @@ impl Sieve {
             self.current = Some(superset);
             if !self.suspects.is_empty() {
                 self.asking = Asking::Isolation;
-                return Some(self.isolate(problem, dimension, id));
+                return Some(self.isolate(problem, dimension));
             }
         }
     }
@@ -142,7 +140,7 @@ impl Sieve {
         superset
     }
 
-    fn isolate(&self, problem: &Problem, dimension: usize, id: StageId) -> Job {
+    fn isolate(&self, problem: &Problem, dimension: usize) -> Job {
         let system = StageSystem::Sliced { dimension };
         let candidate = |suspect: &Suspect| Candidate {
             values: suspect.end.values.clone(),
@@ -155,7 +153,7 @@ impl Sieve {
         };
         let candidates: Vec<Candidate> = self.suspects.iter().map(candidate).collect();
         let (points, parameters) = (to_stored(&candidates), problem.slices(dimension).concat());
-        Job::isolate(id, system, parameters, points, &problem.tracking)
+        Job::isolate(system, parameters, points, &problem.tracking)
     }
 
     /// Paths on the next set that may hold points about which something is to be learnt.
@@ -163,7 +161,6 @@ impl Sieve {
         &mut self,
         problem: &Problem,
         deflations: &mut Deflations,
-        id: StageId,
         sets: &[PureSet],
     ) -> Option<Job> {
         while !self.sets_left.is_empty() {
@@ -186,7 +183,7 @@ impl Sieve {
             self.asking = Asking::Membership { set, suspects };
             let system = deflations.of_stage(problem, &of.tracked());
             let system = (of.tracked(), &*system);
-            let job = Job::track(id, system, homotopy, &points, &problem.tracking);
+            let job = Job::track(system, homotopy, &points, &problem.tracking);
             return Some(job.ends_only());
         }
         None

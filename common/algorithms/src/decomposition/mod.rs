@@ -187,29 +187,28 @@ impl DecompositionSolve {
         let (state, problem) = (&mut self.state, &*self.problem);
         let done = state.job.take();
         let paths = done.as_ref().map_or_else(TrackedPaths::default, Job::paths);
-        let id = StageId(state.stages.len() as u32);
         let made = (problem, &mut self.deflations);
         match &mut state.step {
             Step::Done(_) => None,
             Step::Cascade(cascade) => {
                 state.paths.add(&paths);
-                cascade.advance(problem, done.as_ref(), id)
+                cascade.advance(problem, done.as_ref())
             }
             Step::Equations(equations) => {
                 state.paths.add(&paths);
-                equations.advance(problem, &mut self.prefixes, done.as_ref(), id)
+                equations.advance(problem, &mut self.prefixes, done.as_ref())
             }
             Step::Slices(slices) => {
                 state.paths.add(&paths);
-                slices.advance(made, done.as_ref(), id)
+                slices.advance(made, done.as_ref())
             }
             Step::Sieve(sieve) => {
                 state.paths.add(&paths);
-                sieve.advance(made, done.as_ref(), id, &mut state.sets)
+                sieve.advance(made, done.as_ref(), &mut state.sets)
             }
             Step::Split(split) => {
                 state.paths_of_loops.add(&paths);
-                split.advance(made, done.as_ref(), id)
+                split.advance(made, done.as_ref())
             }
         }
     }

@@ -209,10 +209,8 @@ impl Problem {
     /// The factors of the last equation, as it is written: their degrees and exponents.
     pub fn last_factors(&self) -> Result<Vec<[u32; 2]>, ProblemError> {
         let found = self.factors_of_last();
-        let mut apart = with_equations(&self.given, &[]);
-        apart.equations = found.iter().map(|(node, _)| *node).collect();
-        apart.equation_names = (0..found.len()).map(|k| format!("factor {k}")).collect();
-        let of = degrees(&apart)?.total;
+        let nodes = found.iter().map(|(node, _)| *node).collect();
+        let of = degrees(&with_factors(&self.given, nodes))?.total;
         let pairs = of.into_iter().zip(found);
         Ok(pairs
             .map(|(degree, (_, exponent))| [degree, exponent])
@@ -344,18 +342,15 @@ struct FactorValues {
 
 impl FactorValues {
     fn new(system: &System, seed: u64) -> Result<Self, ProblemError> {
-        let mut apart = with_equations(system, &[]);
+        let mut nodes = Vec::new();
         let mut of_equation = Vec::with_capacity(system.equation_count());
         for &equation in &system.equations {
-            let first = apart.equations.len();
+            let first = nodes.len();
             let found = factors(&system.expressions, equation);
-            apart.equations.extend(found.iter().map(|(node, _)| *node));
-            of_equation.push(first..apart.equations.len());
+            nodes.extend(found.iter().map(|(node, _)| *node));
+            of_equation.push(first..nodes.len());
         }
-        apart.equation_names = (0..apart.equations.len())
-            .map(|k| format!("factor {k}"))
-            .collect();
-        let apart = equilibrate(&apart, seed);
+        let apart = equilibrate(&with_factors(system, nodes), seed);
         Ok(Self {
             degrees: degrees(&apart)?.total,
             equations: SlicedEquations::new(&apart, Vec::new()),
@@ -397,6 +392,14 @@ fn with_equations(system: &System, chosen: &[usize]) -> System {
     result.symmetry.clear();
     result.conjugates.clear();
     result.degenerate.clear();
+    result
+}
+
+/// The system with these factors of its equations in their place.
+fn with_factors(system: &System, nodes: Vec<NodeId>) -> System {
+    let mut result = with_equations(system, &[]);
+    result.equation_names = (0..nodes.len()).map(|k| format!("factor {k}")).collect();
+    result.equations = nodes;
     result
 }
 

@@ -8,7 +8,6 @@ use super::deflated::Deflations;
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use super::superset::Superset;
-use cognate_continuation::work::StageId;
 use serde::{Deserialize, Serialize};
 
 /// Dimension by dimension.
@@ -45,7 +44,6 @@ impl Slices {
         &mut self,
         (problem, deflations): (&Problem, &mut Deflations),
         done: Option<&Job>,
-        id: StageId,
     ) -> Option<Job> {
         let n = problem.variables();
         if let Some(job) = done {
@@ -69,7 +67,7 @@ impl Slices {
         };
         let made = deflations.of_stage(problem, &system);
         let parameters = problem.slices(dimension).concat();
-        let job = Job::straight(id, (system, &*made), parameters, degrees, &problem.tracking);
+        let job = Job::straight((system, &*made), parameters, degrees, &problem.tracking);
         Some(job.ends_only())
     }
 }

@@ -13,7 +13,6 @@ use cognate_continuation::bend::{Bend, Number, RefinedPoint, length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_systems::slices::form;
-use cognate_continuation::work::StageId;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::completeness::Completeness;
@@ -98,7 +97,6 @@ impl Split {
         &mut self,
         (problem, deflations): (&Problem, &mut Deflations),
         done: Option<&Job>,
-        id: StageId,
     ) -> Option<Job> {
         let own = problem.variables();
         if self.set.dimension == 0 {
@@ -113,11 +111,11 @@ impl Split {
         }
         let Some(_) = &self.bends else {
             let Some(job) = done else {
-                return Some(self.ask_bends(problem, id));
+                return Some(self.ask_bends(problem));
             };
             self.bends = Some(self.read_bends(job.answers()));
-            let next = self.next_loop(problem, deflations, id);
-            return next.or_else(|| self.mirror(problem, deflations, id));
+            let next = self.next_loop(problem, deflations);
+            return next.or_else(|| self.mirror(problem, deflations));
         };
         let mut points = self.travelling();
         if let Some(job) = done {
@@ -129,11 +127,11 @@ impl Split {
                 (None, _) => self.give_up_loop(),
             }
             if self.leg > 0 {
-                return Some(self.track(problem, deflations, &points, id));
+                return Some(self.track(problem, deflations, &points));
             }
         }
-        let next = self.next_loop(problem, deflations, id);
-        next.or_else(|| self.mirror(problem, deflations, id))
+        let next = self.next_loop(problem, deflations);
+        next.or_else(|| self.mirror(problem, deflations))
     }
 
     /// The conjugates of the points; none where conjugation means nothing or the set has many points.
@@ -150,12 +148,7 @@ impl Split {
     }
 
     /// The stage that moves the conjugates of the points from the conjugate slices back to their own.
-    fn mirror(
-        &mut self,
-        problem: &Problem,
-        deflations: &mut Deflations,
-        id: StageId,
-    ) -> Option<Job> {
+    fn mirror(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
         let points = self.conjugates(problem);
         let involution = problem.involution.as_ref().filter(|_| !points.is_empty())?;
         self.mirroring = true;
@@ -171,11 +164,11 @@ impl Split {
         };
         let system = deflations.of_stage(problem, &self.set.tracked());
         let system = (self.set.tracked(), &*system);
-        Some(Job::track(id, system, homotopy, &points, &problem.tracking).ends_only())
+        Some(Job::track(system, homotopy, &points, &problem.tracking).ends_only())
     }
 
     /// The stage that asks how the points move when the slices do.
-    fn ask_bends(&self, problem: &Problem, id: StageId) -> Job {
+    fn ask_bends(&self, problem: &Problem) -> Job {
         let dimension = self.set.dimension;
         let mut random = RandomStream::new(problem.seed(), Purpose::Detour, dimension as u64);
         let slices = problem.slices(dimension);
@@ -186,7 +179,7 @@ impl Split {
         }
         let ends = [start, moved.concat()];
         let points = self.set.doubles();
-        Job::bend(id, self.set.whole(), ends, &points, &problem.tracking)
+        Job::bend(self.set.whole(), ends, &points, &problem.tracking)
     }
 
     /// What workers found; where one found nothing, any error may be in the derivatives.
@@ -208,12 +201,7 @@ impl Split {
     }
 
     /// The next loop, where there are classes that it may bring together.
-    fn next_loop(
-        &mut self,
-        problem: &Problem,
-        deflations: &mut Deflations,
-        id: StageId,
-    ) -> Option<Job> {
+    fn next_loop(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
         let own = problem.variables();
         self.close(own);
         let open = self.open().count();
@@ -224,7 +212,7 @@ impl Split {
         self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
         self.travellers.sort_unstable();
         let points = self.travelling();
-        Some(self.track(problem, deflations, &points, id))
+        Some(self.track(problem, deflations, &points))
     }
 
     /// How the points move; empty where that was not asked.
@@ -259,7 +247,6 @@ impl Split {
         problem: &Problem,
         deflations: &mut Deflations,
         points: &[Vec<Complex64>],
-        id: StageId,
     ) -> Job {
         let homotopy = HomotopyKind::Parameter {
             start: self.corner(problem, self.leg),
@@ -267,7 +254,7 @@ impl Split {
         };
         let system = deflations.of_stage(problem, &self.set.tracked());
         let system = (self.set.tracked(), &*system);
-        Job::track(id, system, homotopy, points, &problem.tracking).ends_only()
+        Job::track(system, homotopy, points, &problem.tracking).ends_only()
     }
 
     fn give_up_loop(&mut self) {

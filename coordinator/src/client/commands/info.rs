@@ -9,6 +9,7 @@ use cognate_algorithms::decomposition::{DecompositionCosts, DecompositionOptions
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_systems::formats::Problem;
 use num_complex::Complex64;
+use serde::Serialize;
 use std::fmt::Write as _;
 
 /// Reads and counts; solves nothing.
@@ -27,10 +28,19 @@ pub fn run(a: &Info) -> Result<Exit, ClientError> {
             origin: name.clone(),
             message: e.to_string(),
         })?;
-    let text = match a.format {
-        Format::Table => table(&name, &read, &costs, Look::of_standard_output()),
+    show(a.format, &costs, |look| table(&name, &read, &costs, look))
+}
+
+/// Prints costs in the format that is asked for.
+fn show(
+    format: Format,
+    costs: &impl Serialize,
+    table: impl FnOnce(Look) -> String,
+) -> Result<Exit, ClientError> {
+    let text = match format {
+        Format::Table => table(Look::of_standard_output()),
         Format::Json => {
-            let json = serde_json::to_string_pretty(&costs);
+            let json = serde_json::to_string_pretty(costs);
             format!(
                 "{}\n",
                 json.expect("counts and names can be written as JSON")
@@ -52,18 +62,9 @@ fn components(a: &Info, name: &str, read: &Problem) -> Result<Exit, ClientError>
         origin: name.to_owned(),
         message: e.to_string(),
     })?;
-    let text = match a.format {
-        Format::Table => table_of_components(name, &costs, Look::of_standard_output()),
-        Format::Json => {
-            let json = serde_json::to_string_pretty(&costs);
-            format!(
-                "{}\n",
-                json.expect("counts and names can be written as JSON")
-            )
-        }
-    };
-    output::print(&text)?;
-    Ok(Exit::Solved)
+    show(a.format, &costs, |look| {
+        table_of_components(name, &costs, look)
+    })
 }
 
 fn table_of_components(name: &str, costs: &DecompositionCosts, look: Look) -> String {
