@@ -30,6 +30,7 @@
 pub mod any_algorithm;
 pub mod closings;
 mod coefficient_family;
+mod coefficients;
 pub mod completeness_claim;
 pub mod decomposition;
 pub mod finite_endpoints;

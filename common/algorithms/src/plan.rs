@@ -5,6 +5,7 @@ use crate::closings::Closing;
 use crate::closings::certificates::Certificates;
 use crate::closings::digits::Digits;
 use crate::coefficient_family::coefficient_family;
+use crate::coefficients::Coefficients;
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
 pub use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
@@ -32,10 +33,8 @@ use cognate_solutions::classification::Tolerances;
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
-use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 
 /// Most operations that choosing a start spends on a mixed volume: about a second.
 const CHOOSING_OPERATIONS: u64 = 500_000_000;
@@ -155,8 +154,10 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
     if options.sets.is_some() && (given || options.start == StartChoice::Monodromy) {
         return Err(PlanError::SetsWithoutLinearProduct);
     }
-    let in_units = in_units(system, options);
+    let coefficients = Coefficients::of(system, options);
+    let in_units = coefficients.in_units(system);
     let system = &*in_units;
+    let options = &coefficients.resolved(system, options);
     let mut plan = match (given, options.start) {
         (_, StartChoice::Monodromy) => plan_monodromy(system, options),
         (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),
@@ -181,35 +182,6 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
             .close_with(Closing::Certificates(certificates));
     }
     Ok(plan)
-}
-
-/// The system with the units in which it is tracked, decided from its coefficients where its paths
-/// begin and end: a family's at the start parameters and at the first target.
-fn in_units<'a>(system: &'a System, options: &PlanOptions) -> Cow<'a, System> {
-    let ends = options.start_parameters.iter();
-    let ends = ends.chain(options.target_parameters.first());
-    let mut values: Vec<Vec<Complex64>> = ends.cloned().collect();
-    values.retain(|set| set.len() == system.parameters.len());
-    if let Some(t) = system.path_variable {
-        // At both ends of the user's own homotopy.
-        let given = values.pop();
-        let given = given.unwrap_or_else(|| vec![Complex64::default(); system.parameters.len()]);
-        values = [1.0, 0.0]
-            .map(|at| {
-                let mut set = given.clone();
-                set[t] = Complex64::new(at, 0.0);
-                set
-            })
-            .into();
-    }
-    let scaling = scaling_of(system, &values);
-    match scaling == system.scaling {
-        true => Cow::Borrowed(system),
-        false => Cow::Owned(System {
-            scaling,
-            ..system.clone()
-        }),
-    }
 }
 
 fn check_parameters(system: &System, options: &PlanOptions) -> Result<(), PlanError> {

@@ -99,6 +99,13 @@ impl<'a, S: Real> Refiner<'a, S> {
         self.newton(point, Complex64::default(), target, 6)
     }
 
+    /// The point with the digits of this arithmetic, where Newton's method converges from it.
+    pub(crate) fn digits(&mut self, point: &[Complex64], target: u64) -> Option<Vec<Complex<S>>> {
+        let mut copy = point.to_vec();
+        let report = self.refine(&mut copy, target);
+        report.converged.then(|| self.x.clone())
+    }
+
     /// The same facts without moving the point.
     pub(crate) fn look(&mut self, point: &[Complex64], target: u64) -> Report {
         let mut copy = point.to_vec();

@@ -178,6 +178,8 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
         true if one_unknown(shape) => Verdict::Singular,
         true => match isolation(result, tolerances) {
             Isolation::PositiveDimensional => Verdict::PositiveDimensional,
+            // With its digits the Jacobian is regular: other solutions are near, that is all.
+            Isolation::Isolated { multiplicity: 1 } => Verdict::Finite,
             Isolation::Isolated { .. } => Verdict::Singular,
             Isolation::Undecided => Verdict::Undecided,
         },

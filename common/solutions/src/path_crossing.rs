@@ -11,11 +11,17 @@ use crate::point_shape::PointShape;
 use crate::unique_points::{Neighbourhood, Reach, clusters, joined};
 use cognate_continuation::path_result::{BoundaryKey, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_numeric::precision::DOUBLE;
 use serde::{Deserialize, Serialize};
 
 /// Within what distance another endpoint is the same as this one: half of the sum.
 pub fn radius(result: &PathResult, tolerances: &Tolerances) -> f64 {
     let (factor, floor) = match result.outcome {
+        // With more digits than doubles turns are made where ends that are only close are apart.
+        PathOutcome::Singular if result.precision_bits > DOUBLE => (
+            tolerances.singular_coincidence_factor,
+            tolerances.coincidence_floor,
+        ),
         PathOutcome::Singular => (
             tolerances.singular_coincidence_factor,
             tolerances.singular_coincidence_floor,

@@ -241,12 +241,16 @@ impl<'a> Draft<'a> {
     }
 
     /// One point is not both regular and singular: an endpoint that was taken for regular and coincides
-    /// with singular ones is one of theirs; with one on a set of solutions it is not decided.
+    /// with singular ones is one of theirs; with one on a set of solutions it is not decided. Several singular ends
+    /// that coincide are no regular point, whatever each was found to be.
     fn absorb_regular_ends(&mut self) {
         let finite = |verdict: Verdict| verdict == Verdict::Finite;
         let singular =
             |verdict: Verdict| verdict.may_be_multiple() || verdict == Verdict::PositiveDimensional;
-        if !self.decisions.iter().any(|d| singular(d.verdict)) {
+        let ends_singularly = |place: usize| self.results[place].outcome == PathOutcome::Singular;
+        if !(0..self.results.len())
+            .any(|k| singular(self.decisions[k].verdict) || ends_singularly(k))
+        {
             return;
         }
         let points = coincidences(
@@ -261,6 +265,9 @@ impl<'a> Draft<'a> {
         for members in points {
             let others = members.iter().map(|&m| self.decisions[m].verdict);
             let verdict = match others.filter(|&v| !finite(v)).min() {
+                None if members.len() > 1 && members.iter().any(|&m| ends_singularly(m)) => {
+                    Verdict::Singular
+                }
                 None => continue,
                 Some(Verdict::Singular) => Verdict::Singular,
                 Some(_) => Verdict::Undecided,

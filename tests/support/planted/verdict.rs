@@ -75,31 +75,43 @@ pub fn complaints(planted: &Planted, set: &SolutionSet) -> String {
         .iter()
         .map(|solution| solution.variables.values().collect())
         .collect();
-    let mut missing = 0;
-    for root in &planted.roots {
-        let exact = root.rounded();
-        let size = exact
+    expect("missing points", missing(planted, &found), 0);
+    text
+}
+
+/// How many planted solutions have none of those found near them, each coordinate in units of its largest value
+/// at any solution.
+fn missing(planted: &Planted, found: &[Vec<Complex64>]) -> u64 {
+    let exact: Vec<Vec<Complex64>> = planted.roots.iter().map(|root| root.rounded()).collect();
+    let largest = |k: usize| {
+        exact
             .iter()
-            .map(|z| z.norm_sqr())
+            .map(|point| point[k].norm_sqr())
             .fold(0.0, f64::max)
-            .sqrt();
+    };
+    let count = exact.first().map_or(0, Vec::len);
+    let units: Vec<f64> = (0..count)
+        .map(|k| largest(k).sqrt())
+        .map(|unit| if unit > 0.0 { unit } else { 1.0 })
+        .collect();
+    let size = |point: &mut dyn Iterator<Item = Complex64>| {
+        let in_units = point.zip(&units).map(|(z, unit)| (z / unit).norm_sqr());
+        in_units.fold(0.0, f64::max).sqrt()
+    };
+    let both = planted.roots.iter().zip(&exact);
+    let is_missing = both.filter(|(root, exact)| {
         let near = if root.multiplicity > 1 {
             NEAR_MULTIPLE
         } else {
             NEAR
         };
-        let within = near * if size > 0.0 { size } else { 1.0 };
-        let distance = |point: &Vec<Complex64>| {
-            let pairs = point.iter().zip(&exact);
-            pairs
-                .map(|(a, b)| (a - b).norm_sqr())
-                .fold(0.0, f64::max)
-                .sqrt()
-        };
-        missing += u64::from(!found.iter().any(|point| distance(point) <= within));
-    }
-    expect("missing points", missing, 0);
-    text
+        let own = size(&mut exact.iter().copied());
+        let within = near * if own > 0.0 { own } else { 1.0 };
+        !found
+            .iter()
+            .any(|point| size(&mut point.iter().zip(*exact).map(|(a, b)| a - b)) <= within)
+    });
+    is_missing.count() as u64
 }
 
 /// A start for this throw: mostly the one that is chosen by itself.

@@ -53,6 +53,8 @@ const STEADY_ENOUGH: f64 = 0.1;
 /// Or where it has not fallen over so many radii: that of a coordinate with a limit falls to 0, while
 /// fractional powers of t that come closer and closer to a leading one may creep for ever.
 const UNFALLING: u32 = 4;
+/// A path has closed where it is nearer to its beginning than this part of how far it went away.
+const RETURNED: f64 = 1e-3;
 /// Means over all samples and over every other one must agree to this before a mean is looked at.
 const RESOLVED: f64 = 1e-3;
 
@@ -283,7 +285,7 @@ impl Cauchy {
         self.vertex = 0;
         let size = norm(point);
         let closed = (1e-9f64).max(100.0 * self.noise);
-        if distance(point, &self.start) > closed * size {
+        if distance(point, &self.start) > closed * size || !self.returns(form, size) {
             // A solution as near to infinity as t^(1/c) is here belongs to c sheets, which close: what
             // looks like divergence is believed where more sheets than are tried meet.
             let most = settings.max_winding_number;
@@ -351,7 +353,8 @@ impl Cauchy {
             if agree && self.fine && self.turns > 1 && self.radius > DEEP {
                 return Next::Inward(DEEP.max(settings.endgame_min_radius));
             }
-            if agree && infinity != Infinity::Unresolved {
+            let open = matches!(infinity, Infinity::Unresolved | Infinity::BelowNoise);
+            if agree && !open {
                 // The aliasing error falls with the 16th power of the radius, so the newer mean
                 // is better than the change by far; what remains is the noise of the samples.
                 let accuracy = (0.01 * change)
@@ -435,6 +438,19 @@ impl Cauchy {
             diverges |= before.is_some_and(|(_, radii)| radii >= UNFALLING);
         }
         diverges
+    }
+
+    /// Whether a path is back where its turns began: by less than a part of how far it went away, but for noise. At
+    /// small radii all sheets of a cycle are near one another, which is seen with more digits than doubles.
+    fn returns(&self, form: Complex64, size: f64) -> bool {
+        let away = self
+            .samples
+            .iter()
+            .map(Complex64::norm_sqr)
+            .fold(0.0, f64::max)
+            .sqrt();
+        let noise = 100.0 * self.noise.max(f64::EPSILON * f64::EPSILON);
+        !self.fine || form.norm_sqr().sqrt() <= (RETURNED * away).max(noise * size)
     }
 
     fn add(&mut self, point: &[Complex64], form: Complex64, homogenizing: &[Homogenizing]) {

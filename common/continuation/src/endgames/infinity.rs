@@ -61,8 +61,8 @@ pub(super) struct Zero {
 }
 
 impl Zero {
-    /// Coefficients that are exact to many digits have smaller values and power sums that are not 0:
-    /// products of what rounding of several coefficients makes.
+    /// Coefficients that are exact to many digits, or differ by many orders of magnitude, have smaller values and
+    /// power sums that are not 0: products of several small coefficients, or of what rounding makes.
     pub(super) fn of(settings: &Settings) -> Self {
         let accuracy = match settings.exact_data {
             true => settings.data_accuracy,

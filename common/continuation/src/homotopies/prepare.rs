@@ -20,7 +20,7 @@ use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::sparse::{SparseElimination, sparse_order};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_numeric::scalar::{Complex, Real};
+use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter, values};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::polynomial::Degrees;
@@ -552,6 +552,18 @@ impl Homotopy {
     /// Normalised homogeneous coordinates of a point of the chart.
     pub(crate) fn endpoint(&self, point: &[Complex64]) -> Vec<Complex64> {
         let mut coordinates = self.chart.homogeneous(point);
+        self.chart.normalize(&mut coordinates);
+        coordinates
+    }
+
+    /// The same of a point with more digits, from which those of the homogenising coordinates come.
+    pub(crate) fn precise_endpoint(&self, point: &[Complex<DoubleDouble<f64>>]) -> Vec<Complex64> {
+        let rounded: Vec<Complex64> = point.iter().map(|z| z.lane(0)).collect();
+        let mut coordinates = self.chart.homogeneous(&rounded);
+        let precise = self.homogenizing((), point);
+        for (place, y0) in self.chart.homogenizing().into_iter().zip(precise) {
+            coordinates[place] = y0.lane(0);
+        }
         self.chart.normalize(&mut coordinates);
         coordinates
     }

@@ -6,23 +6,23 @@ use crate::predictor::hermite::{POINTS, weights};
 use cognate_numeric::scalar::{Complex, Mask, Real};
 use num_complex::Complex64;
 
+/// Points of a path, and where the next one is tried.
+const SLOTS: usize = POINTS + 1;
+
 /// The paths of all lanes: coordinates in the chart.
 ///
-/// The points stand in a ring. Every step fills the oldest slot: in lanes that moved with the new
-/// point, in all others with a copy of the point where they still are, and the slot that was
-/// copied no longer counts there. So nothing is shifted, and which points count in a lane is known
-/// from its own steps alone.
+/// The points stand in a ring, with one slot for the step that is tried. In lanes that do not move, while others do,
+/// all points go on by a slot: a rejected step leaves a lane with the points that it had, since a prediction from
+/// fewer of them would fail at a shorter step too.
 pub(super) struct Batch<R: Real> {
-    pub x: [Vec<Complex<R>>; POINTS],
-    pub tangent: [Vec<Complex<R>>; POINTS],
+    pub x: [Vec<Complex<R>>; SLOTS],
+    pub tangent: [Vec<Complex<R>>; SLOTS],
     /// Where the turns around 0 begin.
     anchor: Vec<Complex<R>>,
     anchor_tangent: Vec<Complex<R>>,
-    /// The oldest point and its tangent, while a step of a higher rung is tried in their slot.
-    oldest: [Vec<Complex<R>>; 2],
-    pub t: [Complex<R::Control>; POINTS],
+    pub t: [Complex<R::Control>; SLOTS],
     /// In which lanes a slot's point counts; where a path is, always.
-    pub known: [R::Mask; POINTS],
+    pub known: [R::Mask; SLOTS],
     /// The slot where the paths are.
     pub newest: usize,
     pub target: Complex<R::Control>,
@@ -49,9 +49,8 @@ impl<R: Real> Batch<R> {
             tangent: std::array::from_fn(|_| points()),
             anchor: points(),
             anchor_tangent: points(),
-            oldest: [points(), points()],
             t: std::array::from_fn(|_| Complex::from_f64((), 1.0, 0.0)),
-            known: [R::Mask::splat(false); POINTS],
+            known: [R::Mask::splat(false); SLOTS],
             newest: 0,
             target: Complex::from_f64((), 1.0, 0.0),
             h: control(0.0),
@@ -68,7 +67,7 @@ impl<R: Real> Batch<R> {
     /// The slot with the points of so many steps ago.
     #[inline(always)]
     pub fn slot(&self, age: usize) -> usize {
-        (self.newest + age) % POINTS
+        (self.newest + age) % SLOTS
     }
 
     /// Where the paths are.
@@ -181,20 +180,36 @@ impl<R: Real> Batch<R> {
         self.here().iter().map(|z| Digits::of(z, lane)).collect()
     }
 
-    /// Puts the oldest point aside.
-    pub fn keep_oldest(&mut self, slot: usize) {
-        for (kept, points) in self.oldest.iter_mut().zip([&self.x, &self.tangent]) {
-            for (kept, point) in kept.iter_mut().zip(&points[slot]) {
-                kept.set(point);
+    /// Takes the points that a step has led to, `moved` lanes at `t`; in lanes that did not move their coordinates are
+    /// those where the lane is.
+    #[inline(always)]
+    pub fn advance(
+        &mut self,
+        x: Vec<Complex<R>>,
+        tangent: Vec<Complex<R>>,
+        t: &Complex<R::Control>,
+        moved: R::Mask,
+    ) {
+        let (newest, next) = (self.newest, self.slot(POINTS));
+        let mut there = self.t[newest].clone();
+        there.select(moved, t);
+        self.known[newest] = moved;
+        let stays = moved.not();
+        if stays.any() {
+            for age in 0..POINTS - 1 {
+                let (to, from) = (self.slot(age), self.slot(age + 1));
+                for points in [&mut self.x, &mut self.tangent] {
+                    select(points, to, from, stays);
+                }
+                let before = self.t[from].clone();
+                self.t[to].select(stays, &before);
+                self.known[to] = self.known[to].or(stays.and(self.known[from]));
+                self.known[from] = self.known[from].and(moved);
             }
         }
-    }
-
-    /// Puts it back into its slot, which is empty.
-    pub fn restore_oldest(&mut self, slot: usize) {
-        let [x, tangent] = &self.oldest;
-        self.x[slot].clone_from(x);
-        self.tangent[slot].clone_from(tangent);
+        (self.x[next], self.tangent[next], self.t[next]) = (x, tangent, there);
+        self.known[next] = R::Mask::splat(false);
+        self.newest = next;
     }
 
     /// Remembers where a lane is.
@@ -225,12 +240,7 @@ impl<R: Real> Batch<R> {
     pub fn step_back(&mut self, lane: usize) -> Complex64 {
         let (from, to, only) = (self.before(lane), self.newest, one_lane::<R>(lane));
         for points in [&mut self.x, &mut self.tangent] {
-            let [from, to] = points
-                .get_disjoint_mut([from, to])
-                .expect("they are two slots");
-            for (to, from) in to.iter_mut().zip(from) {
-                to.select(only, from);
-            }
+            select(points, to, from, only);
         }
         let t = self.t[from].lane(lane);
         self.arrive(lane, t);
@@ -273,6 +283,16 @@ impl<R: Real> Batch<R> {
     pub fn restrict(&mut self, lane: usize, h: f64, limit: f64) {
         self.h.set_lane(lane, self.h.lane(lane).min(h));
         self.limit.set_lane(lane, self.usual_limit.min(limit));
+    }
+}
+
+/// Copies the lanes of a mask from slot to slot.
+#[inline(always)]
+fn select<R: Real>(slots: &mut [Vec<Complex<R>>], to: usize, from: usize, lanes: R::Mask) {
+    let two = slots.get_disjoint_mut([from, to]);
+    let [from, to] = two.expect("they are two slots");
+    for (to, from) in to.iter_mut().zip(from) {
+        to.select(lanes, from);
     }
 }
 

@@ -29,7 +29,7 @@ use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::jet::TERMS;
-use cognate_numeric::scalar::{Complex, Mask, Real};
+use cognate_numeric::scalar::{Complex, DoubleDouble, Mask, Real};
 use cognate_systems::evaluation::Evaluate;
 use num_complex::Complex64;
 
@@ -54,6 +54,8 @@ const PASSING: f64 = 0.1;
 const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
+/// A regular end whose homogenising coordinate is below this part of the largest lacks digits.
+const FAR_OUT: f64 = 1e-6;
 /// With such a condition number a path may go down a rung.
 const TAME: f64 = 1e10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
@@ -287,54 +289,28 @@ impl<'a, R: Real> Lockstep<'a, R> {
             &t,
             &std::array::from_fn(|k| counts[k].and(moving)),
         );
-        let next = slots[POINTS - 1];
+        let next = batch.slot(POINTS);
         let fine = self.room.bits > DOUBLE;
-        // What a lane does must not depend on whether others move.
-        let keeps_history = self.room.bits > DOUBLE_DOUBLE;
-        if keeps_history {
-            batch.keep_oldest(next);
-        }
         let mut candidate = std::mem::take(&mut batch.x[next]);
         let mut candidate_tangent = std::mem::take(&mut batch.tangent[next]);
         let context = self.context;
         for i in 0..n {
             let mut sum = Complex::zero(context);
-            // Weights are doubles: their rounding counts as a part of how far the points are apart,
-            // not of how large they are, where there are more digits.
-            if fine {
-                let here = &batch.x[newest][i];
-                let mut apart = candidate[i].clone();
-                apart.sub(here);
-                accumulate(context, &mut sum, &w.point[POINTS - 1], &apart);
-                accumulate(
-                    context,
-                    &mut sum,
-                    &w.tangent[POINTS - 1],
-                    &candidate_tangent[i],
-                );
-                for age in (0..POINTS - 1).rev() {
-                    let slot = slots[age];
-                    accumulate(context, &mut sum, &w.tangent[age], &batch.tangent[slot][i]);
-                    if age > 0 {
-                        apart.set(&batch.x[slot][i]);
-                        apart.sub(here);
-                        accumulate(context, &mut sum, &w.point[age], &apart);
-                    }
-                }
-                sum.add(here);
-            } else {
-                accumulate(context, &mut sum, &w.point[POINTS - 1], &candidate[i]);
-                accumulate(
-                    context,
-                    &mut sum,
-                    &w.tangent[POINTS - 1],
-                    &candidate_tangent[i],
-                );
-                for age in (0..POINTS - 1).rev() {
-                    let slot = slots[age];
-                    accumulate(context, &mut sum, &w.tangent[age], &batch.tangent[slot][i]);
+            let here = &batch.x[newest][i];
+            for (age, &slot) in slots.iter().enumerate().rev() {
+                accumulate(context, &mut sum, &w.tangent[age], &batch.tangent[slot][i]);
+                // Weights are doubles: their rounding counts as a part of how far the points are apart,
+                // not of how large they are, where there are more digits.
+                if !fine {
                     accumulate(context, &mut sum, &w.point[age], &batch.x[slot][i]);
+                } else if age > 0 {
+                    candidate[i].set(&batch.x[slot][i]);
+                    candidate[i].sub(here);
+                    accumulate(context, &mut sum, &w.point[age], &candidate[i]);
                 }
+            }
+            if fine {
+                sum.add(here);
             }
             candidate[i].set(&sum);
         }
@@ -455,7 +431,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .and(first.less_equal(&control(START_ERROR)))
             .and(batch.refine);
         let accepted = moved.or(refined);
-        let largest = largest_error(first, second, &limit, &tolerance, &noise);
+        let least = control(way.settled);
+        let largest = largest_error(first, second, &limit, &tolerance, &least);
         let wanted = next_step(&batch.h, first, &largest, &counts, moved, batch.may_grow);
         // A step that only reached its target says little about longer ones: keep the wish.
         let mut h = wanted;
@@ -469,30 +446,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let entering = moved.and(t.re.less_equal(&boundary));
         let entering = entering.and(before.less_equal(&boundary).not());
 
-        // Move: what stays where it is stands in the new slot, and no longer in the old one. The one
-        // lane of numbers of MPFR keeps the points behind it.
         let stays = accepted.not();
-        let in_place = keeps_history && !moved.any();
         if stays.any() {
             for i in 0..n {
                 candidate[i].select(stays, &batch.x[newest][i]);
                 candidate_tangent[i].select(stays, &batch.tangent[newest][i]);
             }
         }
-        if in_place {
-            batch.x[newest] = candidate;
-            batch.tangent[newest] = candidate_tangent;
-            batch.restore_oldest(next);
-        } else {
-            batch.x[next] = candidate;
-            batch.tangent[next] = candidate_tangent;
-            let mut there = batch.t[newest].clone();
-            there.select(moved, &t);
-            batch.t[next] = there;
-            batch.known[newest] = moved;
-            batch.known[next] = R::Mask::splat(false);
-            batch.newest = next;
-        }
+        batch.advance(candidate, candidate_tangent, &t, moved);
 
         // What only single paths know: a glance at each, and more where something happened.
         for lane in 0..R::WIDTH {
@@ -891,7 +852,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             origin: PathIndex(path.origin),
             attempt: self.stage.attempt(),
             outcome,
-            endpoint: Coordinates::Double(self.room.homotopy.endpoint(&self.point)),
+            endpoint: Coordinates::Double(self.endpoint(path.target, outcome)),
             t,
             residual: report.residual,
             condition: report.condition,
@@ -914,5 +875,30 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 .map(Box::new),
         };
         self.ended.results.push((path.item, result));
+    }
+
+    /// Normalised homogeneous coordinates of where a path ends. A regular point far out is given with digits of its
+    /// own: those that doubles have there are digits of its largest coordinate.
+    fn endpoint(&self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
+        let homotopy = self.room.homotopy;
+        if outcome == PathOutcome::Regular {
+            let native: Vec<_> = self
+                .point
+                .iter()
+                .map(|z| Complex { re: z.re, im: z.im })
+                .collect();
+            let near = FAR_OUT * norm(&self.point);
+            let homogenizing = homotopy.homogenizing::<f64>((), &native);
+            if homogenizing
+                .iter()
+                .any(|z| z.lane(0).norm_sqr() < near * near)
+            {
+                let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ());
+                if let Some(point) = refiner.digits(&self.point, target) {
+                    return homotopy.precise_endpoint(&point);
+                }
+            }
+        }
+        homotopy.endpoint(&self.point)
     }
 }

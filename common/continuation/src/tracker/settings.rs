@@ -37,7 +37,8 @@ pub struct Settings {
     pub singular_condition: f64,
     /// Relative accuracy at which a singular endpoint counts as settled.
     pub endgame_tolerance: f64,
-    /// Relative accuracy of the system's decimal coefficients; 0 where there are none.
+    /// Relative accuracy of the system's decimal coefficients; 0 where there are none. With exact data also the
+    /// least coefficient of an equation as a part of its largest, where they differ by many orders of magnitude.
     pub data_accuracy: f64,
     /// Whether what depends on digits of the coefficients beyond that accuracy is followed nevertheless.
     pub exact_data: bool,

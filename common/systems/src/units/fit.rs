@@ -82,6 +82,42 @@ pub fn scaling_of(system: &System, parameters: &[Vec<Complex64>]) -> Scaling {
     }
 }
 
+/// By how many powers of two the coefficients of one equation differ at most, in the units of the
+/// system's scaling, at these values of its parameters (one list for each set); 0 where nothing is known.
+pub fn coefficient_range(system: &System, parameters: &[Vec<Complex64>]) -> f64 {
+    let units: Vec<f64> = match system.scaling.is_none() {
+        true => vec![0.0; system.variable_count()],
+        false => system
+            .scaling
+            .exponents
+            .iter()
+            .map(|&e| f64::from(e))
+            .collect(),
+    };
+    let of_variable: Vec<usize> = (0..units.len()).collect();
+    let none = vec![Complex64::new(1.0, 0.0); system.parameters.len()];
+    let none = [none];
+    let sets = if parameters.is_empty() {
+        &none[..]
+    } else {
+        parameters
+    };
+    let equations = sets
+        .iter()
+        .flat_map(|set| magnitudes(system, set))
+        .flatten();
+    let range = |equation: Magnitudes| {
+        let terms = terms(&equation, &of_variable);
+        let sizes = terms.iter().map(|term| term.scaled(&units));
+        let (least, most) = sizes
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), size| {
+                (least.min(size), most.max(size))
+            });
+        most - least
+    };
+    equations.map(range).fold(0.0, f64::max)
+}
+
 /// The nearest integer within bounds, from a finite number or not.
 fn round(e: f64) -> i32 {
     let most = f64::from(MOST_EXPONENT);

@@ -1,0 +1,70 @@
+//! What the sizes of a system's coefficients decide before it is solved: the units in which it is tracked, and how
+//! far out its solutions may lie.
+
+use crate::plan::PlanOptions;
+use cognate_systems::system::System;
+use cognate_systems::units::{coefficient_range, scaling_of};
+use num_complex::Complex64;
+use std::borrow::Cow;
+
+/// Powers of two by which the exact coefficients of one equation differ from which on its solutions may lie further
+/// out than those of ordinary systems. Of 239 published systems the largest range is 2^30.
+const WIDE_RANGE: f64 = 40.0;
+/// Ranges are told apart up to here: a double holds its inverse.
+const WIDEST_RANGE: f64 = 900.0;
+
+/// Values of the parameters that the coefficients are looked at for: where the paths begin and end.
+pub(crate) struct Coefficients {
+    parameters: Vec<Vec<Complex64>>,
+}
+
+impl Coefficients {
+    /// A family's at the start parameters and at the first target; a homotopy's own at both its ends.
+    pub fn of(system: &System, options: &PlanOptions) -> Self {
+        let ends = options.start_parameters.iter();
+        let ends = ends.chain(options.target_parameters.first());
+        let mut parameters: Vec<Vec<Complex64>> = ends.cloned().collect();
+        parameters.retain(|set| set.len() == system.parameters.len());
+        if let Some(t) = system.path_variable {
+            let given = parameters.pop();
+            let given =
+                given.unwrap_or_else(|| vec![Complex64::default(); system.parameters.len()]);
+            parameters = [1.0, 0.0]
+                .map(|at| {
+                    let mut set = given.clone();
+                    set[t] = Complex64::new(at, 0.0);
+                    set
+                })
+                .into();
+        }
+        Self { parameters }
+    }
+
+    /// The system with the units in which it is tracked.
+    pub fn in_units<'a>(&self, system: &'a System) -> Cow<'a, System> {
+        let scaling = scaling_of(system, &self.parameters);
+        match scaling == system.scaling {
+            true => Cow::Borrowed(system),
+            false => Cow::Owned(System {
+                scaling,
+                ..system.clone()
+            }),
+        }
+    }
+
+    /// The options with the least detail of exact coefficients of a system in its units: where they differ by many
+    /// orders of magnitude, solutions so far out are found, or doubted, that count as infinite otherwise.
+    pub fn resolved(&self, system: &System, options: &PlanOptions) -> PlanOptions {
+        let mut options = options.clone();
+        let settings = &mut options.settings;
+        if settings.data_accuracy > 0.0 {
+            return options;
+        }
+        let range = coefficient_range(system, &self.parameters).min(WIDEST_RANGE);
+        if range > WIDE_RANGE {
+            settings.exact_data = true;
+            settings.data_accuracy = f64::from_bits((1023 - range as u64) << 52);
+        }
+        options
+    }
+}
