@@ -39,6 +39,9 @@ const CONTRACTION: f64 = 0.1;
 /// while a first correction is made up of what every path has, the later ones show where between
 /// two paths the prediction fell.
 const CONVERGENCE: f64 = 0.01;
+/// Corrections that shrink twice by a factor between these are those of Newton's method at a multiple point (a half at a
+/// double one): the prediction fell nearer to it than to the path.
+const LINEAR: (f64, f64) = (0.3, 0.9);
 /// Largest first correction at which a start point is believed.
 const START_ERROR: f64 = 1e-3;
 /// Farthest that the last Newton steps may move a regular endpoint.
@@ -417,7 +420,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let quadratically = third.less_equal(&quadratically).or(second_decides);
         let quadratically = quadratically.or(R::Mask::splat(way.decisive < MOST_ROUNDS));
         let converging = converging.and(quadratically);
-        let settled = last.less_equal(&noise).or(converging);
+        let mut settled = last.less_equal(&noise).or(converging);
+        if fine {
+            settled = settled.and(linearly(first, second, third).not());
+        }
         let mut refined = last.less_equal(&of_phase(way.refined, zero.refined));
         if fine {
             // A start point has the digits of doubles, however many there are here.
@@ -901,4 +907,23 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
         homotopy.endpoint(&self.point)
     }
+}
+
+/// `a b`. A function, since a closure under `dispatch` cannot be inlined for certain.
+#[inline(always)]
+fn times<C: Real<Context = (), Control = C>>(a: &C, b: f64) -> C {
+    let mut product = C::from_f64((), b);
+    product.mul(a);
+    product
+}
+
+/// In which lanes three corrections converge linearly.
+#[inline(always)]
+fn linearly<C: Real<Context = (), Control = C>>(first: &C, second: &C, third: &C) -> C::Mask {
+    let slowly = times(first, LINEAR.0).less_equal(second);
+    let slowly = slowly.and(times(second, LINEAR.0).less_equal(third));
+    let shrinks = second.less_equal(&times(first, LINEAR.1));
+    slowly
+        .and(shrinks)
+        .and(third.less_equal(&times(second, LINEAR.1)))
 }
