@@ -1,5 +1,7 @@
 //! Config: addresses, places, deadlines, limits of a coordinator; each with its default.
 
+use crate::api::admission::CallLimits;
+use crate::api::held_stream::StreamLimits;
 use crate::api::security::Security;
 use crate::chunks::leasing::Policy;
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
@@ -63,6 +65,10 @@ pub struct Rules {
     /// Silent connections are asked whether they live so often, and given as long to answer.
     /// Default 20 s.
     pub keep_alive: Duration,
+    /// What calls may take in memory.
+    pub calls: CallLimits,
+    /// What streams of results may hold.
+    pub streams: StreamLimits,
 }
 
 impl Default for Rules {
@@ -73,6 +79,8 @@ impl Default for Rules {
             worker_memory: Duration::from_secs(600),
             shutdown_grace: Duration::from_secs(5),
             keep_alive: Duration::from_secs(20),
+            calls: CallLimits::default(),
+            streams: StreamLimits::default(),
         }
     }
 }

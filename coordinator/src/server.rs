@@ -4,6 +4,7 @@
 //! store and a clock, and listeners by which calls come in.
 
 use crate::api::Context;
+use crate::api::admission::Admission;
 use crate::api::client_service::ClientService;
 use crate::api::security::{Guard, Security};
 use crate::api::worker_service::WorkerService;
@@ -28,6 +29,7 @@ use std::sync::Arc;
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
 use tonic::service::Routes;
+use tower::Layer;
 
 /// Why a coordinator does not start.
 #[derive(Debug, thiserror::Error)]
@@ -147,6 +149,7 @@ impl Server {
         rules: Rules,
     ) -> RunningServer {
         let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
+        let admission = Admission::new(rules.calls);
         let stopping = CancellationToken::new();
         let named = memory.as_ref().map(SharedMemoryDoor::named);
         let context = Arc::new(Context::new(
@@ -162,13 +165,14 @@ impl Server {
             tasks.spawn(listen(
                 listener,
                 security.clone(),
+                admission.clone(),
                 routes.clone(),
                 context.clone(),
             ));
         }
         let memory_ends = stopping.child_token();
         if let Some(memory) = memory {
-            tasks.spawn(memory.serve(routes, memory_ends.clone()));
+            tasks.spawn(memory.serve(admission.layer(routes), memory_ends.clone()));
         }
         tasks.spawn(coordinator.run(stopping));
         for address in &addresses {
@@ -283,7 +287,13 @@ async fn routes(context: &Arc<Context>) -> Routes {
 }
 
 /// Takes calls at one listener until the service stops.
-async fn listen(listener: Listener, security: Security, routes: Routes, context: Arc<Context>) {
+async fn listen(
+    listener: Listener,
+    security: Security,
+    admission: Admission,
+    routes: Routes,
+    context: Arc<Context>,
+) {
     let address = listener.address();
     let stopping = context.stopping.clone();
     let keep_alive = context.rules.keep_alive;
@@ -293,7 +303,7 @@ async fn listen(listener: Listener, security: Security, routes: Routes, context:
         .tcp_keepalive(Some(keep_alive));
     let served = match listener {
         Listener::Tcp(listener) => {
-            let mut server = server.layer(Guard(security.tokens));
+            let mut server = server.layer(Guard(security.tokens)).layer(admission);
             let incoming = transport::tcp_connections(listener);
             server
                 .add_routes(routes)
@@ -305,7 +315,7 @@ async fn listen(listener: Listener, security: Security, routes: Routes, context:
             let incoming = transport::tcp_connections(listener);
             match server.tls_config(tls) {
                 Ok(server) => {
-                    let mut server = server.layer(Guard(security.tokens));
+                    let mut server = server.layer(Guard(security.tokens)).layer(admission);
                     server
                         .add_routes(routes)
                         .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
@@ -316,7 +326,7 @@ async fn listen(listener: Listener, security: Security, routes: Routes, context:
         }
         // Its file is this user's alone: whoever opens it could read the tokens, too.
         Listener::Unix(socket) => {
-            let mut server = server.layer(Guard(None));
+            let mut server = server.layer(Guard(None)).layer(admission);
             let incoming = transport::unix_connections(socket);
             server
                 .add_routes(routes)

@@ -76,7 +76,7 @@ fn code(error: &CoordinatorError) -> Code {
         | CoordinatorError::Decomposed(_)
         | CoordinatorError::NotDecomposed(_) => Code::FailedPrecondition,
         CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
-        CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
+        CoordinatorError::NotPlanned(_) | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
         CoordinatorError::Ledger(
             LedgerError::Storage(_) | LedgerError::Unreachable(_) | LedgerError::Closed,
         )

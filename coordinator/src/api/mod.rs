@@ -1,7 +1,9 @@
 //! The services: decode, one call inwards, encode.
 
+pub mod admission;
 pub mod client_service;
 pub mod error;
+pub mod held_stream;
 pub mod security;
 pub mod worker_service;
 
@@ -15,6 +17,7 @@ use cognate_protocol::error::ProtocolError;
 use cognate_protocol::limits::PIECE_BYTES;
 use cognate_protocol::v1;
 use error::ApiError;
+use held_stream::HeldStreams;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio_util::sync::CancellationToken;
@@ -34,6 +37,8 @@ pub struct Context {
     pub stopping: CancellationToken,
     /// The listener in shared memory, where there is one; else the empty message.
     pub shared_memory: v1::SharedMemory,
+    /// Streams of results that are open.
+    pub streams: HeldStreams,
     /// Workers that get no work, and why.
     refused: Mutex<HashMap<WorkerId, String>>,
 }
@@ -48,6 +53,7 @@ impl Context {
     ) -> Self {
         Self {
             coordinator,
+            streams: HeldStreams::new(rules.streams),
             rules,
             stopping,
             shared_memory,

@@ -28,6 +28,7 @@ pub use work::{Pull, Report};
 use self::changes::Changes;
 use crate::chunks::leasing::Policy;
 use crate::jobs::planning::{Planned, STATE, plan_job};
+use crate::jobs::planning_queue::PlanningQueue;
 use crate::ledger::identity::{CoordinatorId, JobId, RequestId, Tenant, WorkerId};
 use crate::ledger::rows::{Cancelled, JobState, NewJob, WorkerSeen};
 use crate::ledger::{Ledger, LedgerError};
@@ -77,6 +78,8 @@ pub struct Coordinator {
     store: Store,
     who: CoordinatorId,
     policy: Policy,
+    /// Problems that are read and planned, or wait for it.
+    planning: PlanningQueue,
     /// Something may be leased that could not be before.
     work: Notify,
     /// Wakes those who watch a job when the job changes.
@@ -107,6 +110,7 @@ impl Coordinator {
             ledger,
             store,
             who,
+            planning: PlanningQueue::new(policy.planning),
             policy,
             work: Notify::new(),
             changes: Changes::default(),
@@ -129,6 +133,11 @@ impl Coordinator {
     /// The ledger.
     pub fn ledger(&self) -> &dyn Ledger {
         &*self.ledger
+    }
+
+    /// What bounds the reading and planning of problems.
+    pub fn planning(&self) -> &PlanningQueue {
+        &self.planning
     }
 
     /// The store of objects.
@@ -166,18 +175,17 @@ impl Coordinator {
             }
             (None, _) => None,
         };
-        // Counting the paths of some starts takes long; it must not hold up the runtime.
+        // Counting the paths of some starts takes long: it has its turn, and its time.
         let counting_operations = self.policy.counting_operations;
-        let planning = tokio::task::spawn_blocking(move || {
-            let start_solutions = start_solutions.as_deref();
-            let plan = plan_job(&system, &options, start_solutions, counting_operations);
-            (system, options, plan)
-        });
-        let (system, options, plan) = match planning.await {
-            Ok(done) => done,
-            Err(error) => std::panic::resume_unwind(error.into_panic()),
+        let (system, options) = (Arc::new(system), Arc::new(options));
+        let plan = {
+            let (system, options) = (Arc::clone(&system), Arc::clone(&options));
+            self.planning.plan(move || {
+                let start_solutions = start_solutions.as_deref();
+                plan_job(&system, &options, start_solutions, counting_operations)
+            })
         };
-        let plan = plan?;
+        let plan = plan.await??;
         let planned = Planned {
             name: options.name.clone(),
             problem: self.store.put_problem(&system).await?,

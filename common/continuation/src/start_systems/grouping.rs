@@ -5,6 +5,7 @@
 //! multi-homogeneous polynomial systems, 1992). Costs are bounded by counts of
 //! operations, never by a clock.
 
+use super::interruption::is_interrupted;
 use cognate_numeric::random::{Purpose, RandomStream};
 use std::collections::BTreeMap;
 
@@ -93,7 +94,7 @@ impl Kinds {
             strides.push(states);
             states = states.checked_mul(group.len() + 1)?;
         }
-        if states > MOST_STATES {
+        if states > MOST_STATES || is_interrupted() {
             return None;
         }
         // ways[places taken in each group], equation by equation.
@@ -380,6 +381,9 @@ impl<'a> Exact<'a> {
         for left in 1..1usize << n {
             let begun = n - left.count_ones() as usize;
             let mut least = vec![u64::MAX; self.states];
+            if is_interrupted() {
+                return None;
+            }
             for block in Self::blocks(left) {
                 self.fill_powers(block);
                 let (powers, after) = (&self.powers[block], &self.bounds[left ^ block]);
