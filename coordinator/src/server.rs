@@ -26,9 +26,12 @@ use cognate_protocol::v1::worker_api_server::WorkerApiServer;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
 use tonic::service::Routes;
+use tonic_health::ServingStatus;
+use tonic_health::server::HealthReporter;
 use tower::Layer;
 
 /// Why a coordinator does not start.
@@ -66,6 +69,13 @@ pub struct RunningServer {
     database: Option<Arc<SqlLedger>>,
 }
 
+/// How often the health of the services is told again.
+const HEALTH_EVERY: Duration = Duration::from_millis(500);
+/// Name by which probes ask whether calls can be answered.
+const READY: &str = "ready";
+const CLIENT_API: &str = "cognate.v1.ClientApi";
+const WORKER_API: &str = "cognate.v1.WorkerApi";
+
 /// Starts coordinators.
 pub struct Server;
 
@@ -90,10 +100,6 @@ impl Server {
                 })?)
             }
         };
-        let store = match &config.results {
-            Some(folder) => Store::folder(folder)?,
-            None => Store::in_memory(),
-        };
         let clock = Arc::new(SystemClock::default());
         let mut database = None;
         let ledger: Arc<dyn Ledger> = match &config.ledger {
@@ -109,6 +115,10 @@ impl Server {
                 database = Some(ledger.clone());
                 ledger
             }
+        };
+        let store = match &config.results {
+            Some(folder) => open_results(folder, &*ledger).await?,
+            None => Store::in_memory(),
         };
         let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
             .expect("a UUID is a name");
@@ -158,7 +168,7 @@ impl Server {
             stopping.clone(),
             named.unwrap_or_default(),
         ));
-        let routes = routes(&context).await;
+        let (routes, health) = routes(&context).await;
         let mut tasks = JoinSet::new();
         let addresses: Vec<_> = listeners.iter().map(Listener::address).collect();
         for listener in listeners {
@@ -174,6 +184,7 @@ impl Server {
         if let Some(memory) = memory {
             tasks.spawn(memory.serve(admission.layer(routes), memory_ends.clone()));
         }
+        tasks.spawn(report_health(health, Arc::clone(&context)));
         tasks.spawn(coordinator.run(stopping));
         for address in &addresses {
             tracing::info!(%address, "listening");
@@ -246,6 +257,17 @@ pub async fn run(
     Ok(())
 }
 
+/// The results in a folder. Where the ledger knows of jobs and the folder of nothing, one of them is not
+/// what was meant.
+async fn open_results(folder: &Path, ledger: &dyn Ledger) -> Result<Store, ServerError> {
+    let is_new = ledger.jobs(1).await?.is_empty();
+    if is_new && Store::has_results(folder) {
+        tracing::warn!(folder = %folder.display(), "the ledger knows of no job, and there are results: \
+            is it the right ledger, and whole?");
+    }
+    Ok(Store::folder(folder, is_new)?)
+}
+
 fn make_folder(path: &Path) -> Result<(), ServerError> {
     match path
         .parent()
@@ -260,7 +282,7 @@ fn make_folder(path: &Path) -> Result<(), ServerError> {
 }
 
 /// All services: ours, health and reflection.
-async fn routes(context: &Arc<Context>) -> Routes {
+async fn routes(context: &Arc<Context>) -> (Routes, HealthReporter) {
     let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
     let clients = ClientApiServer::new(ClientService::new(context.clone()))
         .max_decoding_message_size(limit)
@@ -269,8 +291,6 @@ async fn routes(context: &Arc<Context>) -> Routes {
         .max_decoding_message_size(limit)
         .max_encoding_message_size(limit);
     let (health, health_service) = tonic_health::server::health_reporter();
-    health.set_serving::<ClientApiServer<ClientService>>().await;
-    health.set_serving::<WorkerApiServer<WorkerService>>().await;
     let reflection = || {
         tonic_reflection::server::Builder::configure()
             .register_encoded_file_descriptor_set(DESCRIPTORS)
@@ -279,11 +299,35 @@ async fn routes(context: &Arc<Context>) -> Routes {
     // Clients of other languages ask by the older name of the service or by the newer.
     let (newer, older) = (reflection().build_v1(), reflection().build_v1alpha());
     let sound = "the descriptors were made by the compiler of the messages";
-    Routes::new(clients)
+    let routes = Routes::new(clients)
         .add_service(workers)
         .add_service(health_service)
         .add_service(newer.expect(sound))
-        .add_service(older.expect(sound))
+        .add_service(older.expect(sound));
+    (routes, health)
+}
+
+/// Says whether each service can do what it is for; the process lives whatever they say, which is the
+/// health of the service without a name.
+async fn report_health(health: HealthReporter, context: Arc<Context>) {
+    while !context.stopping.is_cancelled() {
+        let status = match context.coordinator.health().is_troubled() {
+            true => ServingStatus::NotServing,
+            false => ServingStatus::Serving,
+        };
+        for service in [CLIENT_API, WORKER_API, READY] {
+            health.set_service_status(service, status).await;
+        }
+        tokio::select! {
+            () = context.stopping.cancelled() => {}
+            () = tokio::time::sleep(HEALTH_EVERY) => {}
+        }
+    }
+    for service in [CLIENT_API, WORKER_API, READY] {
+        health
+            .set_service_status(service, ServingStatus::NotServing)
+            .await;
+    }
 }
 
 /// Takes calls at one listener until the service stops.

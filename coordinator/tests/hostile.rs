@@ -4,13 +4,16 @@ mod support;
 
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
-use support::{House, text};
+use support::{House, MANY_PATHS, text};
 use tonic::Code;
 
 /// The most memory that this process has had, in MiB.
 fn peak_mib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
-    let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
+    let line = status
+        .lines()
+        .find(|line| line.starts_with("VmHWM:"))
+        .unwrap();
     let kib: u64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
     kib / 1024
 }
@@ -39,10 +42,16 @@ async fn a_thousand_trivial_equations_are_planned_at_once_and_in_little_memory()
     let begin = Instant::now();
     let job = client.submit("linear", text(&thousand_variables(1))).await;
     job.expect("one path");
-    let refused = client.submit("quadratic", text(&thousand_variables(2))).await;
+    let refused = client
+        .submit("quadratic", text(&thousand_variables(2)))
+        .await;
     let refused = refused.expect_err("2^1000 paths");
     assert_eq!(refused.code(), Code::Unimplemented, "{refused}");
-    assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
+    assert!(
+        begin.elapsed() < Duration::from_secs(20),
+        "{:?}",
+        begin.elapsed()
+    );
     let more = peak_mib() - before;
     assert!(more < 1024, "{more} MiB");
 }
@@ -72,7 +81,12 @@ async fn messages_of_empty_parts_are_refused_before_they_are_made() {
 async fn malformed_messages_are_the_callers_fault() {
     let house = House::new().await;
     let mut answers = Vec::new();
-    for body in [&b"\xff\xff\xff"[..], b"\x0a\x05ab", b"\x08\x01", b"\x0a\x02\xc3\x28"] {
+    for body in [
+        &b"\xff\xff\xff"[..],
+        b"\x0a\x05ab",
+        b"\x08\x01",
+        b"\x0a\x02\xc3\x28",
+    ] {
         let mut grpc = tonic::client::Grpc::new(house.channel().await);
         grpc.ready().await.unwrap();
         let request = tonic::Request::new(bytes::Bytes::copy_from_slice(body));
@@ -81,6 +95,167 @@ async fn malformed_messages_are_the_callers_fault() {
         answers.push(answer.map(drop).map_err(|status| status.code()));
     }
     assert_eq!(answers, [Err(Code::InvalidArgument); 4]);
+}
+
+/// A worker that gives back whatever it gets, beside an honest one: no path is condemned, and it is named.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_black_hole_condemns_no_path_and_is_put_aside() {
+    let house = House::new().await;
+    let mut client = house.client().await;
+    let honest = house.worker("honest");
+    let mut hole = house.worker_api("hole").await;
+    let mut failed = 0;
+    let job = client.submit("job", text(MANY_PATHS)).await.unwrap();
+    for _ in 0..40 {
+        for lease in hole.pull(4, 20).await.leases {
+            hole.give_back(&lease, "it cannot be").await;
+            failed += 1;
+        }
+    }
+    let told = client.watch(&job).await;
+    let last = told.last().unwrap();
+    assert_eq!(
+        last.state,
+        i32::from(v1::JobState::Solved),
+        "{}",
+        last.message
+    );
+    let lost: u64 = last.stages.iter().map(|stage| stage.failed).sum();
+    assert_eq!(lost, 0, "paths were given up");
+    println!("{failed} chunks were given back");
+    if failed >= 3 {
+        let workers = client
+            .0
+            .list_workers(v1::ListWorkersRequest {})
+            .await
+            .unwrap();
+        let workers = workers.into_inner().workers;
+        let hole = workers.iter().find(|w| w.worker == "hole").unwrap();
+        assert!(hole.refused.contains("in a row"), "{:?}", hole.refused);
+    }
+    honest.stop().await;
+}
+
+/// Reports under leases that others have, or nobody, are kept nowhere and disturb nobody.
+#[tokio::test(flavor = "multi_thread")]
+async fn leases_belong_to_who_has_them() {
+    let house = House::durable(tempfile::tempdir().unwrap()).await;
+    let mut client = house.client().await;
+    let job = client.submit("job", text(MANY_PATHS)).await.unwrap();
+    let mut honest = house.worker_api("honest").await;
+    let lease = loop {
+        if let Some(lease) = honest.pull(1, 1000).await.leases.pop() {
+            break lease;
+        }
+    };
+    let mut thief = house.worker_api("thief").await;
+    let mut forger = house.worker_api("honest").await;
+    forger.session = "another".to_owned();
+    let before = files(&house);
+    for evil in [&mut thief, &mut forger] {
+        // Another's lease, and ones that nobody had.
+        for ahead in 0..20 {
+            let mut forged = lease.clone();
+            forged.id.as_mut().unwrap().epoch += ahead;
+            let verdict = evil
+                .report(&forged, support::FakeWorker::results(&forged))
+                .await;
+            assert_eq!(verdict.verdict(), v1::Verdict::Stale);
+        }
+        evil.give_back(&lease, "mine").await;
+        let request = v1::RenewRequest {
+            identity: evil.identity(),
+            leases: vec![lease.id.clone().unwrap()],
+        };
+        let renewed = evil.api.renew(request).await.unwrap().into_inner();
+        assert!(!renewed.renewals[0].held);
+    }
+    assert_eq!(files(&house), before, "something forged is kept");
+    let results = support::FakeWorker::results(&lease);
+    let verdict = honest.report(&lease, results).await;
+    assert_eq!(
+        verdict.verdict(),
+        v1::Verdict::Accepted,
+        "{}",
+        verdict.message
+    );
+    let cancel = v1::CancelRequest { job };
+    client.0.cancel(cancel).await.unwrap();
+}
+
+/// How many files the results have.
+fn files(house: &House) -> usize {
+    fn count(folder: &std::path::Path) -> usize {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries
+            .map(|entry| match entry.path() {
+                path if path.is_dir() => count(&path),
+                _ => 1,
+            })
+            .sum()
+    }
+    count(&house.folder.path().join("data/results"))
+}
+
+/// The results' folder goes away for some seconds, as one that is mounted late: nothing is lost, and
+/// health says so meanwhile.
+#[tokio::test(flavor = "multi_thread")]
+async fn results_that_are_away_for_a_while_cost_nothing() {
+    let house = House::durable(tempfile::tempdir().unwrap()).await;
+    let mut client = house.client().await;
+    let results = house.folder.path().join("data/results");
+    let away = house.folder.path().join("away");
+    let job = client.submit("job", text(MANY_PATHS)).await.unwrap();
+    std::fs::rename(&results, &away).unwrap();
+    let worker = house.worker("worker");
+    let mut probe = tonic_health::pb::health_client::HealthClient::new(house.channel().await);
+    let mut said = Vec::new();
+    for _ in 0..15 {
+        tokio::time::sleep(Duration::from_millis(200)).await;
+        for service in ["", "ready"] {
+            let request = tonic_health::pb::HealthCheckRequest {
+                service: service.to_owned(),
+            };
+            let status = probe.check(request).await.unwrap().into_inner().status;
+            said.push((service, status));
+        }
+    }
+    assert!(said.contains(&("ready", 2)), "not ready");
+    assert!(!said.contains(&("", 2)), "alive all the time");
+    assert!(!results.exists(), "nobody makes the folder anew");
+    std::fs::rename(&away, &results).unwrap();
+    let told = client.watch(&job).await;
+    let last = told.last().unwrap();
+    assert_eq!(
+        last.state,
+        i32::from(v1::JobState::Solved),
+        "{}",
+        last.message
+    );
+    let lost: u64 = last.stages.iter().map(|stage| stage.failed).sum();
+    assert_eq!(lost, 0, "paths were given up");
+    worker.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn no_start_over_missing_results() {
+    let mut house = House::durable(tempfile::tempdir().unwrap()).await;
+    let mut client = house.client().await;
+    client.submit("job", text(MANY_PATHS)).await.unwrap();
+    drop(client);
+    let folder = std::mem::replace(&mut house.folder, tempfile::tempdir().unwrap());
+    house.server.shutdown().await;
+    std::fs::remove_dir_all(folder.path().join("data/results")).unwrap();
+    let config = support::durable_config(folder.path());
+    let refused = cognate_coordinator::server::Server::start(config).await;
+    let Err(refused) = refused.map(drop) else {
+        panic!("it starts");
+    };
+    let said = refused.to_string();
+    assert!(
+        said.contains("data/results") && said.contains("mounted"),
+        "{said}"
+    );
 }
 
 /// Messages that are sent as they are.

@@ -97,7 +97,11 @@ impl Shapes {
 }
 
 /// Messages and those that are declared in them.
-fn collect(scope: &str, messages: Vec<DescriptorProto>, found: &mut Vec<(String, DescriptorProto)>) {
+fn collect(
+    scope: &str,
+    messages: Vec<DescriptorProto>,
+    found: &mut Vec<(String, DescriptorProto)>,
+) {
     for mut message in messages {
         let name = format!("{scope}.{}", message.name());
         collect(&name, std::mem::take(&mut message.nested_type), found);

@@ -98,7 +98,12 @@ impl Admission {
             return Ok(None);
         }
         let units = u32::try_from(bytes.min(all) / UNIT).unwrap_or(u32::MAX);
-        match timeout(self.limits.patience, Arc::clone(of).acquire_many_owned(units)).await {
+        match timeout(
+            self.limits.patience,
+            Arc::clone(of).acquire_many_owned(units),
+        )
+        .await
+        {
             Ok(permit) => Ok(permit.ok()),
             Err(_) => Err(Status::unavailable(
                 "this coordinator has no memory for a message of this size now: send it again later",
@@ -128,7 +133,7 @@ impl Admission {
                 let [_, length_bytes @ ..] = *head;
                 let bytes = u32::from_be_bytes(length_bytes) as usize;
                 if bytes > most {
-                    return Err(Status::resource_exhausted(format!(
+                    return Err(Status::out_of_range(format!(
                         "the message has {bytes} bytes; this call takes {most} at most"
                     )));
                 }
@@ -209,7 +214,9 @@ where
             let taken = admission.take(&message, most, body);
             let taken = match timeout(2 * admission.limits.patience, taken).await {
                 Ok(taken) => taken,
-                Err(_) => Err(Status::deadline_exceeded("the message did not arrive in time")),
+                Err(_) => Err(Status::deadline_exceeded(
+                    "the message did not arrive in time",
+                )),
             };
             match taken {
                 Ok((bytes, held)) => {
@@ -261,7 +268,9 @@ mod tests {
 
     async fn taken(admission: &Admission, path: &str, bytes: Bytes) -> Result<usize, Code> {
         let (message, most) = admission.of_path(path).unwrap();
-        let taken = admission.take(&message, most, Body::new(Full::new(bytes))).await;
+        let taken = admission
+            .take(&message, most, Body::new(Full::new(bytes)))
+            .await;
         taken.map(|(bytes, _)| bytes.len()).map_err(|s| s.code())
     }
 
@@ -277,10 +286,16 @@ mod tests {
         };
         let path = "/cognate.v1.WorkerApi/Report";
         let small = framed(&report(100));
-        assert_eq!(taken(&admission, path, small.clone()).await, Ok(small.len()));
+        assert_eq!(
+            taken(&admission, path, small.clone()).await,
+            Ok(small.len())
+        );
         // Two million in 4 MiB.
         let large = framed(&report(2_000_000));
-        assert_eq!(taken(&admission, path, large).await, Err(Code::ResourceExhausted));
+        assert_eq!(
+            taken(&admission, path, large).await,
+            Err(Code::ResourceExhausted)
+        );
         let all = admission.decoded.available_permits();
         assert_eq!(all * UNIT, CallLimits::default().all_decoded_bytes);
     }
@@ -296,10 +311,13 @@ mod tests {
         let path = "/cognate.v1.ClientApi/Cancel";
         assert!(taken(&admission, path, cancel(100)).await.is_ok());
         let much = cancel(2 << 20);
-        assert_eq!(taken(&admission, path, much).await, Err(Code::ResourceExhausted));
+        assert_eq!(taken(&admission, path, much).await, Err(Code::OutOfRange));
         let mut cut = cancel(100).to_vec();
         cut.pop();
-        assert_eq!(taken(&admission, path, cut.into()).await, Err(Code::InvalidArgument));
+        assert_eq!(
+            taken(&admission, path, cut.into()).await,
+            Err(Code::InvalidArgument)
+        );
         let mut garbage = cancel(100).to_vec();
         garbage[HEAD] = 0xff;
         let garbage = taken(&admission, path, garbage.into()).await;
@@ -322,7 +340,10 @@ mod tests {
         });
         let first = admission.take(&message, most, body(&large)).await;
         let second = admission.take(&message, most, body(&large)).await;
-        assert_eq!(second.map(drop).map_err(|s| s.code()), Err(Code::Unavailable));
+        assert_eq!(
+            second.map(drop).map_err(|s| s.code()),
+            Err(Code::Unavailable)
+        );
         drop(first);
         assert!(admission.take(&message, most, body(&large)).await.is_ok());
     }

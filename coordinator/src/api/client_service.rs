@@ -367,6 +367,8 @@ impl ClientApi for ClientService {
             let here = idle < memory && (!row.says.draining || row.leased_chunks > 0);
             here.then(|| {
                 let refused = self.context.refusal(&row.says.worker);
+                let aside = || self.context.coordinator.put_aside(&row.says.worker);
+                let refused = refused.or_else(aside);
                 worker(row, refused, idle)
             })
         });

@@ -150,6 +150,7 @@ impl ConfigFile {
                 held_paths: r.held_paths.unwrap_or(policy.held_paths),
                 counting_operations: r.counting_operations.unwrap_or(policy.counting_operations),
                 planning: policy.planning,
+                conduct: policy.conduct,
                 speculation: Speculation {
                     times: r.speculation_times.unwrap_or(policy.speculation.times),
                     least_ms: in_ms(

@@ -5,6 +5,7 @@
 
 mod answers;
 mod changes;
+pub mod conduct;
 mod error;
 mod large_answer;
 mod run;
@@ -26,7 +27,9 @@ pub use large_answer::Answered;
 pub use work::{Pull, Report};
 
 use self::changes::Changes;
+use self::conduct::Conduct;
 use crate::chunks::leasing::Policy;
+use crate::health::Health;
 use crate::jobs::planning::{Planned, STATE, plan_job};
 use crate::jobs::planning_queue::PlanningQueue;
 use crate::ledger::identity::{CoordinatorId, JobId, RequestId, Tenant, WorkerId};
@@ -78,6 +81,10 @@ pub struct Coordinator {
     store: Store,
     who: CoordinatorId,
     policy: Policy,
+    /// How workers have done lately.
+    conduct: Conduct,
+    /// Whether ledger and store can be used.
+    health: Health,
     /// Problems that are read and planned, or wait for it.
     planning: PlanningQueue,
     /// Something may be leased that could not be before.
@@ -110,6 +117,8 @@ impl Coordinator {
             ledger,
             store,
             who,
+            conduct: Conduct::new(policy.conduct),
+            health: Health::default(),
             planning: PlanningQueue::new(policy.planning),
             policy,
             work: Notify::new(),
@@ -133,6 +142,21 @@ impl Coordinator {
     /// The ledger.
     pub fn ledger(&self) -> &dyn Ledger {
         &*self.ledger
+    }
+
+    /// Why a worker gets no chunk now, in words.
+    pub fn put_aside(&self, worker: &WorkerId) -> Option<String> {
+        self.conduct.refusal(worker, tokio::time::Instant::now())
+    }
+
+    /// Whether ledger and store can be used.
+    pub fn health(&self) -> &Health {
+        &self.health
+    }
+
+    /// Looks whether ledger and store can be used.
+    pub async fn examine(&self) {
+        self.health.examine(&*self.ledger, &self.store).await;
     }
 
     /// What bounds the reading and planning of problems.

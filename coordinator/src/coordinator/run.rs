@@ -9,6 +9,7 @@ use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobEnd;
 use futures::FutureExt;
 use std::any::Any;
+use std::collections::BTreeSet;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Duration;
@@ -37,11 +38,23 @@ impl Coordinator {
     /// Works until it is told to stop; then ends what it has begun.
     pub async fn run(self: Arc<Self>, stop: CancellationToken) {
         let tasks = TaskTracker::new();
+        tasks.spawn(Arc::clone(&self).run_examination(stop.clone()));
         let expiry = tasks.track_future(Arc::clone(&self).run_expiry(stop.clone()));
         let stewards = Arc::clone(&self).run_stewards(stop.clone(), tasks.clone());
         tokio::join!(expiry, stewards);
         tasks.close();
         tasks.wait().await;
+    }
+
+    /// Looks after ledger and store.
+    async fn run_examination(self: Arc<Self>, stop: CancellationToken) {
+        loop {
+            self.examine().await;
+            tokio::select! {
+                () = stop.cancelled() => return,
+                () = sleep(LOOK) => {}
+            }
+        }
     }
 
     /// Takes back expired leases.
@@ -107,11 +120,16 @@ impl Coordinator {
     /// Takes back the leases that have expired by now.
     pub async fn expire(&self) -> Result<(), CoordinatorError> {
         let expired = self.ledger.expire().await?;
+        let mut silent = BTreeSet::new();
         for gone in &expired {
             tracing::warn!(lease = %gone.lease, worker = %gone.worker,
                 suspicions = gone.suspicions, "a worker fell silent: its chunk goes to another");
+            silent.insert(gone.worker.clone());
             self.wake_steward(gone.lease.chunk.job);
             self.changed(gone.lease.chunk.job);
+        }
+        for worker in &silent {
+            self.failed(worker, "it fell silent");
         }
         if !expired.is_empty() {
             self.work.notify_waiters();

@@ -142,6 +142,12 @@ impl Ledger for FaultyLedger {
     ) -> Result<(), LedgerError> {
         self.write(self.inner.fail_item(chunk, epoch, result)).await
     }
+    async fn reopen(&self, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
+        self.write(self.inner.reopen(chunk, epoch)).await
+    }
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
+        self.inner.standing(lease).await
+    }
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
         self.write(self.inner.finish(job, epoch, end)).await
     }

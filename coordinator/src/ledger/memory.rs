@@ -2,6 +2,7 @@
 //!
 //! Deterministic: the same calls at the same times give the same answers.
 
+mod accusations;
 mod audit;
 mod books;
 mod speculation;
@@ -288,6 +289,32 @@ impl Ledger for MemoryLedger {
         Ok(())
     }
 
+    async fn reopen(&self, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
+        let mut books = self.books();
+        let job = books.fenced(chunk.job, epoch)?;
+        let Some(stage) = job.stages.get_mut(&chunk.stage) else {
+            return Ok(());
+        };
+        if stage.row.closed {
+            return Err(LedgerError::StageOrder(chunk.job, chunk.stage));
+        }
+        stage.reopen(chunk.first);
+        books.elders.remove(&chunk);
+        Ok(())
+    }
+
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
+        let mut books = self.books();
+        let Some(holder) = books.holder(lease) else {
+            return Ok(Standing::Ended);
+        };
+        let chunk = books.chunk(lease.chunk).filter(|_| !holder.is_elder);
+        Ok(Standing::Held {
+            worker: holder.worker,
+            request: chunk.and_then(|chunk| chunk.request.clone()),
+        })
+    }
+
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
         let now = self.clock.now();
         let mut books = self.books();
@@ -498,12 +525,13 @@ impl Ledger for MemoryLedger {
     }
 
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
+        let now = self.clock.now();
         let mut books = self.books();
         let Some(holder) = books.holder(lease) else {
             return Ok(());
         };
-        if let (GiveBack::Failed { .. }, Some(chunk)) = (why, books.chunk(lease.chunk)) {
-            chunk.row.suspicions += 1;
+        if let GiveBack::Failed { .. } = why {
+            books.accuse(now, lease.chunk, &holder.worker);
         }
         if holder.is_elder {
             books.elders.remove(&lease.chunk);
@@ -523,11 +551,14 @@ impl Ledger for MemoryLedger {
             let Some(chunk) = books.chunk(id) else {
                 continue;
             };
-            let ended = match chunk.row.state {
-                ChunkState::Leased { until, .. } if until <= now => until,
+            let (ended, holder) = match &chunk.row.state {
+                ChunkState::Leased { until, worker } if *until <= now => (*until, worker.clone()),
                 _ => continue,
             };
-            chunk.row.suspicions += 1;
+            books.accuse(now, id, &holder);
+            let Some(chunk) = books.chunk(id) else {
+                continue;
+            };
             let (epoch, suspicions) = (chunk.row.epoch, chunk.row.suspicions);
             let request = chunk.request.clone();
             if let Some(worker) = books.unlease(id, ChunkState::Ready) {

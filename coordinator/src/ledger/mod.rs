@@ -119,6 +119,10 @@ pub trait Ledger: Send + Sync {
         epoch: Epoch,
         result: ResultObject,
     ) -> Result<(), LedgerError>;
+    /// Takes the result of a finished chunk of an open stage back, because its object is lost: the chunk
+    /// is ready again. One that is not finished is left alone.
+    async fn reopen(&self, chunk: identity::ChunkId, epoch: Epoch) -> Result<(), LedgerError>;
+
     /// Ends a job.
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError>;
     /// Accepted and failed chunks of a stage from item `from` on, in the order of their items,
@@ -152,6 +156,9 @@ pub trait Ledger: Send + Sync {
         leases: &[LeaseId],
         duration_ms: u64,
     ) -> Result<Vec<Renewal>, LedgerError>;
+    /// Whether a lease stands, and who has it.
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError>;
+
     /// Accepts a chunk's result, whose object is already durable.
     async fn complete(
         &self,

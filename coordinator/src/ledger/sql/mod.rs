@@ -4,6 +4,7 @@
 //! after it. Readers have connections of their own. The statements are the same
 //! for both engines; what differs stands in `engine`.
 
+mod accusations;
 mod audit;
 mod decode;
 mod engine;
@@ -32,13 +33,14 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const PAUSE: Duration = Duration::from_millis(500);
 
 /// Version of the schema that this program writes.
-pub const SCHEMA_VERSION: i64 = 3;
+pub const SCHEMA_VERSION: i64 = 4;
 
 /// What makes version n + 1 of version n; the first makes version 1 of an empty database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
     include_str!("../schema.sql"),
     include_str!("../schema_2.sql"),
     include_str!("../schema_3.sql"),
+    include_str!("../schema_4.sql"),
 ];
 
 /// A ledger in a database.
@@ -237,6 +239,42 @@ impl Ledger for SqlLedger {
             .await
     }
 
+    async fn reopen(&self, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, _| Box::pin(stewardship::reopen(c, chunk, epoch)))
+            .await
+    }
+
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
+        // The younger of two leases stands in the chunk's row, the elder beside it.
+        let rows = query(
+            "SELECT worker, request FROM chunks WHERE job = ? AND stage = ? AND first = ?
+             AND epoch = ? AND state = 'leased'
+             UNION ALL
+             SELECT worker, NULL FROM elders WHERE job = ? AND stage = ? AND first = ?
+             AND epoch = ? AND lease_until IS NOT NULL",
+        );
+        let job = lease.chunk.job.to_string();
+        let (stage, first) = (lease.chunk.stage.0, signed(lease.chunk.first));
+        let rows = rows
+            .bind(&job)
+            .bind(stage)
+            .bind(first)
+            .bind(signed(lease.epoch.0));
+        let rows = rows
+            .bind(&job)
+            .bind(stage)
+            .bind(first)
+            .bind(signed(lease.epoch.0));
+        match rows.read_all(&self.readers).await?.first() {
+            Some(row) => Ok(Standing::Held {
+                worker: worker(row)?,
+                request: request_of(row)?,
+            }),
+            None => Ok(Standing::Ended),
+        }
+    }
+
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
         self.writer
             .write(move |c, now| Box::pin(stewardship::finish(c, now, job, epoch, end)))
@@ -329,7 +367,7 @@ impl Ledger for SqlLedger {
 
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         self.writer
-            .write(move |c, _| Box::pin(leases::give_back(c, lease, why)))
+            .write(move |c, now| Box::pin(leases::give_back(c, now, lease, why)))
             .await
     }
 
