@@ -258,6 +258,52 @@ async fn no_start_over_missing_results() {
     );
 }
 
+/// Random ends with small residuals are not believed: an honest worker does the chunk again, and the answer
+/// is right.
+#[tokio::test(flavor = "multi_thread")]
+async fn ends_that_solve_no_equation_are_done_again() {
+    let house = House::new().await;
+    let mut client = house.client().await;
+    let job = client.submit("job", text(MANY_PATHS)).await.unwrap();
+    let mut liar = house.worker_api("liar").await;
+    let mut lies = 0;
+    while lies < 3 {
+        for lease in liar.pull(4, 1000).await.leases {
+            let mut results = support::FakeWorker::results(&lease);
+            for result in &mut results {
+                result.outcome = v1::PathOutcome::Regular.into();
+                let at = |k: u64| (1.7 * (result.origin + 3 * k) as f64).sin();
+                result.endpoint = (0..6).map(at).collect();
+            }
+            liar.report(&lease, results).await;
+            lies += 1;
+        }
+    }
+    let honest = house.worker("honest");
+    let told = client.watch(&job).await;
+    assert_eq!(told.last().unwrap().state, i32::from(v1::JobState::Solved));
+    for solution in client.solutions(&job).await {
+        assert!(solution.residual < 1e-8, "{solution:?}");
+        let value = |name: &str| {
+            let found = solution.variables.iter().find(|v| v.name == name).unwrap();
+            num_complex::Complex64::new(found.re, found.im)
+        };
+        let (x, y) = (value("x"), value("y"));
+        let f = x.powu(8) + y.powu(2) - 3.0;
+        let g = y.powu(8) - x * y + 1.0;
+        assert!(f.norm() + g.norm() < 1e-6, "{solution:?}");
+    }
+    let workers = client
+        .0
+        .list_workers(v1::ListWorkersRequest {})
+        .await
+        .unwrap();
+    let workers = workers.into_inner().workers;
+    let liar = workers.iter().find(|w| w.worker == "liar").unwrap();
+    assert!(liar.refused.contains("does not hold"), "{:?}", liar.refused);
+    honest.stop().await;
+}
+
 /// Messages that are sent as they are.
 mod raw {
     use bytes::{Buf, BufMut, Bytes};

@@ -154,7 +154,7 @@ mod tests {
             said.ends_with("it failed 6 chunks in a row, the last because it cannot"),
             "{said}"
         );
-        assert_eq!(conduct.aside(begin), [worker.clone()]);
+        assert_eq!(conduct.aside(begin), std::slice::from_ref(&worker));
         assert_eq!(
             conduct.aside_until(&worker, begin + Duration::from_secs(41)),
             None

@@ -29,6 +29,7 @@ pub use work::{Pull, Report};
 use self::changes::Changes;
 use self::conduct::Conduct;
 use crate::chunks::leasing::Policy;
+use crate::chunks::plausibility::EndCheck;
 use crate::health::Health;
 use crate::jobs::planning::{Planned, STATE, plan_job};
 use crate::jobs::planning_queue::PlanningQueue;
@@ -99,6 +100,8 @@ pub struct Coordinator {
     seen: Mutex<HashMap<WorkerId, (WorkerSeen, i64)>>,
     systems: Recent<Digest, System>,
     stages: Recent<Digest, Stage>,
+    /// What the ends of a stage's paths are held against; none where that cannot be done.
+    end_checks: Recent<(JobId, StageId), Option<EndCheck>>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
     /// Of stages that count mixed cells: those of each finished chunk, by its first item.
@@ -128,6 +131,7 @@ impl Coordinator {
             seen: Mutex::default(),
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),
+            end_checks: Recent::new(KEPT),
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),
             cells: Recent::new(KEPT),

@@ -1,7 +1,8 @@
 //! What workers call: pull, renew, report, give back.
 
-use super::{Coordinator, CoordinatorError};
+use super::{Coordinator, CoordinatorError, job_row};
 use crate::chunks::audit::is_audited;
+use crate::chunks::plausibility::EndCheck;
 use crate::ledger::identity::{ItemRange, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{
     Completion, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing, WorkerSeen,
@@ -10,6 +11,7 @@ use crate::ledger::rules::MOST_MICROS;
 use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, Work};
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
@@ -220,6 +222,7 @@ impl Coordinator {
                 what,
             }
         })?;
+        let (results, doubt) = self.doubt(lease, &stage, results).await?;
         let object = match self
             .store
             .put_results(lease, items, results, cpu_micros)
@@ -240,7 +243,13 @@ impl Coordinator {
             Err(error) => return Err(error.into()),
         };
         let address = object.address.clone();
-        let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
+        let needs_another = is_audited(lease.chunk, self.policy.audit_percent) || doubt.is_some();
+        if let Some(why) = &doubt {
+            tracing::warn!(%lease, worker = %by.worker, why,
+                "results that cannot be right: the chunk is done again");
+            self.failed(&by.worker, why);
+        }
+        let completion = if needs_another {
             self.ledger.confirm(lease, object).await?
         } else {
             self.ledger.complete(lease, object).await?
@@ -252,11 +261,13 @@ impl Coordinator {
                 self.changed(lease.chunk.job);
             }
             Completion::Accepted => {
-                self.conduct.did_well(&by.worker);
+                if doubt.is_none() {
+                    self.conduct.did_well(&by.worker);
+                }
                 tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
                 self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
-                if is_audited(lease.chunk, self.policy.audit_percent) {
+                if needs_another {
                     // Whoever was outvoted has lost chunks.
                     self.work.notify_waiters();
                 }
@@ -278,6 +289,42 @@ impl Coordinator {
             }
         }
         Ok(completion)
+    }
+
+    /// The results, and what is wrong with the first end of a path that solves no equations.
+    async fn doubt(
+        &self,
+        lease: LeaseId,
+        stage: &Stage,
+        results: Vec<ItemResult>,
+    ) -> Result<(Vec<ItemResult>, Option<String>), CoordinatorError> {
+        let LeaseId { chunk, .. } = lease;
+        let key = (chunk.job, chunk.stage);
+        let check = match self.end_checks.get(&key) {
+            Some(check) => check,
+            None => {
+                let row = job_row(&*self.ledger, chunk.job).await?;
+                let digest = stage.system.unwrap_or(row.asked.problem);
+                let system = self.problem(digest).await?;
+                let check = Arc::new(EndCheck::of(&system, stage));
+                self.end_checks.keep(key, Arc::clone(&check));
+                check
+            }
+        };
+        if check.is_none() {
+            return Ok((results, None));
+        }
+        let look = move || {
+            let doubt = check
+                .as_ref()
+                .as_ref()
+                .and_then(|check| check.doubt(&results));
+            (results, doubt)
+        };
+        match tokio::task::spawn_blocking(look).await {
+            Ok(looked) => Ok(looked),
+            Err(error) => std::panic::resume_unwind(error.into_panic()),
+        }
     }
 
     /// What the report of a lease that has ended means: an answer that was lost, or something else than

@@ -281,7 +281,8 @@ impl FakeWorker {
     pub fn results(lease: &v1::Lease) -> Vec<v1::PathResult> {
         let result = |item: u64| v1::PathResult {
             origin: item,
-            outcome: v1::PathOutcome::Regular.into(),
+            // An end at infinity is held against no equations.
+            outcome: v1::PathOutcome::Diverging.into(),
             endpoint: vec![1.0, 0.0, 0.5, 0.25 * item as f64, 0.125, 0.0],
             t: Some(v1::Complex::default()),
             residual: 1e-16,
