@@ -6,7 +6,7 @@
 use crate::api::Context;
 use crate::api::admission::Admission;
 use crate::api::client_service::ClientService;
-use crate::api::security::{Guard, Security};
+use crate::api::security::{Guard, Security, Tokens};
 use crate::api::worker_service::WorkerService;
 use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
 use crate::coordinator::Coordinator;
@@ -17,6 +17,7 @@ use crate::ledger::sql::SqlLedger;
 use crate::ledger::{Ledger, LedgerError};
 use crate::metrics;
 use crate::results::store::{Store, StoreError};
+use crate::transport::introduction::{Connections, raise_open_files};
 use crate::transport::shared_memory::SharedMemoryDoor;
 use crate::transport::{self, ListenError, Listener};
 use cognate_protocol::DESCRIPTORS;
@@ -85,6 +86,7 @@ impl Server {
         if config.listen.is_empty() {
             return Err(ListenError::NoAddress.into());
         }
+        raise_open_files();
         // Doors first: whoever is refused here has touched nothing.
         let mut listeners = Vec::new();
         for address in &config.listen {
@@ -160,6 +162,7 @@ impl Server {
     ) -> RunningServer {
         let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
         let admission = Admission::new(rules.calls);
+        let connections = Connections::new(rules.connections);
         let stopping = CancellationToken::new();
         let named = memory.as_ref().map(SharedMemoryDoor::named);
         let context = Arc::new(Context::new(
@@ -176,6 +179,7 @@ impl Server {
                 listener,
                 security.clone(),
                 admission.clone(),
+                connections.clone(),
                 routes.clone(),
                 context.clone(),
             ));
@@ -239,7 +243,7 @@ impl Drop for RunningServer {
     }
 }
 
-/// Runs a coordinator until SIGTERM or SIGINT. `started` hears where it listens.
+/// Runs a coordinator until SIGTERM or SIGINT; SIGHUP reads the tokens again. `started` hears where it listens.
 pub async fn run(
     config: Config,
     started: impl FnOnce(&[ListenAddress]),
@@ -247,14 +251,28 @@ pub async fn run(
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate()).map_err(ServerError::Signals)?;
     let mut interrupt = signal(SignalKind::interrupt()).map_err(ServerError::Signals)?;
+    let mut hangup = signal(SignalKind::hangup()).map_err(ServerError::Signals)?;
+    let tokens = config.security.tokens.clone();
     let server = Server::start(config).await?;
     started(&server.addresses);
-    tokio::select! {
-        _ = terminate.recv() => {}
-        _ = interrupt.recv() => {}
+    loop {
+        tokio::select! {
+            _ = terminate.recv() => break,
+            _ = interrupt.recv() => break,
+            _ = hangup.recv() => read_tokens_again(tokens.as_ref()),
+        }
     }
     server.shutdown().await;
     Ok(())
+}
+
+/// What SIGHUP asks for.
+fn read_tokens_again(tokens: Option<&Tokens>) {
+    match tokens.map(Tokens::read_again) {
+        None => tracing::info!("there are no tokens to be read again"),
+        Some(Ok(())) => tracing::info!("the tokens are read again"),
+        Some(Err(error)) => tracing::error!(%error, "the tokens stay as they were"),
+    }
 }
 
 /// The results in a folder. Where the ledger knows of jobs and the folder of nothing, one of them is not
@@ -335,6 +353,7 @@ async fn listen(
     listener: Listener,
     security: Security,
     admission: Admission,
+    connections: Connections,
     routes: Routes,
     context: Arc<Context>,
 ) {
@@ -348,7 +367,7 @@ async fn listen(
     let served = match listener {
         Listener::Tcp(listener) => {
             let mut server = server.layer(Guard(security.tokens)).layer(admission);
-            let incoming = transport::tcp_connections(listener);
+            let incoming = transport::tcp_connections(listener, connections);
             server
                 .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
@@ -356,7 +375,7 @@ async fn listen(
         }
         Listener::Tls(listener) => {
             let tls = security.tls.map(|tls| tls.config()).unwrap_or_default();
-            let incoming = transport::tcp_connections(listener);
+            let incoming = transport::tcp_connections(listener, connections);
             match server.tls_config(tls) {
                 Ok(server) => {
                     let mut server = server.layer(Guard(security.tokens)).layer(admission);
@@ -371,7 +390,7 @@ async fn listen(
         // Its file is this user's alone: whoever opens it could read the tokens, too.
         Listener::Unix(socket) => {
             let mut server = server.layer(Guard(None)).layer(admission);
-            let incoming = transport::unix_connections(socket);
+            let incoming = transport::unix_connections(socket, connections);
             server
                 .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())

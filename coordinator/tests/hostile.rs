@@ -304,6 +304,67 @@ async fn ends_that_solve_no_equation_are_done_again() {
     honest.stop().await;
 }
 
+/// Connections that say nothing are closed, and a few of them block nobody.
+#[tokio::test(flavor = "multi_thread")]
+async fn silent_connections_are_closed() {
+    use cognate_coordinator::config::{ListenAddress, Rules};
+    use cognate_coordinator::transport::introduction::ConnectionLimits;
+    use tokio::io::AsyncReadExt;
+    let rules = Rules {
+        connections: ConnectionLimits {
+            most: 8,
+            patience: Duration::from_millis(500),
+        },
+        ..Rules::default()
+    };
+    let house = House::with(rules, tempfile::tempdir().unwrap(), false).await;
+    let ListenAddress::Tcp(address) = &house.server.addresses[1] else {
+        panic!("the second address is TCP");
+    };
+    let mut silent = Vec::new();
+    for _ in 0..20 {
+        silent.push(tokio::net::TcpStream::connect(address).await.unwrap());
+    }
+    let begin = Instant::now();
+    let answered = async {
+        let mut client = house.client().await;
+        client
+            .0
+            .list_jobs(v1::ListJobsRequest::default())
+            .await
+            .unwrap();
+    };
+    let answered = tokio::time::timeout(Duration::from_secs(10), answered).await;
+    answered.expect("a call is answered beside silent connections");
+    for stream in &mut silent {
+        // What the server says of itself may come first; then it closes.
+        let closed = async { while stream.read(&mut [0; 64]).await.is_ok_and(|read| read > 0) {} };
+        let closed = tokio::time::timeout(Duration::from_secs(10), closed).await;
+        closed.expect("a silent connection is closed");
+    }
+    println!("all are closed after {:?}", begin.elapsed());
+}
+
+/// A name that would move the cursor of whoever looks is shown as it is written.
+#[tokio::test(flavor = "multi_thread")]
+async fn names_are_shown_without_control_characters() {
+    let house = House::new().await;
+    let mut client = house.client().await;
+    let mut problem = text(MANY_PATHS);
+    problem.options = Some(v1::Options {
+        name: "\u{1b}]0;owned\u{7}\nforged".to_owned(),
+        ..v1::Options::default()
+    });
+    client.submit("job", problem).await.unwrap();
+    let jobs = client
+        .0
+        .list_jobs(v1::ListJobsRequest::default())
+        .await
+        .unwrap();
+    let name = &jobs.into_inner().jobs[0].name;
+    assert_eq!(name, "\\u{1b}]0;owned\\u{7}\\nforged");
+}
+
 /// Messages that are sent as they are.
 mod raw {
     use bytes::{Buf, BufMut, Bytes};

@@ -1,7 +1,7 @@
 //! gRPC for clients: decode, one call inwards, encode.
 
 use super::error::ApiError;
-use super::{Answers, Context, guarded, pieces};
+use super::{Answers, Context, guarded, pieces, visible};
 use crate::coordinator::{Answered, ClassifiedPath, CoordinatorError};
 use crate::intake;
 use crate::jobs::planning::Planned;
@@ -108,7 +108,8 @@ fn progress(progress: JobProgress, warnings: Vec<String>) -> v1::JobProgress {
 fn overview((row, stages): (JobRow, Vec<StageRow>)) -> v1::JobOverview {
     v1::JobOverview {
         job: row.job.to_string(),
-        name: row.asked.label,
+        // Those of an earlier version were kept as they came.
+        name: visible(&row.asked.label),
         tenant: row.asked.tenant.to_string(),
         state: state(row.state).into(),
         submitted_unix_ms: row.submitted.0,

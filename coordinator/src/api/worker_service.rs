@@ -1,7 +1,7 @@
 //! gRPC for workers: decode, one call inwards, encode.
 
 use super::error::ApiError;
-use super::{Answers, Context, duration_ms, guarded, lease_id, pieces};
+use super::{Answers, Context, duration_ms, guarded, lease_id, pieces, visible};
 use crate::coordinator::{Coordinator, CoordinatorError, Pull, Report};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
@@ -61,13 +61,13 @@ fn pull(m: v1::PullRequest, longest: Duration) -> Result<(Pull, Option<String>),
         request: RequestId::new(format!("{session}.{}", m.sequence))?,
         worker: WorkerSeen {
             worker,
-            version: machine.version,
+            version: visible(&machine.version),
             numerics_revision: machine.numerics_revision,
-            instruction_set: machine.instruction_set,
+            instruction_set: visible(&machine.instruction_set),
             threads: machine.threads.max(1),
             lane_width: machine.lane_width,
-            host: machine.host,
-            transport: machine.transport,
+            host: visible(&machine.host),
+            transport: visible(&machine.transport),
             draining: false,
         },
         slots: match refusal {
@@ -284,7 +284,7 @@ impl WorkerApi for WorkerService {
         let by = speaker(m.identity)?;
         let why = match v1::GiveBackReason::try_from(m.reason) {
             Ok(v1::GiveBackReason::Failed) => GiveBack::Failed {
-                reason: m.message.chars().take(500).collect(),
+                reason: visible(&m.message.chars().take(500).collect::<String>()),
             },
             // A reason that this version does not know accuses nobody.
             Ok(v1::GiveBackReason::Draining | v1::GiveBackReason::Unspecified) | Err(_) => {

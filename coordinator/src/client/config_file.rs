@@ -117,6 +117,7 @@ impl ConfigFile {
             worker_memory,
             shutdown_grace,
             keep_alive,
+            connections,
             calls,
             streams,
         } = Rules::default();
@@ -180,6 +181,7 @@ impl ConfigFile {
                 shutdown_grace,
             )?,
             keep_alive: time("keep_alive_seconds", r.keep_alive_seconds, keep_alive)?,
+            connections,
             calls,
             streams,
         })
