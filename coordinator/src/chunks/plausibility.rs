@@ -115,14 +115,17 @@ impl EndCheck {
             };
             let (own, others) = rest.split_at_checked(group.variables.len())?;
             rest = others;
-            let largest = own.iter().map(|c| c.norm()).fold(scale.norm(), f64::max);
+            let largest = own
+                .iter()
+                .map(|c| modulus(*c))
+                .fold(modulus(scale), f64::max);
             // A comparison that a NaN fails.
-            if !(scale.norm() > NEAR_INFINITY * largest && largest.is_finite()) {
+            if !(modulus(scale) > NEAR_INFINITY * largest && largest.is_finite()) {
                 return None;
             }
             for (&v, c) in group.variables.iter().zip(own) {
                 point[v] = c / scale;
-                errors[v] = error * largest / scale.norm();
+                errors[v] = error * largest / modulus(scale);
             }
         }
         Some((point, errors))
@@ -134,30 +137,42 @@ impl EndCheck {
         let mut nodes: Vec<(Complex64, f64)> = Vec::with_capacity(self.operations.len());
         for operation in &self.operations {
             nodes.push(match *operation {
-                Operation::Fixed(value) => (value, value.norm()),
-                Operation::Variable(v) => (point[v], point[v].norm() + errors[v]),
+                Operation::Fixed(value) => (value, modulus(value)),
+                Operation::Variable(v) => (point[v], modulus(point[v]) + errors[v]),
                 Operation::Add(a, b) => (nodes[a].0 + nodes[b].0, nodes[a].1 + nodes[b].1),
                 Operation::Subtract(a, b) => (nodes[a].0 - nodes[b].0, nodes[a].1 + nodes[b].1),
                 Operation::Multiply(a, b) => (nodes[a].0 * nodes[b].0, nodes[a].1 * nodes[b].1),
                 Operation::Divide(a, b) => {
-                    (nodes[a].0 / nodes[b].0, nodes[a].1 / nodes[b].0.norm())
+                    (nodes[a].0 / nodes[b].0, nodes[a].1 / modulus(nodes[b].0))
                 }
                 Operation::Negate(a) => (-nodes[a].0, nodes[a].1),
-                Operation::Power(a, exponent) => (
-                    nodes[a].0.powu(exponent),
-                    nodes[a].1.powf(f64::from(exponent)),
-                ),
+                Operation::Power(a, exponent) => {
+                    let (value, size) = nodes[a];
+                    let whole = i32::try_from(exponent).unwrap_or(i32::MAX);
+                    (value.powu(exponent), size.powi(whole))
+                }
             });
         }
         let ratios = self.system.equations.iter().enumerate().map(|(i, id)| {
             let (value, size) = nodes[id.0 as usize];
-            (i, if size > 0.0 { value.norm() / size } else { 0.0 })
+            (
+                i,
+                if size > 0.0 {
+                    modulus(value) / size
+                } else {
+                    0.0
+                },
+            )
         });
         // What overflows says nothing.
         ratios
             .filter(|(_, ratio)| ratio.is_finite())
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
+}
+
+fn modulus(z: Complex64) -> f64 {
+    z.norm_sqr().sqrt()
 }
 
 /// What is done at one node of the expressions, by the places of its operands.
@@ -203,6 +218,7 @@ mod tests {
     use super::*;
     use cognate_continuation::path_result::Coordinates;
     use cognate_continuation::prepared_work::PreparedWork;
+    use cognate_numeric::random::{Purpose, RandomStream};
     use cognate_systems::named;
 
     fn stage_of(system: &System) -> (System, Stage) {
@@ -251,11 +267,11 @@ mod tests {
                 }
                 regular += 1;
                 let mut wrong = path.clone();
-                let random = |c: usize| {
-                    let angle = (k * 37 + c * c * 11 + c) as f64;
-                    Complex64::from_polar(0.5 + 0.5 * (angle * 0.7).sin().abs(), angle)
-                };
-                let end: Vec<Complex64> = (0..check.coordinates).map(random).collect();
+                let mut stream = RandomStream::new(k as u64, Purpose::Test, 0);
+                let mut part = || stream.below(2001) as f64 / 1000.0 - 1.0;
+                let end: Vec<Complex64> = (0..check.coordinates)
+                    .map(|_| Complex64::new(part(), part()))
+                    .collect();
                 wrong.endpoint = Coordinates::Double(end.clone());
                 let doubt = check.doubt(&[ItemResult::Track(wrong.clone())]);
                 found += u32::from(doubt.is_some());

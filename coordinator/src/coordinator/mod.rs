@@ -11,6 +11,7 @@ mod large_answer;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;
+mod standing_still;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

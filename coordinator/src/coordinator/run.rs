@@ -18,8 +18,12 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
-/// A driven job is looked at again at least after this time, whoever else may have changed it.
+/// So often is asked which jobs want a look, whoever else may have changed them ...
 const LOOK: Duration = Duration::from_secs(1);
+/// ... but not so often that asking takes more than one part in so many of the time.
+const LOOK_SHARE: u32 = 20;
+/// A driven job that nobody wakes is looked at after this time all the same.
+const LATEST_LOOK: Duration = Duration::from_secs(60);
 /// ... and at most this often.
 const PAUSE: Duration = Duration::from_millis(5);
 /// After a failure of ledger or store, a job is tried again after this time.
@@ -137,21 +141,42 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Finds jobs that nobody drives.
+    /// Finds jobs that nobody drives, and wakes the stewards of those that want something. One question
+    /// for all: a job that only waits costs nothing.
     async fn run_stewards(self: Arc<Self>, stop: CancellationToken, tasks: TaskTracker) {
+        tasks.spawn(Arc::clone(&self).run_renewal(stop.clone()));
         loop {
-            match self.ledger.unfinished_jobs().await {
+            let begin = Instant::now();
+            let limit = self.policy.suspicion_limit;
+            match self.ledger.attention(&self.who, limit).await {
                 Ok(jobs) => {
                     for job in jobs {
                         self.attend(job, &stop, &tasks);
+                        self.wake_steward(job);
                     }
                 }
                 Err(error) => tracing::warn!(%error, "the jobs could not be listed"),
             }
+            let pause = LOOK.max(begin.elapsed() * LOOK_SHARE);
             tokio::select! {
                 () = stop.cancelled() => return,
                 () = self.unattended.notified() => {}
-                () = sleep(LOOK) => {}
+                () = sleep(pause) => {}
+            }
+        }
+    }
+
+    /// Keeps the right to drive all jobs that this coordinator drives.
+    async fn run_renewal(self: Arc<Self>, stop: CancellationToken) {
+        let every = Duration::from_millis(self.policy.steward_ms / 3);
+        loop {
+            tokio::select! {
+                () = stop.cancelled() => return,
+                () = sleep(every) => {}
+            }
+            let duration = self.policy.steward_ms;
+            if let Err(error) = self.ledger.renew_stewardships(&self.who, duration).await {
+                tracing::warn!(%error, "the rights to drive are not renewed");
             }
         }
     }
@@ -274,7 +299,7 @@ impl Coordinator {
                     tokio::select! {
                         () = stop.cancelled() => {}
                         // Woken, or not: the ledger says what there is.
-                        _ = timeout(LOOK.min(renewal), wake.notified()) => {}
+                        _ = timeout(LATEST_LOOK, wake.notified()) => {}
                     }
                 }
             }

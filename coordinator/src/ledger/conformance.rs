@@ -66,6 +66,7 @@ macro_rules! ledger_conformance {
             case!(who_fails_again_counts_once);
             case!(lost_results_are_done_again);
             case!(a_lease_stands_with_who_has_it);
+            case!(jobs_that_only_wait_want_no_look);
 
             #[test]
             fn it_agrees_with_the_oracle() {

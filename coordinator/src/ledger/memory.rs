@@ -161,6 +161,56 @@ impl Ledger for MemoryLedger {
         Ok(Some(row.steward_epoch))
     }
 
+    async fn renew_stewardships(
+        &self,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<(), LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let rows = books.jobs.values_mut().map(|job| &mut job.row);
+        for row in rows.filter(|row| row.steward.as_ref() == Some(who)) {
+            if !row.state.has_ended() && row.steward_until > now {
+                row.steward_until = now.after_ms(duration_ms);
+            }
+        }
+        Ok(())
+    }
+
+    async fn attention(
+        &self,
+        who: &CoordinatorId,
+        suspicions: u32,
+    ) -> Result<Vec<JobId>, LedgerError> {
+        let now = self.clock.now();
+        let books = self.books();
+        let stirs = |job: &Job| {
+            let mut open = job.stages.values().filter(|stage| !stage.row.closed);
+            let suspected = |stage: &Stage| {
+                let mut ready = stage
+                    .ready
+                    .iter()
+                    .filter_map(|first| stage.chunks.get(first));
+                ready.any(|chunk| chunk.row.suspicions >= suspicions)
+            };
+            job.stages.values().all(|stage| stage.row.closed)
+                || open.any(|stage| stage.row.is_complete())
+                || job.stages.values().any(suspected)
+        };
+        let mut found: Vec<(u64, JobId)> = books
+            .jobs
+            .values()
+            .filter(|job| !job.row.state.has_ended())
+            .filter(|job| {
+                let is_free = job.row.steward.is_none() || job.row.steward_until <= now;
+                is_free || (job.row.steward.as_ref() == Some(who) && stirs(job))
+            })
+            .map(|job| (job.row.number, job.row.job))
+            .collect();
+        found.sort_unstable();
+        Ok(found.into_iter().map(|(_, job)| job).collect())
+    }
+
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
         let books = self.books();
         let mut rows: Vec<(u64, JobId)> = books

@@ -101,6 +101,21 @@ pub trait Ledger: Send + Sync {
         who: &CoordinatorId,
         duration_ms: u64,
     ) -> Result<Option<Epoch>, LedgerError>;
+    /// Prolongs all rights to drive jobs that a coordinator has and that have not ended, as
+    /// [`Self::steward`] does one by one.
+    async fn renew_stewardships(
+        &self,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<(), LedgerError>;
+    /// Unfinished jobs that this coordinator should look at, in the order of their submission: those that
+    /// nobody drives, and of its own those with no open stage, with one that is complete, or with a chunk
+    /// of so many suspicions.
+    async fn attention(
+        &self,
+        who: &CoordinatorId,
+        suspicions: u32,
+    ) -> Result<Vec<JobId>, LedgerError>;
     /// Jobs that have not ended.
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError>;
     /// Closes and opens stages and keeps the snapshot of the algorithm after that: all or nothing.

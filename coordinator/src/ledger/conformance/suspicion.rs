@@ -127,3 +127,55 @@ pub async fn a_lease_stands_with_who_has_it(ledger: &dyn Ledger, clock: &ManualC
     ledger.expire().await.unwrap();
     assert_eq!(ledger.standing(lease.lease).await.unwrap(), Standing::Ended);
 }
+
+pub async fn jobs_that_only_wait_want_no_look(ledger: &dyn Ledger, clock: &ManualClock) {
+    let me = coordinator("c");
+    let looks = async |suspicions: u32| ledger.attention(&me, suspicions).await.unwrap();
+    let queued = ledger
+        .submit(request("q"), new_job("t", 0))
+        .await
+        .unwrap()
+        .job;
+    // Nobody drives it, then it has no stage.
+    assert_eq!(looks(3).await, [queued]);
+    ledger.steward(queued, &me, 60_000).await.unwrap();
+    assert_eq!(looks(3).await, [queued]);
+    ledger.cancel(queued, "no").await.unwrap();
+    let (job, epoch) = running(ledger, "r", "t", 5, 5).await;
+    assert!(looks(3).await.is_empty());
+    assert!(
+        ledger
+            .attention(&coordinator("d"), 3)
+            .await
+            .unwrap()
+            .is_empty()
+    );
+    let lease = ledger.lease(wants("w", "w.1", 1)).await.unwrap()[0].clone();
+    assert!(looks(3).await.is_empty());
+    ledger.give_back(lease.lease, failed()).await.unwrap();
+    assert!(looks(2).await.is_empty());
+    assert_eq!(looks(1).await, [job]);
+    let lease = ledger.lease(wants("w", "w.2", 1)).await.unwrap()[0].clone();
+    ledger
+        .complete(lease.lease, result(lease.items, 1, 1))
+        .await
+        .unwrap();
+    assert_eq!(looks(3).await, [job]);
+    // All rights are kept together, and those of others are left alone.
+    clock.advance_ms(50_000);
+    ledger.renew_stewardships(&me, 60_000).await.unwrap();
+    clock.advance_ms(50_000);
+    ledger
+        .renew_stewardships(&coordinator("d"), 60_000)
+        .await
+        .unwrap();
+    assert_eq!(
+        ledger.steward(job, &coordinator("d"), 1000).await.unwrap(),
+        None
+    );
+    assert_eq!(ledger.steward(job, &me, 1000).await.unwrap(), Some(epoch));
+    // What has ended is not renewed.
+    clock.advance_ms(1000);
+    ledger.renew_stewardships(&me, 60_000).await.unwrap();
+    assert_eq!(ledger.attention(&coordinator("d"), 3).await.unwrap(), [job]);
+}

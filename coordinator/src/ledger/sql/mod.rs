@@ -203,6 +203,46 @@ impl Ledger for SqlLedger {
             .await
     }
 
+    async fn renew_stewardships(
+        &self,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<(), LedgerError> {
+        let who = who.clone();
+        self.writer
+            .write(move |c, now| Box::pin(stewardship::renew_all(c, now, who, duration_ms)))
+            .await
+    }
+
+    async fn attention(
+        &self,
+        who: &CoordinatorId,
+        suspicions: u32,
+    ) -> Result<Vec<JobId>, LedgerError> {
+        let now = self.now().await?;
+        let rows = query(
+            "SELECT j.job FROM jobs j
+             WHERE j.ended IS NULL
+               AND (j.steward IS NULL OR j.steward_until <= ?
+                    OR (j.steward = ?
+                        AND (NOT EXISTS (SELECT 1 FROM stages s
+                                         WHERE s.job = j.job AND s.closed = 0)
+                             OR EXISTS (SELECT 1 FROM stages s
+                                        WHERE s.job = j.job AND s.closed = 0
+                                          AND s.accepted_items + s.failed_items = s.items)
+                             OR EXISTS (SELECT 1 FROM chunks c
+                                        WHERE c.job = j.job AND c.state = 'ready'
+                                          AND c.suspicions >= ?))))
+             ORDER BY j.number",
+        )
+        .bind(now.0)
+        .bind(who.as_str())
+        .bind(suspicions)
+        .read_all(&self.readers)
+        .await?;
+        rows.iter().map(job_id).collect()
+    }
+
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
         let rows = query("SELECT job FROM jobs WHERE ended IS NULL ORDER BY number")
             .read_all(&self.readers)

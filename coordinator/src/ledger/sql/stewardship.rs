@@ -155,6 +155,25 @@ pub async fn steward(
     Ok(Some(epoch))
 }
 
+/// Keeps all rights to drive jobs that a coordinator has.
+pub async fn renew_all(
+    c: &mut Connection,
+    now: LedgerTime,
+    who: CoordinatorId,
+    duration_ms: u64,
+) -> Result<(), LedgerError> {
+    query(
+        "UPDATE jobs SET steward_until = ?
+         WHERE ended IS NULL AND steward = ? AND steward_until > ?",
+    )
+    .bind(now.after_ms(duration_ms).0)
+    .bind(who.as_str())
+    .bind(now.0)
+    .execute(c)
+    .await?;
+    Ok(())
+}
+
 /// Closes and opens stages.
 pub async fn advance(
     c: &mut Connection,
