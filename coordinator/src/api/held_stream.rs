@@ -3,8 +3,8 @@
 //! Whoever opens a stream and does not read it keeps what it holds. So there are so many at once, and one
 //! that nobody reads for a while is dropped; its reader, if it comes back, hears why.
 
-use super::Answers;
 use futures::Stream;
+use futures::stream::BoxStream;
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::task::{Context, Poll};
@@ -12,6 +12,9 @@ use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, sleep, timeout};
 use tonic::Status;
+
+/// A stream of answers.
+type Answers<T> = BoxStream<'static, Result<T, Status>>;
 
 /// What streams of results may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
