@@ -1,7 +1,10 @@
 //! Config: addresses, places, deadlines, limits of a coordinator; each with its default.
 
+use crate::api::admission::CallLimits;
+use crate::api::held_stream::StreamLimits;
 use crate::api::security::Security;
 use crate::chunks::leasing::Policy;
+use crate::transport::introduction::ConnectionLimits;
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
 use std::fmt;
 use std::path::PathBuf;
@@ -63,6 +66,12 @@ pub struct Rules {
     /// Silent connections are asked whether they live so often, and given as long to answer.
     /// Default 20 s.
     pub keep_alive: Duration,
+    /// How many connections there may be.
+    pub connections: ConnectionLimits,
+    /// What calls may take in memory.
+    pub calls: CallLimits,
+    /// What streams of results may hold.
+    pub streams: StreamLimits,
 }
 
 impl Default for Rules {
@@ -73,6 +82,9 @@ impl Default for Rules {
             worker_memory: Duration::from_secs(600),
             shutdown_grace: Duration::from_secs(5),
             keep_alive: Duration::from_secs(20),
+            connections: ConnectionLimits::default(),
+            calls: CallLimits::default(),
+            streams: StreamLimits::default(),
         }
     }
 }

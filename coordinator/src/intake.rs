@@ -4,6 +4,7 @@
 //! the seed are named, start solutions are an object.
 
 use crate::api::error::ApiError;
+use crate::api::visible;
 use crate::coordinator::NewProblem;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Settings;
@@ -35,6 +36,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
             problem.system
         }
     };
+    options.name = visible(&options.name);
     if let Some(groups) = options.groups.take() {
         let groups: Vec<String> = groups.iter().map(|names| names.join(",")).collect();
         formats::options::groups(&groups.join(";"), &mut system)?;

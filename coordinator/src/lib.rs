@@ -14,6 +14,7 @@
 //! 10. Whoever dies, another goes on from ledger and store to the same answer.
 #![forbid(unsafe_code)]
 
+pub mod health;
 pub mod intake;
 
 pub mod ledger;

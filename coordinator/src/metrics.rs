@@ -11,6 +11,8 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::Mutex;
+use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 /// The latest jobs and workers that are counted.
@@ -22,8 +24,30 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Bytes of a request.
 const REQUEST_BYTES: usize = 8192;
 
+/// An answer is good for so long: however many ask, the ledger is asked once in this time.
+const FRESH: Duration = Duration::from_secs(5);
+
+/// The last answer, which is made by one asker at a time.
+#[derive(Default)]
+struct Latest(Mutex<Option<(Instant, String)>>);
+
+impl Latest {
+    async fn text(&self, ledger: &dyn Ledger) -> Result<String, LedgerError> {
+        let mut latest = self.0.lock().await;
+        if let Some((made, text)) = &*latest
+            && made.elapsed() < FRESH
+        {
+            return Ok(text.clone());
+        }
+        let text = metrics(ledger).await?;
+        *latest = Some((Instant::now(), text.clone()));
+        Ok(text)
+    }
+}
+
 /// Answers until the service stops.
 pub async fn serve(listener: TcpListener, ledger: Arc<dyn Ledger>, stopping: CancellationToken) {
+    let latest = Arc::new(Latest::default());
     loop {
         let accepted = tokio::select! {
             accepted = listener.accept() => accepted,
@@ -31,10 +55,10 @@ pub async fn serve(listener: TcpListener, ledger: Arc<dyn Ledger>, stopping: Can
         };
         match accepted {
             Ok((stream, _)) => {
-                let ledger = Arc::clone(&ledger);
+                let (ledger, latest) = (Arc::clone(&ledger), Arc::clone(&latest));
                 tokio::spawn(async move {
                     // Who does not take its answer has none.
-                    let _ = tokio::time::timeout(PATIENCE, answer(stream, &*ledger)).await;
+                    let _ = tokio::time::timeout(PATIENCE, answer(stream, &*ledger, &latest)).await;
                 });
             }
             Err(error) => {
@@ -45,7 +69,11 @@ pub async fn serve(listener: TcpListener, ledger: Arc<dyn Ledger>, stopping: Can
     }
 }
 
-async fn answer(mut stream: TcpStream, ledger: &dyn Ledger) -> std::io::Result<()> {
+async fn answer(
+    mut stream: TcpStream,
+    ledger: &dyn Ledger,
+    latest: &Latest,
+) -> std::io::Result<()> {
     let mut request = Vec::new();
     let mut piece = [0; 1024];
     while !request.windows(4).any(|end| end == b"\r\n\r\n") {
@@ -59,7 +87,7 @@ async fn answer(mut stream: TcpStream, ledger: &dyn Ledger) -> std::io::Result<(
     let mut words = line.split_whitespace();
     let asked = (words.next(), words.next());
     let (status, body) = match asked {
-        (Some("GET"), Some("/metrics")) => match metrics(ledger).await {
+        (Some("GET"), Some("/metrics")) => match latest.text(ledger).await {
             Ok(text) => ("200 OK", text),
             Err(error) => ("503 Service Unavailable", format!("{error}\n")),
         },

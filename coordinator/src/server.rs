@@ -4,8 +4,9 @@
 //! store and a clock, and listeners by which calls come in.
 
 use crate::api::Context;
+use crate::api::admission::Admission;
 use crate::api::client_service::ClientService;
-use crate::api::security::{Guard, Security};
+use crate::api::security::{Guard, Security, Tokens};
 use crate::api::worker_service::WorkerService;
 use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
 use crate::coordinator::Coordinator;
@@ -16,6 +17,7 @@ use crate::ledger::sql::SqlLedger;
 use crate::ledger::{Ledger, LedgerError};
 use crate::metrics;
 use crate::results::store::{Store, StoreError};
+use crate::transport::introduction::{Connections, raise_open_files};
 use crate::transport::shared_memory::SharedMemoryDoor;
 use crate::transport::{self, ListenError, Listener};
 use cognate_protocol::DESCRIPTORS;
@@ -25,9 +27,13 @@ use cognate_protocol::v1::worker_api_server::WorkerApiServer;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
 use tonic::service::Routes;
+use tonic_health::ServingStatus;
+use tonic_health::server::HealthReporter;
+use tower::Layer;
 
 /// Why a coordinator does not start.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +70,13 @@ pub struct RunningServer {
     database: Option<Arc<SqlLedger>>,
 }
 
+/// How often the health of the services is told again.
+const HEALTH_EVERY: Duration = Duration::from_millis(500);
+/// Name by which probes ask whether calls can be answered.
+const READY: &str = "ready";
+const CLIENT_API: &str = "cognate.v1.ClientApi";
+const WORKER_API: &str = "cognate.v1.WorkerApi";
+
 /// Starts coordinators.
 pub struct Server;
 
@@ -73,6 +86,7 @@ impl Server {
         if config.listen.is_empty() {
             return Err(ListenError::NoAddress.into());
         }
+        raise_open_files();
         // Doors first: whoever is refused here has touched nothing.
         let mut listeners = Vec::new();
         for address in &config.listen {
@@ -87,10 +101,6 @@ impl Server {
                     source,
                 })?)
             }
-        };
-        let store = match &config.results {
-            Some(folder) => Store::folder(folder)?,
-            None => Store::in_memory(),
         };
         let clock = Arc::new(SystemClock::default());
         let mut database = None;
@@ -107,6 +117,10 @@ impl Server {
                 database = Some(ledger.clone());
                 ledger
             }
+        };
+        let store = match &config.results {
+            Some(folder) => open_results(folder, &*ledger).await?,
+            None => Store::in_memory(),
         };
         let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
             .expect("a UUID is a name");
@@ -147,6 +161,8 @@ impl Server {
         rules: Rules,
     ) -> RunningServer {
         let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
+        let admission = Admission::new(rules.calls);
+        let connections = Connections::new(rules.connections);
         let stopping = CancellationToken::new();
         let named = memory.as_ref().map(SharedMemoryDoor::named);
         let context = Arc::new(Context::new(
@@ -155,21 +171,24 @@ impl Server {
             stopping.clone(),
             named.unwrap_or_default(),
         ));
-        let routes = routes(&context).await;
+        let (routes, health) = routes(&context).await;
         let mut tasks = JoinSet::new();
         let addresses: Vec<_> = listeners.iter().map(Listener::address).collect();
         for listener in listeners {
             tasks.spawn(listen(
                 listener,
                 security.clone(),
+                admission.clone(),
+                connections.clone(),
                 routes.clone(),
                 context.clone(),
             ));
         }
         let memory_ends = stopping.child_token();
         if let Some(memory) = memory {
-            tasks.spawn(memory.serve(routes, memory_ends.clone()));
+            tasks.spawn(memory.serve(admission.layer(routes), memory_ends.clone()));
         }
+        tasks.spawn(report_health(health, Arc::clone(&context)));
         tasks.spawn(coordinator.run(stopping));
         for address in &addresses {
             tracing::info!(%address, "listening");
@@ -224,7 +243,7 @@ impl Drop for RunningServer {
     }
 }
 
-/// Runs a coordinator until SIGTERM or SIGINT. `started` hears where it listens.
+/// Runs a coordinator until SIGTERM or SIGINT; SIGHUP reads the tokens again. `started` hears where it listens.
 pub async fn run(
     config: Config,
     started: impl FnOnce(&[ListenAddress]),
@@ -232,14 +251,39 @@ pub async fn run(
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate()).map_err(ServerError::Signals)?;
     let mut interrupt = signal(SignalKind::interrupt()).map_err(ServerError::Signals)?;
+    let mut hangup = signal(SignalKind::hangup()).map_err(ServerError::Signals)?;
+    let tokens = config.security.tokens.clone();
     let server = Server::start(config).await?;
     started(&server.addresses);
-    tokio::select! {
-        _ = terminate.recv() => {}
-        _ = interrupt.recv() => {}
+    loop {
+        tokio::select! {
+            _ = terminate.recv() => break,
+            _ = interrupt.recv() => break,
+            _ = hangup.recv() => read_tokens_again(tokens.as_ref()),
+        }
     }
     server.shutdown().await;
     Ok(())
+}
+
+/// What SIGHUP asks for.
+fn read_tokens_again(tokens: Option<&Tokens>) {
+    match tokens.map(Tokens::read_again) {
+        None => tracing::info!("there are no tokens to be read again"),
+        Some(Ok(())) => tracing::info!("the tokens are read again"),
+        Some(Err(error)) => tracing::error!(%error, "the tokens stay as they were"),
+    }
+}
+
+/// The results in a folder. Where the ledger knows of jobs and the folder of nothing, one of them is not
+/// what was meant.
+async fn open_results(folder: &Path, ledger: &dyn Ledger) -> Result<Store, ServerError> {
+    let is_new = ledger.jobs(1).await?.is_empty();
+    if is_new && Store::has_results(folder) {
+        tracing::warn!(folder = %folder.display(), "the ledger knows of no job, and there are results: \
+            is it the right ledger, and whole?");
+    }
+    Ok(Store::folder(folder, is_new)?)
 }
 
 fn make_folder(path: &Path) -> Result<(), ServerError> {
@@ -256,7 +300,7 @@ fn make_folder(path: &Path) -> Result<(), ServerError> {
 }
 
 /// All services: ours, health and reflection.
-async fn routes(context: &Arc<Context>) -> Routes {
+async fn routes(context: &Arc<Context>) -> (Routes, HealthReporter) {
     let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
     let clients = ClientApiServer::new(ClientService::new(context.clone()))
         .max_decoding_message_size(limit)
@@ -265,8 +309,6 @@ async fn routes(context: &Arc<Context>) -> Routes {
         .max_decoding_message_size(limit)
         .max_encoding_message_size(limit);
     let (health, health_service) = tonic_health::server::health_reporter();
-    health.set_serving::<ClientApiServer<ClientService>>().await;
-    health.set_serving::<WorkerApiServer<WorkerService>>().await;
     let reflection = || {
         tonic_reflection::server::Builder::configure()
             .register_encoded_file_descriptor_set(DESCRIPTORS)
@@ -275,15 +317,46 @@ async fn routes(context: &Arc<Context>) -> Routes {
     // Clients of other languages ask by the older name of the service or by the newer.
     let (newer, older) = (reflection().build_v1(), reflection().build_v1alpha());
     let sound = "the descriptors were made by the compiler of the messages";
-    Routes::new(clients)
+    let routes = Routes::new(clients)
         .add_service(workers)
         .add_service(health_service)
         .add_service(newer.expect(sound))
-        .add_service(older.expect(sound))
+        .add_service(older.expect(sound));
+    (routes, health)
+}
+
+/// Says whether each service can do what it is for; the process lives whatever they say, which is the
+/// health of the service without a name.
+async fn report_health(health: HealthReporter, context: Arc<Context>) {
+    while !context.stopping.is_cancelled() {
+        let status = match context.coordinator.health().is_troubled() {
+            true => ServingStatus::NotServing,
+            false => ServingStatus::Serving,
+        };
+        for service in [CLIENT_API, WORKER_API, READY] {
+            health.set_service_status(service, status).await;
+        }
+        tokio::select! {
+            () = context.stopping.cancelled() => {}
+            () = tokio::time::sleep(HEALTH_EVERY) => {}
+        }
+    }
+    for service in [CLIENT_API, WORKER_API, READY] {
+        health
+            .set_service_status(service, ServingStatus::NotServing)
+            .await;
+    }
 }
 
 /// Takes calls at one listener until the service stops.
-async fn listen(listener: Listener, security: Security, routes: Routes, context: Arc<Context>) {
+async fn listen(
+    listener: Listener,
+    security: Security,
+    admission: Admission,
+    connections: Connections,
+    routes: Routes,
+    context: Arc<Context>,
+) {
     let address = listener.address();
     let stopping = context.stopping.clone();
     let keep_alive = context.rules.keep_alive;
@@ -293,8 +366,8 @@ async fn listen(listener: Listener, security: Security, routes: Routes, context:
         .tcp_keepalive(Some(keep_alive));
     let served = match listener {
         Listener::Tcp(listener) => {
-            let mut server = server.layer(Guard(security.tokens));
-            let incoming = transport::tcp_connections(listener);
+            let mut server = server.layer(Guard(security.tokens)).layer(admission);
+            let incoming = transport::tcp_connections(listener, connections);
             server
                 .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
@@ -302,10 +375,10 @@ async fn listen(listener: Listener, security: Security, routes: Routes, context:
         }
         Listener::Tls(listener) => {
             let tls = security.tls.map(|tls| tls.config()).unwrap_or_default();
-            let incoming = transport::tcp_connections(listener);
+            let incoming = transport::tcp_connections(listener, connections);
             match server.tls_config(tls) {
                 Ok(server) => {
-                    let mut server = server.layer(Guard(security.tokens));
+                    let mut server = server.layer(Guard(security.tokens)).layer(admission);
                     server
                         .add_routes(routes)
                         .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
@@ -316,8 +389,8 @@ async fn listen(listener: Listener, security: Security, routes: Routes, context:
         }
         // Its file is this user's alone: whoever opens it could read the tokens, too.
         Listener::Unix(socket) => {
-            let mut server = server.layer(Guard(None));
-            let incoming = transport::unix_connections(socket);
+            let mut server = server.layer(Guard(None)).layer(admission);
+            let incoming = transport::unix_connections(socket, connections);
             server
                 .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())

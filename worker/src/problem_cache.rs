@@ -27,10 +27,9 @@ pub enum PrepareFailure {
 impl From<TransportError> for PrepareFailure {
     fn from(error: TransportError) -> Self {
         match error {
-            TransportError::Unavailable(_) => Self::Unavailable(error),
-            TransportError::Refused(text) | TransportError::Malformed(text) => {
-                Self::Untrackable(text)
-            }
+            // That there is no such object is the storage's fault, and may be mended.
+            TransportError::Unavailable(_) | TransportError::Refused(_) => Self::Unavailable(error),
+            TransportError::Malformed(text) => Self::Untrackable(text),
         }
     }
 }

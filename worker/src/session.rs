@@ -63,6 +63,8 @@ pub enum Input<C> {
     Tracked(LeaseId, C),
     /// A chunk cannot be tracked here, and why.
     Untrackable(LeaseId, String),
+    /// What a chunk needs cannot be fetched, for a while by now.
+    Unfetched(LeaseId),
     /// A report was answered.
     Reported(LeaseId, Receipt),
     /// A report was not answered.
@@ -267,6 +269,13 @@ impl<C> Session<C> {
                     && matches!(held.step, Step::Tracking)
                 {
                     held.step = Step::GivingBack(GiveBack::Failed(why), Retry::default());
+                }
+            }
+            Input::Unfetched(lease) => {
+                if let Some(held) = self.held.get_mut(&lease)
+                    && matches!(held.step, Step::Tracking)
+                {
+                    held.step = Step::GivingBack(GiveBack::Draining, Retry::default());
                 }
             }
             Input::Reported(lease, receipt) => {

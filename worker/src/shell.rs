@@ -19,6 +19,8 @@ use tokio::sync::mpsc;
 use tokio::task::{AbortHandle, JoinSet};
 use tokio_util::sync::CancellationToken;
 
+/// A chunk whose stage could not be fetched after so many attempts goes back: some 12 s.
+const MOST_FETCHES: u32 = 10;
 /// A worker without free slots is heard of at least so often.
 const HEARTBEAT: Duration = Duration::from_secs(10);
 
@@ -204,6 +206,9 @@ impl Shell {
             Input::Untrackable(lease, why) => {
                 tracing::error!(%lease, why, "cannot be tracked here")
             }
+            Input::Unfetched(lease) => {
+                tracing::warn!(%lease, "given back: what it needs cannot be fetched")
+            }
             Input::Refused(why) => {
                 tracing::error!(why, "the coordinator gives this worker no work")
             }
@@ -324,6 +329,11 @@ impl Shell {
                     Err(PrepareFailure::Unavailable(error)) => {
                         failures += 1;
                         tracing::warn!(lease = %lease.id, %error, "stage not fetched yet");
+                        if failures >= MOST_FETCHES {
+                            // Nobody's fault but the storage's; other jobs may fare better.
+                            let _ = sender.send((Input::Unfetched(lease.id), Vec::new()));
+                            return;
+                        }
                         tokio::time::sleep(backoff.pause(failures)).await;
                     }
                 }

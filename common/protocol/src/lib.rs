@@ -2,10 +2,11 @@
 //!
 //! [`v1`] is generated from `proto/`; [`from_proto`] checks every field on its
 //! way in, [`to_proto`] cannot fail. [`submission`] is what a client asks for, [`option_misfit`] what of it does not go together,
-//! [`digest`] names a system by its content, [`records`] is the form in which
+//! [`decoded_size`] what a message takes in memory, [`digest`] names a system by its content, [`records`] is the form in which
 //! results are stored and hashed.
 #![forbid(unsafe_code)]
 
+pub mod decoded_size;
 pub mod digest;
 pub mod error;
 mod flat_result;

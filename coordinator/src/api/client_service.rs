@@ -1,7 +1,7 @@
 //! gRPC for clients: decode, one call inwards, encode.
 
 use super::error::ApiError;
-use super::{Answers, Context, guarded, pieces};
+use super::{Answers, Context, guarded, pieces, visible};
 use crate::coordinator::{Answered, ClassifiedPath, CoordinatorError};
 use crate::intake;
 use crate::jobs::planning::Planned;
@@ -17,6 +17,7 @@ use cognate_protocol::v1::client_api_server::ClientApi;
 use cognate_protocol::{PROTOCOL_VERSION, from_proto, to_proto, v1};
 use futures::future::ready;
 use futures::{StreamExt, stream};
+use prost::Message;
 use std::sync::Arc;
 use tokio::sync::mpsc::Receiver;
 use tokio_stream::wrappers::ReceiverStream;
@@ -28,6 +29,8 @@ const DEFAULT_TENANT: &str = "default";
 const JOBS_LISTED: u32 = 100;
 /// Most jobs in a list.
 const JOBS_LIMIT: u32 = 10_000;
+/// A problem of more bytes is read in the lane of those that take long.
+const LARGE_PROBLEM: usize = 1 << 20;
 /// Most workers in a list.
 const WORKERS_LIMIT: u32 = 10_000;
 
@@ -105,7 +108,8 @@ fn progress(progress: JobProgress, warnings: Vec<String>) -> v1::JobProgress {
 fn overview((row, stages): (JobRow, Vec<StageRow>)) -> v1::JobOverview {
     v1::JobOverview {
         job: row.job.to_string(),
-        name: row.asked.label,
+        // Those of an earlier version were kept as they came.
+        name: visible(&row.asked.label),
         tenant: row.asked.tenant.to_string(),
         state: state(row.state).into(),
         submitted_unix_ms: row.submitted.0,
@@ -192,13 +196,15 @@ impl ClientApi for ClientService {
         let problem = m
             .problem
             .ok_or_else(|| ApiError::from(ProtocolError::missing("problem")))?;
+        let is_large = problem.encoded_len() > LARGE_PROBLEM;
         let submission = from_proto::problem::submission(problem)
             .map_err(|e| ApiError::from(e.within("problem")))?;
         let coordinator = self.context.coordinator.clone();
         let accepted = guarded(async move {
-            // Reading a large file takes long; it must not hold up the runtime.
-            let problem = tokio::task::spawn_blocking(|| intake::take(submission)).await;
-            let problem = problem.map_err(|e| ApiError::Panic(e.to_string()))??;
+            // Reading a large file takes long; it must hold up neither the runtime nor small ones.
+            let reading = coordinator.planning();
+            let problem = reading.read(is_large, || intake::take(submission)).await;
+            let problem = problem.map_err(CoordinatorError::from)??;
             Ok(coordinator.submit(id, tenant, problem).await?)
         });
         let accepted = accepted.await?;
@@ -262,13 +268,14 @@ impl ClientApi for ClientService {
         request: Request<v1::StreamSolutionsRequest>,
     ) -> Result<Response<Self::StreamSolutionsStream>, Status> {
         let job = job(&request.into_inner().job)?;
+        let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
             let message = |(_, solution): Answered| {
                 let solution = solution?;
                 Some(Ok(to_proto::solution::solution(&solution, 0)))
             };
-            return Ok(Response::new(flattened(answers, message)));
+            return Ok(Response::new(turn.hold(flattened(answers, message))));
         }
         let sets = self.context.coordinator.solutions(job).await;
         let sets = sets.map_err(ApiError::from)?;
@@ -282,7 +289,7 @@ impl ClientApi for ClientService {
             let message = to_proto::solution::solution(point, number);
             Some((Ok(message), (sets, target, index + 1)))
         });
-        Ok(Response::new(Box::pin(solutions)))
+        Ok(Response::new(turn.hold(Box::pin(solutions))))
     }
 
     type StreamPathsStream = Answers<v1::ClassifiedPath>;
@@ -292,15 +299,16 @@ impl ClientApi for ClientService {
         request: Request<v1::StreamPathsRequest>,
     ) -> Result<Response<Self::StreamPathsStream>, Status> {
         let job = job(&request.into_inner().job)?;
+        let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
             let message = |(path, _): Answered| Some(Ok(classified(&path)));
-            return Ok(Response::new(flattened(answers, message)));
+            return Ok(Response::new(turn.hold(flattened(answers, message))));
         }
         let coordinator = self.context.coordinator.clone();
         let paths = guarded(async move { Ok(coordinator.paths(job).await?) }).await?;
         let paths = paths.into_iter().map(|path| Ok(classified(&path)));
-        Ok(Response::new(Box::pin(stream::iter(paths))))
+        Ok(Response::new(turn.hold(Box::pin(stream::iter(paths)))))
     }
 
     async fn explain(
@@ -360,6 +368,8 @@ impl ClientApi for ClientService {
             let here = idle < memory && (!row.says.draining || row.leased_chunks > 0);
             here.then(|| {
                 let refused = self.context.refusal(&row.says.worker);
+                let aside = || self.context.coordinator.put_aside(&row.says.worker);
+                let refused = refused.or_else(aside);
                 worker(row, refused, idle)
             })
         });

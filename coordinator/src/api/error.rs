@@ -76,13 +76,15 @@ fn code(error: &CoordinatorError) -> Code {
         | CoordinatorError::Decomposed(_)
         | CoordinatorError::NotDecomposed(_) => Code::FailedPrecondition,
         CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
-        CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
+        CoordinatorError::NotPlanned(_) | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => {
+            Code::ResourceExhausted
+        }
         CoordinatorError::Ledger(
             LedgerError::Storage(_) | LedgerError::Unreachable(_) | LedgerError::Closed,
         )
-        | CoordinatorError::Store(StoreError::Storage(_) | StoreError::Folder { .. }) => {
-            Code::Unavailable
-        }
+        | CoordinatorError::Store(
+            StoreError::Storage(_) | StoreError::Folder { .. } | StoreError::Away(_),
+        ) => Code::Unavailable,
         CoordinatorError::Plan(_)
         | CoordinatorError::Ledger(LedgerError::Damaged(_))
         | CoordinatorError::Store(StoreError::Damaged { .. } | StoreError::Differs(_)) => {

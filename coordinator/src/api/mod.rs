@@ -1,7 +1,9 @@
 //! The services: decode, one call inwards, encode.
 
+pub mod admission;
 pub mod client_service;
 pub mod error;
+pub mod held_stream;
 pub mod security;
 pub mod worker_service;
 
@@ -15,6 +17,7 @@ use cognate_protocol::error::ProtocolError;
 use cognate_protocol::limits::PIECE_BYTES;
 use cognate_protocol::v1;
 use error::ApiError;
+use held_stream::HeldStreams;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio_util::sync::CancellationToken;
@@ -34,6 +37,8 @@ pub struct Context {
     pub stopping: CancellationToken,
     /// The listener in shared memory, where there is one; else the empty message.
     pub shared_memory: v1::SharedMemory,
+    /// Streams of results that are open.
+    pub streams: HeldStreams,
     /// Workers that get no work, and why.
     refused: Mutex<HashMap<WorkerId, String>>,
 }
@@ -48,6 +53,7 @@ impl Context {
     ) -> Self {
         Self {
             coordinator,
+            streams: HeldStreams::new(rules.streams),
             rules,
             stopping,
             shared_memory,
@@ -89,6 +95,21 @@ async fn guarded<T: Send + 'static>(
 /// A stream of answers.
 pub type Answers<T> = futures::stream::BoxStream<'static, Result<T, Status>>;
 
+/// A text of somebody else with its control characters written out: what is shown in a terminal or a log
+/// neither moves the cursor nor forges lines.
+pub fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        // Characters that turn the direction of what follows hide as well as others.
+        let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        match c.is_control() || turns {
+            true => shown.extend(c.escape_default()),
+            false => shown.push(c),
+        }
+    }
+    shown
+}
+
 /// A lease's name.
 fn lease_id(field: &str, m: Option<&v1::LeaseId>) -> Result<LeaseId, ApiError> {
     let m = m.ok_or_else(|| ProtocolError::missing(field))?;
@@ -123,6 +144,12 @@ fn pieces(bytes: Bytes) -> Answers<v1::ObjectPiece> {
 mod tests {
     use super::*;
     use futures::StreamExt;
+
+    #[test]
+    fn what_is_shown_moves_no_cursor() {
+        let evil = "a\u{1b}]0;owned\u{7}\nb\u{202e}c \u{e4}";
+        assert_eq!(visible(evil), "a\\u{1b}]0;owned\\u{7}\\nb\\u{202e}c \u{e4}");
+    }
 
     #[tokio::test]
     async fn pieces_make_up_the_object() {

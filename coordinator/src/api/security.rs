@@ -1,10 +1,14 @@
 //! Security: who may call what. Tokens by role, compared in constant time; TLS.
 
 use cognate_worker::transport::connect::{CredentialError, Role, read_tokens};
-use std::path::Path;
-use std::sync::Arc;
+use futures::future::BoxFuture;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::task::{Context, Poll};
+use std::time::Duration;
 use tonic::body::Body;
+use tonic::transport::server::{TcpConnectInfo, TlsConnectInfo};
 use tonic::transport::{Certificate, Identity, ServerTlsConfig};
 use tonic::{Status, body};
 use tower::{Layer, Service};
@@ -67,22 +71,43 @@ impl Tls {
     }
 }
 
-/// Tokens, as their hashes: whose comparison takes the same time whatever is compared.
+/// Tokens, as their hashes: whose comparison takes the same time whatever is compared. Clones hold the
+/// same, also when they are read again.
 #[derive(Clone)]
-pub struct Tokens(Arc<Vec<(Option<Role>, blake3::Hash)>>);
+pub struct Tokens {
+    held: Arc<RwLock<Vec<HashedToken>>>,
+    file: PathBuf,
+}
+
+/// What a token opens (`None`: everything), and its hash.
+type HashedToken = (Option<Role>, blake3::Hash);
 
 impl std::fmt::Debug for Tokens {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} tokens", self.0.len())
+        write!(f, "{} tokens", self.held().len())
     }
 }
 
 impl Tokens {
     /// From a file: see [`read_tokens`].
     pub fn read(file: &Path) -> Result<Self, CredentialError> {
-        let tokens = read_tokens(file)?.into_iter();
-        let hashed = tokens.map(|(role, token)| (role, blake3::hash(token.as_bytes())));
-        Ok(Self(Arc::new(hashed.collect())))
+        warn_of_readers(file);
+        Ok(Self {
+            held: Arc::new(RwLock::new(hashed(file)?)),
+            file: file.to_owned(),
+        })
+    }
+
+    /// Reads the file again. What is held stays where the file is not well formed.
+    pub fn read_again(&self) -> Result<(), CredentialError> {
+        let fresh = hashed(&self.file)?;
+        *self.held.write().unwrap_or_else(PoisonError::into_inner) = fresh;
+        warn_of_readers(&self.file);
+        Ok(())
+    }
+
+    fn held(&self) -> RwLockReadGuard<'_, Vec<HashedToken>> {
+        self.held.read().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether a token opens what needs this role (`None`: any).
@@ -90,7 +115,7 @@ impl Tokens {
         let shown = blake3::hash(token.as_bytes());
         let mut opens = false;
         // All of them are compared, so that the time says nothing about which one fits.
-        for (role, hash) in self.0.iter() {
+        for (role, hash) in self.held().iter() {
             let fits = match (role, wanted) {
                 (Some(role), Some(wanted)) => *role == wanted,
                 _ => true,
@@ -133,6 +158,39 @@ impl Tokens {
     }
 }
 
+fn hashed(file: &Path) -> Result<Vec<HashedToken>, CredentialError> {
+    let tokens = read_tokens(file)?.into_iter();
+    Ok(tokens
+        .map(|(role, token)| (role, blake3::hash(token.as_bytes())))
+        .collect())
+}
+
+/// Says that others than the owner can read the tokens.
+fn warn_of_readers(file: &Path) {
+    let mode = std::fs::metadata(file).map(|found| found.permissions().mode());
+    if let Ok(mode) = mode
+        && mode & 0o077 != 0
+    {
+        tracing::warn!(file = %file.display(), mode = format!("{:o}", mode & 0o777),
+            "others can read the tokens: chmod 600");
+    }
+}
+
+/// Who a call came from, where that is known.
+fn peer<B>(request: &http::Request<B>) -> String {
+    let info = request.extensions();
+    let plain = info
+        .get::<TcpConnectInfo>()
+        .and_then(TcpConnectInfo::remote_addr);
+    let secret = info.get::<TlsConnectInfo<TcpConnectInfo>>();
+    let secret = secret.and_then(|info| info.get_ref().remote_addr());
+    let address = plain.or(secret);
+    address.map_or_else(|| "unknown".to_owned(), |address| address.to_string())
+}
+
+/// Whoever shows a wrong token waits so long for the answer: guessing takes time, and mistakes do not.
+const WRONG_TOKEN: Duration = Duration::from_millis(500);
+
 /// Stands before all services of a listener.
 #[derive(Clone, Debug)]
 pub struct Guard(pub Option<Tokens>);
@@ -158,11 +216,12 @@ pub struct Guarded<S> {
 impl<S, B> Service<http::Request<B>> for Guarded<S>
 where
     S: Service<http::Request<B>, Response = http::Response<body::Body>>,
+    S::Response: Send,
 {
     type Response = S::Response;
     type Error = S::Error;
     type Future =
-        futures::future::Either<std::future::Ready<Result<S::Response, S::Error>>, S::Future>;
+        futures::future::Either<BoxFuture<'static, Result<S::Response, S::Error>>, S::Future>;
 
     fn poll_ready(&mut self, cx: &mut Context<'_>) -> Poll<Result<(), S::Error>> {
         self.inner.poll_ready(cx)
@@ -172,8 +231,18 @@ where
         let tokens = self.tokens.as_ref();
         match tokens.and_then(|t| t.refusal(request.uri().path(), request.headers())) {
             Some(status) => {
-                let response = status.into_http::<Body>();
-                futures::future::Either::Left(std::future::ready(Ok(response)))
+                let path = request.uri().path();
+                tracing::warn!(
+                    peer = peer(&request),
+                    path,
+                    why = status.message(),
+                    "a call is refused"
+                );
+                let refusal = async move {
+                    tokio::time::sleep(WRONG_TOKEN).await;
+                    Ok(status.into_http::<Body>())
+                };
+                futures::future::Either::Left(Box::pin(refusal))
             }
             None => futures::future::Either::Right(self.inner.call(request)),
         }
@@ -187,11 +256,32 @@ mod tests {
 
     fn tokens() -> Tokens {
         let hash = |role, token: &str| (role, blake3::hash(token.as_bytes()));
-        Tokens(Arc::new(vec![
+        let held = vec![
             hash(Some(Role::Client), "client-0123456789"),
             hash(Some(Role::Worker), "worker-0123456789"),
             hash(None, "both-0123456789abc"),
-        ]))
+        ];
+        Tokens {
+            held: Arc::new(RwLock::new(held)),
+            file: PathBuf::new(),
+        }
+    }
+
+    #[test]
+    fn tokens_are_read_again_and_stay_where_the_file_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("tokens");
+        std::fs::write(&file, "client client-0123456789\n").unwrap();
+        let tokens = Tokens::read(&file).unwrap();
+        let guard = tokens.clone();
+        let opens = |token: &str| guard.open(token, Some(Role::Client));
+        assert!(opens("client-0123456789") && !opens("client-9876543210"));
+        std::fs::write(&file, "client client-9876543210\n").unwrap();
+        tokens.read_again().unwrap();
+        assert!(!opens("client-0123456789") && opens("client-9876543210"));
+        std::fs::write(&file, "").unwrap();
+        assert!(tokens.read_again().is_err());
+        assert!(opens("client-9876543210"));
     }
 
     #[test]

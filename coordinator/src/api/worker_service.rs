@@ -1,11 +1,11 @@
 //! gRPC for workers: decode, one call inwards, encode.
 
 use super::error::ApiError;
-use super::{Answers, Context, duration_ms, guarded, lease_id, pieces};
+use super::{Answers, Context, duration_ms, guarded, lease_id, pieces, visible};
 use crate::coordinator::{Coordinator, CoordinatorError, Pull, Report};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
-use crate::ledger::identity::{LeaseId, RequestId, WorkerId};
+use crate::ledger::identity::{LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{Completion, GiveBack, Lease, Renewal, WorkerSeen};
 use cognate_continuation::work::StageId;
 use cognate_numeric::NUMERICS_REVISION;
@@ -36,14 +36,17 @@ impl WorkerService {
     }
 }
 
-fn worker(identity: Option<v1::WorkerIdentity>) -> Result<(WorkerId, String), ApiError> {
+fn speaker(identity: Option<v1::WorkerIdentity>) -> Result<Speaker, ApiError> {
     let identity = identity.ok_or_else(|| ProtocolError::missing("identity"))?;
-    Ok((WorkerId::new(identity.worker)?, identity.session))
+    Ok(Speaker {
+        worker: WorkerId::new(identity.worker)?,
+        session: identity.session,
+    })
 }
 
 /// A question for chunks, or why this worker gets none.
 fn pull(m: v1::PullRequest, longest: Duration) -> Result<(Pull, Option<String>), ApiError> {
-    let (worker, session) = worker(m.identity)?;
+    let Speaker { worker, session } = speaker(m.identity)?;
     let machine = m.machine.ok_or_else(|| ProtocolError::missing("machine"))?;
     for (field, text) in [
         ("machine.version", &machine.version),
@@ -58,13 +61,13 @@ fn pull(m: v1::PullRequest, longest: Duration) -> Result<(Pull, Option<String>),
         request: RequestId::new(format!("{session}.{}", m.sequence))?,
         worker: WorkerSeen {
             worker,
-            version: machine.version,
+            version: visible(&machine.version),
             numerics_revision: machine.numerics_revision,
-            instruction_set: machine.instruction_set,
+            instruction_set: visible(&machine.instruction_set),
             threads: machine.threads.max(1),
             lane_width: machine.lane_width,
-            host: machine.host,
-            transport: machine.transport,
+            host: visible(&machine.host),
+            transport: visible(&machine.transport),
             draining: false,
         },
         slots: match refusal {
@@ -115,7 +118,11 @@ fn leases(m: &[v1::LeaseId]) -> Result<Vec<LeaseId>, ApiError> {
     m.iter().map(|id| lease_id("leases", Some(id))).collect()
 }
 
-async fn report(coordinator: &Coordinator, m: &v1::ChunkReport) -> Result<Report, ApiError> {
+async fn report(
+    coordinator: &Coordinator,
+    by: Speaker,
+    m: &v1::ChunkReport,
+) -> Result<Report, ApiError> {
     let lease = lease_id("lease", m.lease.as_ref())?;
     let work = coordinator.work_of(lease).await?;
     within_limit("results", m.results.len(), CHUNK_PATHS)?;
@@ -123,6 +130,7 @@ async fn report(coordinator: &Coordinator, m: &v1::ChunkReport) -> Result<Report
         from_proto::path::item_result(result, work).map_err(|e| e.within(format!("results[{i}]")))
     });
     Ok(Report {
+        by,
         lease,
         results: results.collect::<Result<_, _>>()?,
         cpu_micros: m.cpu_nanoseconds / 1000,
@@ -227,8 +235,10 @@ impl WorkerApi for WorkerService {
         &self,
         request: Request<v1::RenewRequest>,
     ) -> Result<Response<v1::RenewResponse>, Status> {
-        let leases = leases(&request.into_inner().leases)?;
-        let renewals = self.context.coordinator.renew(&leases).await;
+        let m = request.into_inner();
+        let by = speaker(m.identity)?;
+        let leases = leases(&m.leases)?;
+        let renewals = self.context.coordinator.renew(&leases, &by).await;
         let renewals = renewals.map_err(ApiError::from)?;
         let now = self.context.now().await?;
         let renewal = |renewal: Renewal| match renewal {
@@ -248,14 +258,14 @@ impl WorkerApi for WorkerService {
         request: Request<v1::ReportRequest>,
     ) -> Result<Response<v1::ReportResponse>, Status> {
         let m = request.into_inner();
-        worker(m.identity)?;
+        let by = speaker(m.identity)?;
         within_limit("chunks", m.chunks.len(), CHUNKS_PER_CALL).map_err(ApiError::from)?;
         let verdicts = futures::stream::iter(m.chunks)
             .map(|chunk| {
-                let coordinator = self.context.coordinator.clone();
+                let (coordinator, by) = (self.context.coordinator.clone(), by.clone());
                 // What is wrong with one chunk says nothing about the others.
                 guarded(async move {
-                    let report = report(&coordinator, &chunk).await?;
+                    let report = report(&coordinator, by, &chunk).await?;
                     Ok(coordinator.complete(report).await?)
                 })
             })
@@ -271,10 +281,10 @@ impl WorkerApi for WorkerService {
         request: Request<v1::GiveBackRequest>,
     ) -> Result<Response<v1::GiveBackResponse>, Status> {
         let m = request.into_inner();
-        let (worker, _) = worker(m.identity)?;
+        let by = speaker(m.identity)?;
         let why = match v1::GiveBackReason::try_from(m.reason) {
             Ok(v1::GiveBackReason::Failed) => GiveBack::Failed {
-                reason: m.message.chars().take(500).collect(),
+                reason: visible(&m.message.chars().take(500).collect::<String>()),
             },
             // A reason that this version does not know accuses nobody.
             Ok(v1::GiveBackReason::Draining | v1::GiveBackReason::Unspecified) | Err(_) => {
@@ -282,11 +292,11 @@ impl WorkerApi for WorkerService {
             }
         };
         let coordinator = &self.context.coordinator;
-        let done = coordinator.give_back(&leases(&m.leases)?, why).await;
+        let done = coordinator.give_back(&leases(&m.leases)?, why, &by).await;
         done.map_err(ApiError::from)?;
         if m.leaving {
-            tracing::info!(%worker, "a worker leaves");
-            let left = coordinator.worker_leaves(&worker).await;
+            tracing::info!(worker = %by.worker, "a worker leaves");
+            let left = coordinator.worker_leaves(&by.worker).await;
             left.map_err(ApiError::from)?;
         }
         Ok(Response::new(v1::GiveBackResponse {}))

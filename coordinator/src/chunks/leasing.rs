@@ -2,6 +2,8 @@
 
 use super::sizing::Sizing;
 use super::speculation::Speculation;
+use crate::coordinator::conduct::ConductRules;
+use crate::jobs::planning_queue::PlanningLimits;
 use crate::ledger::identity::{RequestId, WorkerId};
 use crate::ledger::rows::LeaseRequest;
 use cognate_algorithms::plan::PLANNING_OPERATIONS;
@@ -35,6 +37,10 @@ pub struct Policy {
     /// Planning a polyhedral start counts mixed cells in at most so many operations, about one for each
     /// multiplication; what takes more is counted by workers. Default 2,000,000,000: a few seconds.
     pub counting_operations: u64,
+    /// When a worker that fails is put aside.
+    pub conduct: ConductRules,
+    /// How many problems are planned at once, and for how long.
+    pub planning: PlanningLimits,
     /// Rule for the size of chunks.
     pub sizing: Sizing,
     /// When the last chunks of a stage are given to a second worker.
@@ -53,6 +59,8 @@ impl Default for Policy {
             audit_percent: 0,
             held_paths: 100_000,
             counting_operations: PLANNING_OPERATIONS,
+            conduct: ConductRules::default(),
+            planning: PlanningLimits::default(),
             sizing: Sizing::default(),
             speculation: Speculation::default(),
         }

@@ -4,10 +4,12 @@
 //! all jobs at once (virtual time per tenant, then per job); how large a chunk
 //! is cut, [`sizing`]; what becomes of one that no worker survives, [`expiry`];
 //! which are done twice to compare, [`audit`]; which because they are late,
-//! [`speculation`]; the numbers behind it, [`leasing`].
+//! [`speculation`]; whose results are done again because they cannot be right, [`plausibility`]; the
+//! numbers behind it, [`leasing`].
 
 pub mod audit;
 pub mod expiry;
 pub mod leasing;
+pub mod plausibility;
 pub mod sizing;
 pub mod speculation;

@@ -117,6 +117,9 @@ impl ConfigFile {
             worker_memory,
             shutdown_grace,
             keep_alive,
+            connections,
+            calls,
+            streams,
         } = Rules::default();
         let ms = Duration::from_millis;
         let in_ms = |name, asked, default| -> Result<u64, String> {
@@ -147,6 +150,8 @@ impl ConfigFile {
                 audit_percent: r.audit_percent.unwrap_or(policy.audit_percent).min(100),
                 held_paths: r.held_paths.unwrap_or(policy.held_paths),
                 counting_operations: r.counting_operations.unwrap_or(policy.counting_operations),
+                planning: policy.planning,
+                conduct: policy.conduct,
                 speculation: Speculation {
                     times: r.speculation_times.unwrap_or(policy.speculation.times),
                     least_ms: in_ms(
@@ -176,6 +181,9 @@ impl ConfigFile {
                 shutdown_grace,
             )?,
             keep_alive: time("keep_alive_seconds", r.keep_alive_seconds, keep_alive)?,
+            connections,
+            calls,
+            streams,
         })
     }
 }

@@ -7,8 +7,10 @@
 use super::error::ClientError;
 use crate::config::{Config, LedgerPlace, ListenAddress};
 use crate::server::{RunningServer, Server};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
+use std::time::Duration;
 use tempfile::TempDir;
 use tokio::process::{Child, Command};
 
@@ -31,11 +33,17 @@ struct Worker {
     log: PathBuf,
 }
 
+/// Names of the temporary folders begin so.
+const PREFIX: &str = "cognate-";
+/// A folder that is younger may belong to a solve that begins.
+const SWEPT_AFTER: Duration = Duration::from_secs(60);
+
 impl Embedded {
     /// Starts a coordinator on a socket in a new folder, and workers of the same program.
     pub async fn start(workers: u32, threads: Option<u32>) -> Result<Self, ClientError> {
+        sweep(&std::env::temp_dir());
         let folder = tempfile::Builder::new()
-            .prefix("cognate-")
+            .prefix(PREFIX)
             .tempdir()
             .map_err(|e| local("a temporary folder could not be made", &e))?;
         let config = Config {
@@ -116,10 +124,63 @@ impl Embedded {
     }
 }
 
+/// Removes what solves left that were killed: folders of ours with a socket that nobody answers on.
+fn sweep(folder: &Path) {
+    let left = |path: &Path| {
+        let own = std::fs::symlink_metadata(path)?;
+        let is_old = own.modified()?.elapsed().is_ok_and(|age| age > SWEPT_AFTER);
+        let is_own = own.is_dir() && own.uid() == rustix::process::getuid().as_raw();
+        let refused = || {
+            let answer = std::os::unix::net::UnixStream::connect(socket(path));
+            answer.is_err_and(|e| e.kind() == std::io::ErrorKind::ConnectionRefused)
+        };
+        Ok::<_, std::io::Error>(is_old && is_own && refused())
+    };
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_named = entry.file_name().to_string_lossy().starts_with(PREFIX);
+        if is_named && left(&entry.path()).unwrap_or(false) {
+            // Somebody else may sweep, too.
+            let _ = std::fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
 fn socket(folder: &Path) -> PathBuf {
     folder.join("coordinator.sock")
 }
 
 fn local(what: &str, e: &dyn std::error::Error) -> ClientError {
     ClientError::Local(format!("{what}: {e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::SystemTime;
+
+    #[test]
+    fn what_killed_solves_left_is_swept_and_nothing_else() {
+        let all = tempfile::tempdir().unwrap();
+        let make = |name: &str, age: u64| {
+            let folder = all.path().join(name);
+            std::fs::create_dir(&folder).unwrap();
+            let listener = std::os::unix::net::UnixListener::bind(socket(&folder)).unwrap();
+            let then = SystemTime::now() - Duration::from_secs(age);
+            std::fs::File::open(&folder)
+                .unwrap()
+                .set_modified(then)
+                .unwrap();
+            (folder, listener)
+        };
+        let (killed, listener) = make("cognate-killed", 100);
+        drop(listener);
+        let (begins, listener) = make("cognate-begins", 0);
+        drop(listener);
+        let (lives, _listener) = make("cognate-lives", 100);
+        let (other, listener) = make("other", 100);
+        drop(listener);
+        sweep(all.path());
+        assert!(!killed.exists());
+        assert!(begins.exists() && lives.exists() && other.exists());
+    }
 }

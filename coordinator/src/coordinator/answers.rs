@@ -342,6 +342,11 @@ impl Coordinator {
                 "late: {late} chunks were given to a second worker, which reported {won} of them first"
             ));
         }
+        let standing = match row.state.has_ended() {
+            true => Vec::new(),
+            false => self.standing_still(&row).await?,
+        };
+        lines.extend(standing.iter().cloned());
         lines.extend(summary.iter().flat_map(AnySummary::lines));
         let stages: Vec<_> = progress
             .stages
@@ -369,6 +374,7 @@ impl Coordinator {
             "stages": stages,
             "speculative_leases": late,
             "speculative_won": won,
+            "standing": standing,
             "summary": summary,
         });
         Ok(Explanation {

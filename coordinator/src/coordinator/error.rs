@@ -1,6 +1,7 @@
 //! CoordinatorError: why a call was not answered.
 
 use crate::jobs::planning::{PlanningError, UnreadablePlan};
+use crate::jobs::planning_queue::PlanningRefusal;
 use crate::ledger::LedgerError;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobState;
@@ -16,6 +17,9 @@ pub enum CoordinatorError {
     /// There is no plan for the problem, and why.
     #[error(transparent)]
     Planning(#[from] PlanningError),
+    /// The problem is not planned now, or not at all.
+    #[error(transparent)]
+    NotPlanned(#[from] PlanningRefusal),
     /// There is no such stage.
     #[error("job {job} has no stage {}", stage.0)]
     UnknownStage {

@@ -5,11 +5,13 @@
 
 mod answers;
 mod changes;
+pub mod conduct;
 mod error;
 mod large_answer;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;
+mod standing_still;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -26,8 +28,12 @@ pub use large_answer::Answered;
 pub use work::{Pull, Report};
 
 use self::changes::Changes;
+use self::conduct::Conduct;
 use crate::chunks::leasing::Policy;
+use crate::chunks::plausibility::EndCheck;
+use crate::health::Health;
 use crate::jobs::planning::{Planned, STATE, plan_job};
+use crate::jobs::planning_queue::PlanningQueue;
 use crate::ledger::identity::{CoordinatorId, JobId, RequestId, Tenant, WorkerId};
 use crate::ledger::rows::{Cancelled, JobState, NewJob, WorkerSeen};
 use crate::ledger::{Ledger, LedgerError};
@@ -77,6 +83,12 @@ pub struct Coordinator {
     store: Store,
     who: CoordinatorId,
     policy: Policy,
+    /// How workers have done lately.
+    conduct: Conduct,
+    /// Whether ledger and store can be used.
+    health: Health,
+    /// Problems that are read and planned, or wait for it.
+    planning: PlanningQueue,
     /// Something may be leased that could not be before.
     work: Notify,
     /// Wakes those who watch a job when the job changes.
@@ -89,6 +101,8 @@ pub struct Coordinator {
     seen: Mutex<HashMap<WorkerId, (WorkerSeen, i64)>>,
     systems: Recent<Digest, System>,
     stages: Recent<Digest, Stage>,
+    /// What the ends of a stage's paths are held against; none where that cannot be done.
+    end_checks: Recent<(JobId, StageId), Option<EndCheck>>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
     /// Of stages that count mixed cells: those of each finished chunk, by its first item.
@@ -107,6 +121,9 @@ impl Coordinator {
             ledger,
             store,
             who,
+            conduct: Conduct::new(policy.conduct),
+            health: Health::default(),
+            planning: PlanningQueue::new(policy.planning),
             policy,
             work: Notify::new(),
             changes: Changes::default(),
@@ -115,6 +132,7 @@ impl Coordinator {
             seen: Mutex::default(),
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),
+            end_checks: Recent::new(KEPT),
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),
             cells: Recent::new(KEPT),
@@ -129,6 +147,26 @@ impl Coordinator {
     /// The ledger.
     pub fn ledger(&self) -> &dyn Ledger {
         &*self.ledger
+    }
+
+    /// Why a worker gets no chunk now, in words.
+    pub fn put_aside(&self, worker: &WorkerId) -> Option<String> {
+        self.conduct.refusal(worker, tokio::time::Instant::now())
+    }
+
+    /// Whether ledger and store can be used.
+    pub fn health(&self) -> &Health {
+        &self.health
+    }
+
+    /// Looks whether ledger and store can be used.
+    pub async fn examine(&self) {
+        self.health.examine(&*self.ledger, &self.store).await;
+    }
+
+    /// What bounds the reading and planning of problems.
+    pub fn planning(&self) -> &PlanningQueue {
+        &self.planning
     }
 
     /// The store of objects.
@@ -166,18 +204,17 @@ impl Coordinator {
             }
             (None, _) => None,
         };
-        // Counting the paths of some starts takes long; it must not hold up the runtime.
+        // Counting the paths of some starts takes long: it has its turn, and its time.
         let counting_operations = self.policy.counting_operations;
-        let planning = tokio::task::spawn_blocking(move || {
-            let start_solutions = start_solutions.as_deref();
-            let plan = plan_job(&system, &options, start_solutions, counting_operations);
-            (system, options, plan)
-        });
-        let (system, options, plan) = match planning.await {
-            Ok(done) => done,
-            Err(error) => std::panic::resume_unwind(error.into_panic()),
+        let (system, options) = (Arc::new(system), Arc::new(options));
+        let plan = {
+            let (system, options) = (Arc::clone(&system), Arc::clone(&options));
+            self.planning.plan(move || {
+                let start_solutions = start_solutions.as_deref();
+                plan_job(&system, &options, start_solutions, counting_operations)
+            })
         };
-        let plan = plan?;
+        let plan = plan.await??;
         let planned = Planned {
             name: options.name.clone(),
             problem: self.store.put_problem(&system).await?,

@@ -9,6 +9,7 @@ use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobEnd;
 use futures::FutureExt;
 use std::any::Any;
+use std::collections::BTreeSet;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,8 +18,12 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
-/// A driven job is looked at again at least after this time, whoever else may have changed it.
+/// So often is asked which jobs want a look, whoever else may have changed them ...
 const LOOK: Duration = Duration::from_secs(1);
+/// ... but not so often that asking takes more than one part in so many of the time.
+const LOOK_SHARE: u32 = 20;
+/// A driven job that nobody wakes is looked at after this time all the same.
+const LATEST_LOOK: Duration = Duration::from_secs(60);
 /// ... and at most this often.
 const PAUSE: Duration = Duration::from_millis(5);
 /// After a failure of ledger or store, a job is tried again after this time.
@@ -37,11 +42,23 @@ impl Coordinator {
     /// Works until it is told to stop; then ends what it has begun.
     pub async fn run(self: Arc<Self>, stop: CancellationToken) {
         let tasks = TaskTracker::new();
+        tasks.spawn(Arc::clone(&self).run_examination(stop.clone()));
         let expiry = tasks.track_future(Arc::clone(&self).run_expiry(stop.clone()));
         let stewards = Arc::clone(&self).run_stewards(stop.clone(), tasks.clone());
         tokio::join!(expiry, stewards);
         tasks.close();
         tasks.wait().await;
+    }
+
+    /// Looks after ledger and store.
+    async fn run_examination(self: Arc<Self>, stop: CancellationToken) {
+        loop {
+            self.examine().await;
+            tokio::select! {
+                () = stop.cancelled() => return,
+                () = sleep(LOOK) => {}
+            }
+        }
     }
 
     /// Takes back expired leases.
@@ -107,11 +124,16 @@ impl Coordinator {
     /// Takes back the leases that have expired by now.
     pub async fn expire(&self) -> Result<(), CoordinatorError> {
         let expired = self.ledger.expire().await?;
+        let mut silent = BTreeSet::new();
         for gone in &expired {
             tracing::warn!(lease = %gone.lease, worker = %gone.worker,
                 suspicions = gone.suspicions, "a worker fell silent: its chunk goes to another");
+            silent.insert(gone.worker.clone());
             self.wake_steward(gone.lease.chunk.job);
             self.changed(gone.lease.chunk.job);
+        }
+        for worker in &silent {
+            self.failed(worker, "it fell silent");
         }
         if !expired.is_empty() {
             self.work.notify_waiters();
@@ -119,21 +141,42 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Finds jobs that nobody drives.
+    /// Finds jobs that nobody drives, and wakes the stewards of those that want something. One question
+    /// for all: a job that only waits costs nothing.
     async fn run_stewards(self: Arc<Self>, stop: CancellationToken, tasks: TaskTracker) {
+        tasks.spawn(Arc::clone(&self).run_renewal(stop.clone()));
         loop {
-            match self.ledger.unfinished_jobs().await {
+            let begin = Instant::now();
+            let limit = self.policy.suspicion_limit;
+            match self.ledger.attention(&self.who, limit).await {
                 Ok(jobs) => {
                     for job in jobs {
                         self.attend(job, &stop, &tasks);
+                        self.wake_steward(job);
                     }
                 }
                 Err(error) => tracing::warn!(%error, "the jobs could not be listed"),
             }
+            let pause = LOOK.max(begin.elapsed() * LOOK_SHARE);
             tokio::select! {
                 () = stop.cancelled() => return,
                 () = self.unattended.notified() => {}
-                () = sleep(LOOK) => {}
+                () = sleep(pause) => {}
+            }
+        }
+    }
+
+    /// Keeps the right to drive all jobs that this coordinator drives.
+    async fn run_renewal(self: Arc<Self>, stop: CancellationToken) {
+        let every = Duration::from_millis(self.policy.steward_ms / 3);
+        loop {
+            tokio::select! {
+                () = stop.cancelled() => return,
+                () = sleep(every) => {}
+            }
+            let duration = self.policy.steward_ms;
+            if let Err(error) = self.ledger.renew_stewardships(&self.who, duration).await {
+                tracing::warn!(%error, "the rights to drive are not renewed");
             }
         }
     }
@@ -256,7 +299,7 @@ impl Coordinator {
                     tokio::select! {
                         () = stop.cancelled() => {}
                         // Woken, or not: the ledger says what there is.
-                        _ = timeout(LOOK.min(renewal), wake.notified()) => {}
+                        _ = timeout(LATEST_LOOK, wake.notified()) => {}
                     }
                 }
             }

@@ -2,6 +2,7 @@
 //! silent, cannot be heard and report twice, on one ledger that fails and one store. Real paths, a
 //! clock set by hand.
 
+use super::conduct::ConductRules;
 use super::{Coordinator, CoordinatorError, NewProblem, Pull, Report};
 use crate::chunks::leasing::Policy;
 use crate::chunks::sizing::Sizing;
@@ -23,6 +24,14 @@ use num_complex::Complex64;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+
+/// A worker of this name, whose session has the same.
+pub fn speaker(name: &str) -> Speaker {
+    Speaker {
+        worker: WorkerId::new(name).expect("a good name"),
+        session: name.to_owned(),
+    }
+}
 
 /// Small numbers by a seed (SplitMix64).
 pub struct Dice(pub u64);
@@ -47,6 +56,11 @@ pub fn policy(most_items: u64) -> Policy {
             first_items: most_items,
             most_items,
             ..Sizing::default()
+        },
+        // Here workers fail by chance, and time is simulated.
+        conduct: ConductRules {
+            failures: u32::MAX,
+            ..ConductRules::default()
         },
         ..Policy::default()
     }
@@ -162,7 +176,7 @@ pub struct Cluster {
     /// One of the workers computes wrongly.
     broken: bool,
     /// Items whose results were accepted, by stage.
-    accepted: BTreeSet<(u32, u64)>,
+    pub accepted: BTreeSet<(u32, u64)>,
     processes: Vec<Process>,
     workers: Vec<Worker>,
     /// A worker that no coordinator hears.
@@ -439,6 +453,7 @@ impl Cluster {
             }
         }
         let report = Report {
+            by: speaker(&self.workers[worker].name),
             lease: lease.lease,
             results,
             cpu_micros: 1000 * lease.items.len(),
@@ -498,7 +513,11 @@ impl Cluster {
             .collect();
         let coordinator = &self.processes[process].coordinator;
         if coordinator
-            .give_back(&leases, GiveBack::Drained)
+            .give_back(
+                &leases,
+                GiveBack::Drained,
+                &speaker(&self.workers[worker].name),
+            )
             .await
             .is_err()
         {

@@ -5,6 +5,7 @@ use super::*;
 use crate::chunks::speculation::Speculation;
 use crate::ledger::clock::{Clock, ManualClock};
 use crate::ledger::faulty::{FaultyLedger, Side};
+use crate::ledger::identity::Speaker;
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::{ChunkState, JobRow};
 use crate::ledger::sql::SqlLedger;
@@ -290,7 +291,7 @@ async fn a_ledger_and_store_on_disk_are_all_that_a_restart_needs() {
     for round in 0..100 {
         let path = folder.path().join("ledger");
         let ledger = Arc::new(SqlLedger::sqlite(&path, clock.clone()).await.unwrap());
-        let store = Store::folder(&folder.path().join("results")).unwrap();
+        let store = Store::folder(&folder.path().join("results"), true).unwrap();
         let mut cluster = Cluster::new(ledger.clone(), store, clock.clone(), policy(3), round);
         cluster.start_coordinator();
         cluster.start_worker();
@@ -378,12 +379,13 @@ async fn a_path_that_kills_workers_is_named_and_the_rest_is_solved() {
 }
 
 #[tokio::test]
-async fn a_damaged_object_ends_the_job_with_its_name() {
+async fn a_damaged_or_missing_object_is_found_again() {
+    let (reference, _) = quiet(&problem()).await;
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(ManualClock::default());
     let ledger = Arc::new(MemoryLedger::new(clock.clone()));
-    let store = Store::folder(folder.path()).unwrap();
-    let mut cluster = Cluster::new(ledger, store, clock, policy(16), 3);
+    let store = Store::folder(folder.path(), true).unwrap();
+    let mut cluster = Cluster::new(ledger, store, clock, policy(4), 3);
     cluster.start_coordinator();
     cluster.start_worker();
     cluster.submit(&problem()).await;
@@ -393,14 +395,26 @@ async fn a_damaged_object_ends_the_job_with_its_name() {
         cluster.report(0, 0).await;
     }
     let finished = cluster.finished().await;
-    let ChunkState::Accepted { result, .. } = &finished[&0][0].state else {
-        panic!("the chunk is accepted");
+    let place = |chunk: usize| {
+        let ChunkState::Accepted { result, .. } = &finished[&0][chunk].state else {
+            panic!("the chunk is accepted");
+        };
+        folder.path().join(&result.address)
     };
-    std::fs::write(folder.path().join(&result.address), b"nonsense").unwrap();
+    assert!(finished[&0].len() >= 4);
+    std::fs::write(place(0), b"nonsense").unwrap();
+    std::fs::remove_file(place(2)).unwrap();
+    let mut flipped = std::fs::read(place(3)).unwrap();
+    *flipped.last_mut().unwrap() ^= 1;
+    std::fs::write(place(3), flipped).unwrap();
     cluster.drive(0).await;
-    let row = cluster.row().await;
-    assert_eq!(row.state, JobState::Failed);
-    assert!(row.reason.unwrap().contains(&result.address));
+    let stages = cluster.ledger.stages(cluster.job).await.unwrap();
+    assert_eq!(stages[0].ready.chunks, 3, "{stages:?}");
+    // What was counted as accepted is accepted again.
+    cluster.accepted.clear();
+    let row = cluster.run().await;
+    assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+    assert_eq!(row.solutions, reference.solutions);
 }
 
 #[tokio::test]
@@ -428,6 +442,10 @@ async fn a_report_of_other_paths_is_refused() {
         (0..17).map(result).collect(),
     ] {
         let report = Report {
+            by: Speaker {
+                worker: crate::ledger::conformance::worker("w"),
+                session: "1".into(),
+            },
             lease: lease.lease,
             results,
             cpu_micros: 1,
@@ -437,6 +455,10 @@ async fn a_report_of_other_paths_is_refused() {
     }
     // Fewer items than leased are not the chunk.
     let report = Report {
+        by: Speaker {
+            worker: crate::ledger::conformance::worker("w"),
+            session: "1".into(),
+        },
         lease: lease.lease,
         results: vec![result(0)],
         cpu_micros: 1,
@@ -463,10 +485,11 @@ async fn a_running_coordinator_needs_nobody_to_drive_it() {
                 pulls += 1;
                 let pull = Pull {
                     worker: crate::ledger::conformance::seen(name, 1),
-                    request: RequestId::new(format!("{name}-{pulls}")).unwrap(),
+                    request: RequestId::new(format!("{name}.{pulls}")).unwrap(),
                     slots: 1,
                     wait: Duration::from_secs(5),
                 };
+                let by = speaker(name);
                 for lease in coordinator.pull(pull).await.unwrap() {
                     let id = lease.lease;
                     let system = coordinator.problem(lease.problem).await.unwrap();
@@ -481,6 +504,7 @@ async fn a_running_coordinator_needs_nobody_to_drive_it() {
                     )
                     .unwrap();
                     let report = Report {
+                        by: by.clone(),
                         lease: id,
                         results: prepared.run(lease.items.first..lease.items.last, 8),
                         cpu_micros: 1000,

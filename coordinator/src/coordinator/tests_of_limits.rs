@@ -163,7 +163,10 @@ async fn a_clock_that_is_set_forward_ends_no_lease() {
             // Before the worker's next renewal: the coordinator looks meanwhile.
             tokio::time::sleep(Duration::from_millis(200)).await;
         }
-        let renewed = coordinator.renew(&[lives.lease]).await.unwrap();
+        let renewed = coordinator
+            .renew(&[lives.lease], &speaker("lives"))
+            .await
+            .unwrap();
         assert!(
             matches!(renewed[..], [Renewal::Until(_)]),
             "lost in round {round}"
@@ -172,13 +175,19 @@ async fn a_clock_that_is_set_forward_ends_no_lease() {
     // Whoever has fallen silent loses its chunk all the same.
     for _ in 0..100 {
         pass(200).await;
-        coordinator.renew(&[lives.lease]).await.unwrap();
+        coordinator
+            .renew(&[lives.lease], &speaker("lives"))
+            .await
+            .unwrap();
         let now = ledger_of.stages(dies.lease.chunk.job).await.unwrap();
         if now[0].leased.chunks == 1 {
             break;
         }
     }
-    let gone = coordinator.renew(&[dies.lease]).await.unwrap();
+    let gone = coordinator
+        .renew(&[dies.lease], &speaker("dies"))
+        .await
+        .unwrap();
     assert_eq!(gone, [Renewal::Lost]);
     let again = lease_of("another").await;
     assert_ne!(again.lease, lives.lease);

@@ -1,15 +1,19 @@
 //! What workers call: pull, renew, report, give back.
 
-use super::{Coordinator, CoordinatorError};
+use super::{Coordinator, CoordinatorError, job_row};
 use crate::chunks::audit::is_audited;
-use crate::ledger::identity::{ItemRange, LeaseId, RequestId, WorkerId};
-use crate::ledger::rows::{Completion, GiveBack, Lease, LeaseRequest, Renewal, WorkerSeen};
+use crate::chunks::plausibility::EndCheck;
+use crate::ledger::identity::{ItemRange, LeaseId, RequestId, Speaker, WorkerId};
+use crate::ledger::rows::{
+    Completion, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing, WorkerSeen,
+};
 use crate::ledger::rules::MOST_MICROS;
-use crate::results::store::StoreError;
+use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, Work};
+use std::sync::Arc;
 use std::time::Duration;
-use tokio::time::{Instant, timeout_at};
+use tokio::time::{Instant, sleep_until, timeout_at};
 
 /// A worker that says the same again is written down again after this time.
 const SEEN_MS: i64 = 5000;
@@ -33,6 +37,8 @@ pub struct Pull {
 /// What a worker found out about a chunk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
+    /// Who reports.
+    pub by: Speaker,
     /// Lease under which the chunk was done.
     pub lease: LeaseId,
     /// One result for each item, in order.
@@ -51,7 +57,22 @@ impl Coordinator {
         }
         let deadline = Instant::now() + pull.wait;
         let request = self.lease_request(&pull);
+        if let Some(until) = self
+            .conduct
+            .aside_until(&pull.worker.worker, Instant::now())
+        {
+            sleep_until(deadline.min(until)).await;
+            return Ok(Vec::new());
+        }
         loop {
+            if self.health.is_troubled() {
+                // What is leased now could be neither fetched nor kept.
+                if Instant::now() >= deadline {
+                    return Ok(Vec::new());
+                }
+                sleep_until(deadline.min(Instant::now() + POLL)).await;
+                continue;
+            }
             // Listening begins before the question, so that no wake-up is lost in between.
             let woken = self.work.notified();
             tokio::pin!(woken);
@@ -126,9 +147,33 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Prolongs leases.
-    pub async fn renew(&self, leases: &[LeaseId]) -> Result<Vec<Renewal>, CoordinatorError> {
-        Ok(self.ledger.renew(leases, self.policy.lease_ms).await?)
+    /// Prolongs leases of this worker; those of others are lost to it.
+    pub async fn renew(
+        &self,
+        leases: &[LeaseId],
+        by: &Speaker,
+    ) -> Result<Vec<Renewal>, CoordinatorError> {
+        let mut renewals = vec![Renewal::Lost; leases.len()];
+        let (mut places, mut own) = (Vec::new(), Vec::new());
+        for (place, &lease) in leases.iter().enumerate() {
+            if self.ledger.standing(lease).await?.is_of(by) {
+                places.push(place);
+                own.push(lease);
+            }
+        }
+        let renewed = self.ledger.renew(&own, self.policy.lease_ms).await?;
+        for (place, renewal) in places.into_iter().zip(renewed) {
+            renewals[place] = renewal;
+        }
+        Ok(renewals)
+    }
+
+    /// A worker failed: after several times in a row it is put aside.
+    pub(super) fn failed(&self, worker: &WorkerId, why: &str) {
+        if let Some(time) = self.conduct.failed(worker, why, Instant::now()) {
+            tracing::warn!(%worker, why, seconds = time.as_secs(),
+                "a worker fails one chunk after the other: it gets none for a while");
+        }
     }
 
     /// What is done with the items of a lease.
@@ -140,6 +185,7 @@ impl Coordinator {
     /// Takes the results of a chunk: the object, then the row, then the answer.
     pub async fn complete(&self, report: Report) -> Result<Completion, CoordinatorError> {
         let Report {
+            by,
             lease,
             results,
             cpu_micros,
@@ -150,11 +196,33 @@ impl Coordinator {
             first,
             last: first.saturating_add(results.len() as u64),
         };
-        check_report(&stage, items, &results).map_err(|what| CoordinatorError::Report {
-            lease: lease.to_string(),
-            what,
-        })?;
+        let checked = check_report(&stage, items, &results);
         let cpu_micros = cpu_micros.min(MOST_MICROS);
+        // Nothing is kept for whoever does not have the chunk.
+        match self.ledger.standing(lease).await? {
+            standing if standing.is_of(&by) => {}
+            Standing::Held { worker: holder, .. } => {
+                let worker = &by.worker;
+                tracing::warn!(%lease, %worker, %holder, "a worker reports what another one has");
+                self.failed(worker, "it reports chunks that others have");
+                return Ok(Completion::Stale);
+            }
+            Standing::Ended => {
+                if checked.is_err() {
+                    return Ok(Completion::Stale);
+                }
+                let described = Store::describe_results(lease, items, results, cpu_micros).await;
+                return self.compare_ended(lease, described.0).await;
+            }
+        }
+        checked.map_err(|what| {
+            self.failed(&by.worker, &what);
+            CoordinatorError::Report {
+                lease: lease.to_string(),
+                what,
+            }
+        })?;
+        let (results, doubt) = self.doubt(lease, &stage, results).await?;
         let object = match self
             .store
             .put_results(lease, items, results, cpu_micros)
@@ -169,14 +237,19 @@ impl Coordinator {
                 // The place is taken by something broken: the next lease has another place.
                 let reason = error.to_string();
                 tracing::error!(%lease, reason, "the chunk is tracked again");
-                self.give_back(&[lease], GiveBack::Failed { reason })
-                    .await?;
+                self.give_back(&[lease], GiveBack::Drained, &by).await?;
                 return Ok(Completion::Stale);
             }
             Err(error) => return Err(error.into()),
         };
         let address = object.address.clone();
-        let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
+        let needs_another = is_audited(lease.chunk, self.policy.audit_percent) || doubt.is_some();
+        if let Some(why) = &doubt {
+            tracing::warn!(%lease, worker = %by.worker, why,
+                "results that cannot be right: the chunk is done again");
+            self.failed(&by.worker, why);
+        }
+        let completion = if needs_another {
             self.ledger.confirm(lease, object).await?
         } else {
             self.ledger.complete(lease, object).await?
@@ -188,41 +261,112 @@ impl Coordinator {
                 self.changed(lease.chunk.job);
             }
             Completion::Accepted => {
+                if doubt.is_none() {
+                    self.conduct.did_well(&by.worker);
+                }
                 tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
                 self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
-                if is_audited(lease.chunk, self.policy.audit_percent) {
+                if needs_another {
                     // Whoever was outvoted has lost chunks.
                     self.work.notify_waiters();
                 }
             }
             Completion::Overtaken => {
                 tracing::debug!(%lease, "another worker was first with the same results");
-                // What stays there for a failure or a kill costs a little space, and nothing else.
-                if let Err(error) = self.store.remove_results(&address).await {
-                    tracing::debug!(%lease, %error, "an object of no use stays");
-                }
+                self.remove_useless(lease, &address).await;
+            }
+            Completion::Stale => {
+                tracing::debug!(%lease, "the lease ended while its report was kept");
+                self.remove_useless(lease, &address).await;
             }
             Completion::HashDiffers => {
                 tracing::error!(%lease, "a chunk was accepted before with other results: one of \
                     two workers computes wrongly");
             }
-            Completion::AlreadyAccepted | Completion::Stale => {
+            Completion::AlreadyAccepted => {
                 tracing::debug!(%lease, ?completion, "a report changes nothing");
             }
         }
         Ok(completion)
     }
 
-    /// Takes chunks back without results.
+    /// The results, and what is wrong with the first end of a path that solves no equations.
+    async fn doubt(
+        &self,
+        lease: LeaseId,
+        stage: &Stage,
+        results: Vec<ItemResult>,
+    ) -> Result<(Vec<ItemResult>, Option<String>), CoordinatorError> {
+        let LeaseId { chunk, .. } = lease;
+        let key = (chunk.job, chunk.stage);
+        let check = match self.end_checks.get(&key) {
+            Some(check) => check,
+            None => {
+                let row = job_row(&*self.ledger, chunk.job).await?;
+                let digest = stage.system.unwrap_or(row.asked.problem);
+                let system = self.problem(digest).await?;
+                let check = Arc::new(EndCheck::of(&system, stage));
+                self.end_checks.keep(key, Arc::clone(&check));
+                check
+            }
+        };
+        if check.is_none() {
+            return Ok((results, None));
+        }
+        let look = move || {
+            let doubt = check
+                .as_ref()
+                .as_ref()
+                .and_then(|check| check.doubt(&results));
+            (results, doubt)
+        };
+        match tokio::task::spawn_blocking(look).await {
+            Ok(looked) => Ok(looked),
+            Err(error) => std::panic::resume_unwind(error.into_panic()),
+        }
+    }
+
+    /// What the report of a lease that has ended means: an answer that was lost, or something else than
+    /// what was accepted. Nothing of it is kept.
+    async fn compare_ended(
+        &self,
+        lease: LeaseId,
+        object: ResultObject,
+    ) -> Result<Completion, CoordinatorError> {
+        let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
+            self.ledger.confirm(lease, object).await?
+        } else {
+            self.ledger.complete(lease, object).await?
+        };
+        if completion == Completion::HashDiffers {
+            tracing::error!(%lease, "a chunk was accepted before with other results: one of two \
+                workers computes wrongly");
+        }
+        Ok(completion)
+    }
+
+    async fn remove_useless(&self, lease: LeaseId, address: &str) {
+        // What stays there for a failure or a kill costs a little space, and nothing else.
+        if let Err(error) = self.store.remove_results(address).await {
+            tracing::debug!(%lease, %error, "an object of no use stays");
+        }
+    }
+
+    /// Takes chunks of this worker back without results.
     pub async fn give_back(
         &self,
         leases: &[LeaseId],
         why: GiveBack,
+        by: &Speaker,
     ) -> Result<(), CoordinatorError> {
         for lease in leases {
+            if !self.ledger.standing(*lease).await?.is_of(by) {
+                continue;
+            }
             if let GiveBack::Failed { reason } = &why {
-                tracing::warn!(%lease, reason, "a worker could not do a chunk");
+                tracing::warn!(%lease, worker = %by.worker, reason, "a worker could not do a chunk");
+                self.failed(&by.worker, reason);
             }
             self.ledger.give_back(*lease, why.clone()).await?;
             self.wake_steward(lease.chunk.job);

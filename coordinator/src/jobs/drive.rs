@@ -10,7 +10,7 @@ use super::steward::{Steward, Wanted, next_to_absorb};
 use super::tools::{DriveError, Tools};
 use crate::chunks::expiry::{SuspectAction, killed_its_worker, suspect_action};
 use crate::ledger::clock::LedgerTime;
-use crate::ledger::identity::{Epoch, JobId, LeaseId};
+use crate::ledger::identity::{ChunkId, Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::decomposition::{DECOMPOSITION, DecompositionSummary};
@@ -152,6 +152,9 @@ impl Drive {
     /// Does what can be done now.
     pub async fn step(&mut self, tools: &Tools<'_>) -> Result<Driven, DriveError> {
         match self.try_step(tools).await {
+            Err(DriveError::LostResults { chunk, why }) => {
+                self.track_lost_again(tools, chunk, why).await
+            }
             Err(error) if error.is_permanent() => {
                 let reason = error.to_string();
                 tracing::error!(job = %self.job, reason, "the job has failed");
@@ -161,6 +164,31 @@ impl Drive {
             }
             other => other,
         }
+    }
+
+    /// Opens the chunks of a stage again whose results are lost: paths are pure, and workers find the same.
+    async fn track_lost_again(
+        &mut self,
+        tools: &Tools<'_>,
+        chunk: ChunkId,
+        why: String,
+    ) -> Result<Driven, DriveError> {
+        let stages = tools.ledger.stages(self.job).await?;
+        let row = stages.iter().find(|row| row.stage == chunk.stage);
+        let Some(row) = row.filter(|row| !row.closed) else {
+            // What was absorbed cannot be absorbed again.
+            let reason = format!("results that were used before are lost: {why}");
+            tracing::error!(job = %self.job, reason, "the job has failed");
+            let end = JobEnd::Failed { reason };
+            tools.ledger.finish(self.job, self.epoch, end).await?;
+            return Ok(Driven::Ended);
+        };
+        let work = tools.store.stage(row.definition).await?.work;
+        for (chunk, why) in large_stage::lost_chunks(tools, self.job, chunk.stage, work).await? {
+            tracing::warn!(job = %self.job, ?chunk, why, "results are lost: the chunk is tracked again");
+            tools.ledger.reopen(chunk, self.epoch).await?;
+        }
+        Ok(Driven::Went)
     }
 
     async fn try_step(&mut self, tools: &Tools<'_>) -> Result<Driven, DriveError> {

@@ -7,7 +7,7 @@
 use super::steward::{Steward, Wanted};
 use super::tools::{DriveError, Tools};
 use crate::ledger::LedgerError;
-use crate::ledger::identity::JobId;
+use crate::ledger::identity::{ChunkId, JobId};
 use crate::ledger::rows::{ChunkRow, ChunkState, ResultObject};
 use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
@@ -50,6 +50,61 @@ pub fn read<'a>(
         .buffered(READ_AHEAD)
 }
 
+/// The same in a drive: results that are lost say of which chunk.
+fn read_driven<'a>(
+    tools: &'a Tools<'_>,
+    job: JobId,
+    stage: StageId,
+    objects: Vec<ResultObject>,
+) -> impl Stream<Item = Result<Vec<PathResult>, DriveError>> + 'a {
+    futures::stream::iter(objects)
+        .map(move |object| async move {
+            let paths = tools.store.paths(&object).await;
+            paths.map_err(|error| lost(job, stage, &object, error))
+        })
+        .buffered(READ_AHEAD)
+}
+
+fn lost(job: JobId, stage: StageId, object: &ResultObject, error: StoreError) -> DriveError {
+    let chunk = ChunkId {
+        job,
+        stage,
+        first: object.items.first,
+    };
+    match error.is_loss() {
+        true => DriveError::LostResults {
+            chunk,
+            why: error.to_string(),
+        },
+        false => error.into(),
+    }
+}
+
+/// The chunks of a stage that does this work whose results are lost.
+pub async fn lost_chunks(
+    tools: &Tools<'_>,
+    job: JobId,
+    stage: StageId,
+    work: Work,
+) -> Result<Vec<(ChunkId, String)>, DriveError> {
+    let (mut from, mut all) = (0, Vec::new());
+    loop {
+        let objects = page(tools.ledger, job, stage, from).await?;
+        let Some(last) = objects.last() else {
+            return Ok(all);
+        };
+        from = last.items.last;
+        for object in &objects {
+            if let Err(error) = tools.store.results(object, work).await {
+                match lost(job, stage, object, error) {
+                    DriveError::LostResults { chunk, why } => all.push((chunk, why)),
+                    other => return Err(other),
+                }
+            }
+        }
+    }
+}
+
 /// All results of a complete stage that does this work, in the order of its items.
 pub async fn all(
     tools: &Tools<'_>,
@@ -68,7 +123,10 @@ pub async fn all(
         let objects = futures::stream::iter(objects);
         let mut chunks = std::pin::pin!(
             objects
-                .map(|object| async move { tools.store.results(&object, work).await })
+                .map(|object| async move {
+                    let results = tools.store.results(&object, work).await;
+                    results.map_err(|error| lost(job, stage, &object, error))
+                })
                 .buffered(READ_AHEAD)
         );
         while let Some(chunk) = chunks.next().await {
@@ -99,7 +157,7 @@ async fn fetch(
                 object.items.last > next && paths.get(at).is_some_and(|&p| p < object.items.last)
             })
             .collect();
-        let mut chunks = std::pin::pin!(read(tools.store, touched));
+        let mut chunks = std::pin::pin!(read_driven(tools, job, stage, touched));
         while let Some(results) = chunks.next().await {
             for result in results? {
                 if wanted.first() == Some(&result.origin.0) {
@@ -131,7 +189,7 @@ async fn see_all(
             return Ok((crowd, seen));
         };
         from = last.items.last;
-        let mut chunks = std::pin::pin!(read(tools.store, objects));
+        let mut chunks = std::pin::pin!(read_driven(tools, job, stage, objects));
         while let Some(results) = chunks.next().await {
             let results = results?;
             seen += results.len() as u64;

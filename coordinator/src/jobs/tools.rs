@@ -1,7 +1,7 @@
 //! Tools: what a drive works with, and why a step of it may not be made.
 
 use crate::chunks::leasing::Policy;
-use crate::ledger::identity::{CoordinatorId, Epoch, JobId};
+use crate::ledger::identity::{ChunkId, CoordinatorId, Epoch, JobId};
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::{Store, StoreError};
 
@@ -35,6 +35,14 @@ pub enum DriveError {
     /// An object could not be written or read.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// The results of a chunk are lost, though they were accepted.
+    #[error("the results of {chunk:?} are lost: {why}")]
+    LostResults {
+        /// The chunk.
+        chunk: ChunkId,
+        /// What the store said.
+        why: String,
+    },
     /// The job's state cannot be read back.
     #[error("the job's state cannot be read: {0}")]
     State(String),
@@ -52,7 +60,7 @@ impl DriveError {
             Self::Ledger(LedgerError::Damaged(_) | LedgerError::TooLarge(_)) | Self::State(_) => {
                 true
             }
-            Self::Ledger(_) => false,
+            Self::Ledger(_) | Self::LostResults { .. } => false,
             Self::Store(error) => error.is_permanent(),
         }
     }

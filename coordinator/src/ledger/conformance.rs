@@ -62,6 +62,11 @@ macro_rules! ledger_conformance {
             case!(who_is_late_may_report_after_the_second_worker_is_lost);
             case!(what_is_suspected_or_not_late_is_not_given_twice);
             case!(an_audit_ends_both_leases);
+            case!(one_worker_that_fails_is_one_suspicion);
+            case!(who_fails_again_counts_once);
+            case!(lost_results_are_done_again);
+            case!(a_lease_stands_with_who_has_it);
+            case!(jobs_that_only_wait_want_no_look);
 
             #[test]
             fn it_agrees_with_the_oracle() {
@@ -80,7 +85,9 @@ macro_rules! ledger_conformance {
 pub(crate) use ledger_conformance;
 
 mod speculation;
+mod suspicion;
 pub use self::speculation::*;
+pub use self::suspicion::*;
 
 /// No suspicion is later.
 const EVER: LedgerTime = LedgerTime(i64::MAX);

@@ -120,6 +120,21 @@ impl Ledger for FaultyLedger {
     ) -> Result<Option<Epoch>, LedgerError> {
         self.write(self.inner.steward(job, who, duration_ms)).await
     }
+    async fn renew_stewardships(
+        &self,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<(), LedgerError> {
+        self.write(self.inner.renew_stewardships(who, duration_ms))
+            .await
+    }
+    async fn attention(
+        &self,
+        who: &CoordinatorId,
+        suspicions: u32,
+    ) -> Result<Vec<JobId>, LedgerError> {
+        self.inner.attention(who, suspicions).await
+    }
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
         self.inner.unfinished_jobs().await
     }
@@ -141,6 +156,12 @@ impl Ledger for FaultyLedger {
         result: ResultObject,
     ) -> Result<(), LedgerError> {
         self.write(self.inner.fail_item(chunk, epoch, result)).await
+    }
+    async fn reopen(&self, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
+        self.write(self.inner.reopen(chunk, epoch)).await
+    }
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
+        self.inner.standing(lease).await
     }
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
         self.write(self.inner.finish(job, epoch, end)).await

@@ -83,6 +83,15 @@ impl RequestId {
     }
 }
 
+/// Who speaks: a worker, in one life of its process.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Speaker {
+    /// Name of the worker.
+    pub worker: WorkerId,
+    /// Its session, which only it and the coordinator know.
+    pub session: String,
+}
+
 /// A job, named after the request that made it: 16 hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct JobId(pub u64);

@@ -2,6 +2,7 @@
 //!
 //! Deterministic: the same calls at the same times give the same answers.
 
+mod accusations;
 mod audit;
 mod books;
 mod speculation;
@@ -160,6 +161,56 @@ impl Ledger for MemoryLedger {
         Ok(Some(row.steward_epoch))
     }
 
+    async fn renew_stewardships(
+        &self,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<(), LedgerError> {
+        let now = self.clock.now();
+        let mut books = self.books();
+        let rows = books.jobs.values_mut().map(|job| &mut job.row);
+        for row in rows.filter(|row| row.steward.as_ref() == Some(who)) {
+            if !row.state.has_ended() && row.steward_until > now {
+                row.steward_until = now.after_ms(duration_ms);
+            }
+        }
+        Ok(())
+    }
+
+    async fn attention(
+        &self,
+        who: &CoordinatorId,
+        suspicions: u32,
+    ) -> Result<Vec<JobId>, LedgerError> {
+        let now = self.clock.now();
+        let books = self.books();
+        let stirs = |job: &Job| {
+            let mut open = job.stages.values().filter(|stage| !stage.row.closed);
+            let suspected = |stage: &Stage| {
+                let mut ready = stage
+                    .ready
+                    .iter()
+                    .filter_map(|first| stage.chunks.get(first));
+                ready.any(|chunk| chunk.row.suspicions >= suspicions)
+            };
+            job.stages.values().all(|stage| stage.row.closed)
+                || open.any(|stage| stage.row.is_complete())
+                || job.stages.values().any(suspected)
+        };
+        let mut found: Vec<(u64, JobId)> = books
+            .jobs
+            .values()
+            .filter(|job| !job.row.state.has_ended())
+            .filter(|job| {
+                let is_free = job.row.steward.is_none() || job.row.steward_until <= now;
+                is_free || (job.row.steward.as_ref() == Some(who) && stirs(job))
+            })
+            .map(|job| (job.row.number, job.row.job))
+            .collect();
+        found.sort_unstable();
+        Ok(found.into_iter().map(|(_, job)| job).collect())
+    }
+
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
         let books = self.books();
         let mut rows: Vec<(u64, JobId)> = books
@@ -286,6 +337,32 @@ impl Ledger for MemoryLedger {
         books.change(chunk, ChunkState::Failed { result });
         books.elders.remove(&chunk);
         Ok(())
+    }
+
+    async fn reopen(&self, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
+        let mut books = self.books();
+        let job = books.fenced(chunk.job, epoch)?;
+        let Some(stage) = job.stages.get_mut(&chunk.stage) else {
+            return Ok(());
+        };
+        if stage.row.closed {
+            return Err(LedgerError::StageOrder(chunk.job, chunk.stage));
+        }
+        stage.reopen(chunk.first);
+        books.elders.remove(&chunk);
+        Ok(())
+    }
+
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
+        let mut books = self.books();
+        let Some(holder) = books.holder(lease) else {
+            return Ok(Standing::Ended);
+        };
+        let chunk = books.chunk(lease.chunk).filter(|_| !holder.is_elder);
+        Ok(Standing::Held {
+            worker: holder.worker,
+            request: chunk.and_then(|chunk| chunk.request.clone()),
+        })
     }
 
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
@@ -498,12 +575,13 @@ impl Ledger for MemoryLedger {
     }
 
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
+        let now = self.clock.now();
         let mut books = self.books();
         let Some(holder) = books.holder(lease) else {
             return Ok(());
         };
-        if let (GiveBack::Failed { .. }, Some(chunk)) = (why, books.chunk(lease.chunk)) {
-            chunk.row.suspicions += 1;
+        if let GiveBack::Failed { .. } = why {
+            books.accuse(now, lease.chunk, &holder.worker);
         }
         if holder.is_elder {
             books.elders.remove(&lease.chunk);
@@ -523,11 +601,14 @@ impl Ledger for MemoryLedger {
             let Some(chunk) = books.chunk(id) else {
                 continue;
             };
-            let ended = match chunk.row.state {
-                ChunkState::Leased { until, .. } if until <= now => until,
+            let (ended, holder) = match &chunk.row.state {
+                ChunkState::Leased { until, worker } if *until <= now => (*until, worker.clone()),
                 _ => continue,
             };
-            chunk.row.suspicions += 1;
+            books.accuse(now, id, &holder);
+            let Some(chunk) = books.chunk(id) else {
+                continue;
+            };
             let (epoch, suspicions) = (chunk.row.epoch, chunk.row.suspicions);
             let request = chunk.request.clone();
             if let Some(worker) = books.unlease(id, ChunkState::Ready) {

@@ -101,6 +101,21 @@ pub trait Ledger: Send + Sync {
         who: &CoordinatorId,
         duration_ms: u64,
     ) -> Result<Option<Epoch>, LedgerError>;
+    /// Prolongs all rights to drive jobs that a coordinator has and that have not ended, as
+    /// [`Self::steward`] does one by one.
+    async fn renew_stewardships(
+        &self,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<(), LedgerError>;
+    /// Unfinished jobs that this coordinator should look at, in the order of their submission: those that
+    /// nobody drives, and of its own those with no open stage, with one that is complete, or with a chunk
+    /// of so many suspicions.
+    async fn attention(
+        &self,
+        who: &CoordinatorId,
+        suspicions: u32,
+    ) -> Result<Vec<JobId>, LedgerError>;
     /// Jobs that have not ended.
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError>;
     /// Closes and opens stages and keeps the snapshot of the algorithm after that: all or nothing.
@@ -119,6 +134,10 @@ pub trait Ledger: Send + Sync {
         epoch: Epoch,
         result: ResultObject,
     ) -> Result<(), LedgerError>;
+    /// Takes the result of a finished chunk of an open stage back, because its object is lost: the chunk
+    /// is ready again. One that is not finished is left alone.
+    async fn reopen(&self, chunk: identity::ChunkId, epoch: Epoch) -> Result<(), LedgerError>;
+
     /// Ends a job.
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError>;
     /// Accepted and failed chunks of a stage from item `from` on, in the order of their items,
@@ -152,6 +171,9 @@ pub trait Ledger: Send + Sync {
         leases: &[LeaseId],
         duration_ms: u64,
     ) -> Result<Vec<Renewal>, LedgerError>;
+    /// Whether a lease stands, and who has it.
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError>;
+
     /// Accepts a chunk's result, whose object is already durable.
     async fn complete(
         &self,

@@ -424,6 +424,32 @@ impl Holder {
     }
 }
 
+/// Whether a lease stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// It stands.
+    Held {
+        /// Name of the worker that has the chunk.
+        worker: WorkerId,
+        /// The question that it was leased for, where that is remembered: its session has the lease.
+        request: Option<RequestId>,
+    },
+    /// It has ended, or there was none.
+    Ended,
+}
+
+impl Standing {
+    /// Whether the lease stands and is this speaker's.
+    pub fn is_of(&self, by: &Speaker) -> bool {
+        let Self::Held { worker, request } = self else {
+            return false;
+        };
+        let session = request.as_ref().map(RequestId::session);
+        let same = session.is_none_or(|session| session.trim_end_matches('.') == by.session);
+        *worker == by.worker && same
+    }
+}
+
 /// What became of a lease that was to be renewed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Renewal {

@@ -23,7 +23,7 @@ use prost::Message;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Why an object was not written or read.
@@ -43,6 +43,11 @@ pub enum StoreError {
     /// Another execution of the same lease wrote other results there.
     #[error("object {0} holds other results for the same lease")]
     Differs(String),
+    /// The folder of all results is not there, or is another: nothing is missing from it.
+    #[error(
+        "the folder `{0}` of the results is not there (it has no file `{MARKER}`): is it mounted?"
+    )]
+    Away(String),
     /// The storage failed.
     #[error("the result store failed: {0}")]
     Storage(#[from] object_store::Error),
@@ -59,7 +64,12 @@ pub enum StoreError {
 impl StoreError {
     /// True where trying again later cannot help.
     pub fn is_permanent(&self) -> bool {
-        !matches!(self, Self::Storage(_) | Self::Folder { .. })
+        !matches!(self, Self::Storage(_) | Self::Folder { .. } | Self::Away(_))
+    }
+
+    /// True where an object is lost for good: there is none, or another one.
+    pub fn is_loss(&self) -> bool {
+        matches!(self, Self::Missing(_) | Self::Damaged { .. })
     }
 }
 
@@ -78,35 +88,73 @@ const SMALL: usize = 256 << 10;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordKind(pub &'static [u8; 8]);
 
+/// File that says that a folder holds results. A folder that is mounted too late has none, and what is
+/// not found there is not lost.
+pub const MARKER: &str = "cognate-results";
+/// What stands in it.
+const MARKED: &str = "Results of cognate. This file stays as long as they do: a coordinator takes a \
+                      folder without it for one that is not mounted.\n";
+
 /// The objects of all jobs.
 #[derive(Clone, Debug)]
 pub struct Store {
     objects: Arc<dyn ObjectStore>,
+    /// The folder with the marker; `None` in memory.
+    folder: Option<PathBuf>,
 }
 
 impl Store {
-    /// Objects in this folder, which is made where it is missing.
-    pub fn folder(folder: &Path) -> Result<Self, StoreError> {
-        std::fs::create_dir_all(folder).map_err(|error| StoreError::Folder {
+    /// Objects in this folder, which is made where it is missing and `is_new`: nobody knows of results in
+    /// it. Otherwise it must have its marker, or results from before there were markers.
+    pub fn folder(folder: &Path, is_new: bool) -> Result<Self, StoreError> {
+        let failed = |error| StoreError::Folder {
             folder: folder.display().to_string(),
             error,
-        })?;
+        };
+        let marker = folder.join(MARKER);
+        if !marker.exists() {
+            let has_results = folder.join("objects").is_dir() || folder.join("jobs").is_dir();
+            if !is_new && !has_results {
+                return Err(StoreError::Away(folder.display().to_string()));
+            }
+            std::fs::create_dir_all(folder).map_err(failed)?;
+            std::fs::write(&marker, MARKED).map_err(failed)?;
+        }
         // A row in the ledger may name an object only once the object is on the disk.
         let local = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
         Ok(Self {
             objects: Arc::new(local),
+            folder: Some(folder.to_owned()),
         })
+    }
+
+    /// Whether there are results in a folder.
+    pub fn has_results(folder: &Path) -> bool {
+        folder.join("jobs").is_dir()
+    }
+
+    /// An error where the folder of the results is not there.
+    pub fn is_there(&self) -> Result<(), StoreError> {
+        match &self.folder {
+            Some(folder) if !folder.join(MARKER).exists() => {
+                Err(StoreError::Away(folder.display().to_string()))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Objects that live as long as this process.
     pub fn in_memory() -> Self {
         Self {
             objects: Arc::new(InMemory::new()),
+            folder: None,
         }
     }
 
     /// Writes an object unless it is there; true if it was not.
     async fn create(&self, address: &Address, bytes: Bytes) -> Result<bool, StoreError> {
+        // It would make the folder where another is to be mounted.
+        self.is_there()?;
         let mode = PutOptions::from(PutMode::Create);
         match self.objects.put_opts(address, bytes.into(), mode).await {
             Ok(_) => Ok(true),
@@ -119,6 +167,7 @@ impl Store {
         match self.objects.get(address).await {
             Ok(found) => Ok(found.bytes().await?),
             Err(object_store::Error::NotFound { .. }) => {
+                self.is_there()?;
                 Err(StoreError::Missing(address.to_string()))
             }
             Err(error) => Err(error.into()),
@@ -203,6 +252,7 @@ impl Store {
         {
             Ok(head) => Ok(head[..] == kind.0[..]),
             Err(object_store::Error::NotFound { .. }) => {
+                self.is_there()?;
                 Err(StoreError::Missing(address.to_string()))
             }
             Err(error) => Err(error.into()),
@@ -241,16 +291,8 @@ impl Store {
         results: Vec<ItemResult>,
         cpu_micros: u64,
     ) -> Result<ResultObject, StoreError> {
-        let outcomes = Outcomes::of(&results);
-        let (hash, bytes) = off_thread(results.len() * 256 > SMALL, move || pack(&results)).await;
-        let address = results_address(lease, items);
-        let object = ResultObject {
-            items,
-            address: address.to_string(),
-            hash,
-            cpu_micros,
-            outcomes,
-        };
+        let (object, bytes) = Self::describe_results(lease, items, results, cpu_micros).await;
+        let (address, hash) = (results_address(lease, items), object.hash);
         if !self.create(&address, bytes.into()).await? {
             // A reply was lost, or this coordinator died before it wrote the ledger's row.
             let there = self.read(&address).await?;
@@ -260,6 +302,25 @@ impl Store {
             }
         }
         Ok(object)
+    }
+
+    /// The object that results would be kept as, and its bytes; nothing is written.
+    pub async fn describe_results(
+        lease: LeaseId,
+        items: ItemRange,
+        results: Vec<ItemResult>,
+        cpu_micros: u64,
+    ) -> (ResultObject, Vec<u8>) {
+        let outcomes = Outcomes::of(&results);
+        let (hash, bytes) = off_thread(results.len() * 256 > SMALL, move || pack(&results)).await;
+        let object = ResultObject {
+            items,
+            address: results_address(lease, items).to_string(),
+            hash,
+            cpu_micros,
+            outcomes,
+        };
+        (object, bytes)
     }
 
     /// Removes the results of a lease that the ledger does not name and never will.
@@ -417,7 +478,7 @@ mod tests {
     #[tokio::test]
     async fn results_come_back_and_are_kept_once() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::folder(folder.path()).unwrap();
+        let store = Store::folder(folder.path(), true).unwrap();
         let put = |epoch, value| store.put_results(lease(epoch), ITEMS, results(5, value), 7);
         let object = put(1, 0.5).await.unwrap();
         assert_eq!(object.outcomes.regular, 5);
@@ -445,7 +506,7 @@ mod tests {
     #[tokio::test]
     async fn every_damage_is_seen() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::folder(folder.path()).unwrap();
+        let store = Store::folder(folder.path(), true).unwrap();
         let object = store
             .put_results(lease(1), ITEMS, results(5, 0.5), 7)
             .await
@@ -478,7 +539,7 @@ mod tests {
     #[tokio::test]
     async fn objects_and_problems_are_checked_when_read() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::folder(folder.path()).unwrap();
+        let store = Store::folder(folder.path(), true).unwrap();
         let digest = store.put(Bytes::from_static(b"start")).await.unwrap();
         assert_eq!(
             store.put(Bytes::from_static(b"start")).await.unwrap(),

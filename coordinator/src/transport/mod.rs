@@ -2,10 +2,12 @@
 //!
 //! One gRPC service behind all of them.
 
+pub mod introduction;
 pub mod shared_memory;
 pub mod tcp;
 pub mod unix;
 
+use self::introduction::{Connections, Introduced};
 use crate::api::security::Security;
 use crate::config::ListenAddress;
 use futures::Stream;
@@ -110,28 +112,45 @@ impl Listener {
 }
 
 /// Connections over TCP, without end.
-pub fn tcp_connections(listener: TcpListener) -> impl Stream<Item = io::Result<TcpStream>> {
-    futures::stream::unfold(listener, |listener| async move {
-        loop {
-            let accepted = match listener.accept().await {
-                // Small messages go out at once.
-                Ok((stream, _)) => stream.set_nodelay(true).map(|()| stream),
-                Err(error) => Err(error),
-            };
-            match accepted {
-                Ok(stream) => return Some((Ok(stream), listener)),
-                Err(error) => not_accepted(&error).await,
+pub fn tcp_connections(
+    listener: TcpListener,
+    connections: Connections,
+) -> impl Stream<Item = io::Result<Introduced<TcpStream>>> {
+    futures::stream::unfold(
+        (listener, connections),
+        |(listener, connections)| async move {
+            loop {
+                let place = connections.place().await;
+                let accepted = match listener.accept().await {
+                    // Small messages go out at once.
+                    Ok((stream, _)) => stream.set_nodelay(true).map(|()| stream),
+                    Err(error) => Err(error),
+                };
+                match accepted {
+                    Ok(stream) => {
+                        let stream = connections.introduce(stream, place);
+                        return Some((Ok(stream), (listener, connections)));
+                    }
+                    Err(error) => not_accepted(&error).await,
+                }
             }
-        }
-    })
+        },
+    )
 }
 
 /// Connections over a Unix socket, without end.
-pub fn unix_connections(socket: unix::Socket) -> impl Stream<Item = io::Result<UnixStream>> {
-    futures::stream::unfold(socket, |socket| async move {
+pub fn unix_connections(
+    socket: unix::Socket,
+    connections: Connections,
+) -> impl Stream<Item = io::Result<Introduced<UnixStream>>> {
+    futures::stream::unfold((socket, connections), |(socket, connections)| async move {
         loop {
+            let place = connections.place().await;
             match socket.accept().await {
-                Ok(stream) => return Some((Ok(stream), socket)),
+                Ok(stream) => {
+                    let stream = connections.introduce(stream, place);
+                    return Some((Ok(stream), (socket, connections)));
+                }
                 Err(error) => not_accepted(&error).await,
             }
         }

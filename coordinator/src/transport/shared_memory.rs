@@ -3,6 +3,7 @@
 //! Behind it are the same services as behind the sockets. A thread sleeps until a
 //! worker rings; each call is a task, called off when its worker no longer waits.
 
+use crate::api::admission::Admitting;
 use bytes::Bytes;
 use cognate_protocol::v1;
 use cognate_worker::transport::shared_memory::frame::{Request, Response};
@@ -23,6 +24,7 @@ use tokio::runtime::Handle;
 use tokio_util::sync::CancellationToken;
 use tonic::body::Body;
 use tonic::service::Routes;
+
 use tower::ServiceExt;
 
 /// Whether the service is to stop is looked at so often where nobody rings. Default 200 ms.
@@ -36,6 +38,8 @@ const LEAVE: Duration = Duration::from_secs(1);
 /// Responses that exist at a time: memory is reserved for so many of the largest size.
 const RESPONSES: usize = 64;
 
+/// What answers calls: the services behind the limits of calls.
+type Services = Admitting<Routes>;
 type Active = ActiveRequest<Ipc, [u8], (), [u8], ()>;
 
 /// A listener in shared memory that is open.
@@ -92,7 +96,7 @@ impl SharedMemoryDoor {
     /// runtime; what is returned ends with the thread.
     pub fn serve(
         self,
-        routes: Routes,
+        routes: Services,
         stopping: CancellationToken,
     ) -> impl Future<Output = ()> + Send + 'static {
         let runtime = Handle::current();
@@ -115,7 +119,7 @@ impl SharedMemoryDoor {
 
     fn answer_until(
         &self,
-        routes: &Routes,
+        routes: &Services,
         stopping: &CancellationToken,
         runtime: &Handle,
     ) -> Result<(), Unusable> {
@@ -139,7 +143,7 @@ impl SharedMemoryDoor {
         }
     }
 
-    fn take(&self, request: Active, routes: &Routes, runtime: &Handle) -> OpenCall {
+    fn take(&self, request: Active, routes: &Services, runtime: &Handle) -> OpenCall {
         let asked = Request::decode(request.payload());
         let request = Arc::new(Mutex::new(request));
         let called_off = CancellationToken::new();
@@ -252,7 +256,7 @@ fn lock(request: &Mutex<Active>) -> std::sync::MutexGuard<'_, Active> {
 }
 
 /// Asks the services.
-async fn answer(asked: Request, routes: Routes) -> Response {
+async fn answer(asked: Request, routes: Services) -> Response {
     let request = http::Request::builder()
         .method(http::Method::POST)
         .uri(asked.path)

@@ -28,6 +28,22 @@ pub const FOUR_POINTS: &str = "INPUT variable_group x, y; function f, g; \
 pub const MANY_PATHS: &str = "INPUT variable_group x, y; function f, g; \
      f = x^8 + y^2 - 3; g = y^8 - x*y + 1; END;";
 
+/// A coordinator on a ledger and results in this folder.
+pub fn durable_config(folder: &std::path::Path) -> Config {
+    let at = |name: &str| folder.join(name);
+    Config {
+        listen: vec![
+            ListenAddress::Unix(at("c.sock")),
+            ListenAddress::Tcp("127.0.0.1:0".to_owned()),
+        ],
+        ledger: LedgerPlace::Sqlite(at("data/ledger.db")),
+        results: Some(at("data/results")),
+        // Tests run where little is free, too.
+        shared_memory: Some(16 << 20),
+        ..Config::default()
+    }
+}
+
 /// A coordinator and its folder.
 pub struct House {
     pub server: RunningServer,
@@ -46,24 +62,14 @@ impl House {
     }
 
     pub async fn with(rules: Rules, folder: tempfile::TempDir, durable: bool) -> Self {
-        let at = |name: &str| folder.path().join(name);
-        let config = Config {
-            listen: vec![
-                ListenAddress::Unix(at("c.sock")),
-                ListenAddress::Tcp("127.0.0.1:0".to_owned()),
-            ],
-            insecure: false,
-            ledger: if durable {
-                LedgerPlace::Sqlite(at("data/ledger.db"))
-            } else {
-                LedgerPlace::Memory
-            },
-            results: durable.then(|| at("data/results")),
+        let mut config = Config {
             rules,
-            // Tests run where little is free, too.
-            shared_memory: Some(16 << 20),
-            ..Config::default()
+            ..durable_config(folder.path())
         };
+        if !durable {
+            config.ledger = LedgerPlace::Memory;
+            config.results = None;
+        }
         let server = Server::start(config).await.expect("a coordinator starts");
         Self { server, folder }
     }
@@ -102,6 +108,7 @@ impl House {
             api: WorkerApiClient::new(way.clone()),
             way,
             name: name.to_owned(),
+            session: format!("{name}-session"),
             sequence: 0,
         }
     }
@@ -229,6 +236,7 @@ pub struct FakeWorker {
     pub api: WorkerApiClient<Way>,
     pub way: Way,
     pub name: String,
+    pub session: String,
     pub sequence: u64,
 }
 
@@ -236,7 +244,7 @@ impl FakeWorker {
     pub fn identity(&self) -> Option<v1::WorkerIdentity> {
         Some(v1::WorkerIdentity {
             worker: self.name.clone(),
-            session: format!("{}-session", self.name),
+            session: self.session.clone(),
         })
     }
 
@@ -273,7 +281,8 @@ impl FakeWorker {
     pub fn results(lease: &v1::Lease) -> Vec<v1::PathResult> {
         let result = |item: u64| v1::PathResult {
             origin: item,
-            outcome: v1::PathOutcome::Regular.into(),
+            // An end at infinity is held against no equations.
+            outcome: v1::PathOutcome::Diverging.into(),
             endpoint: vec![1.0, 0.0, 0.5, 0.25 * item as f64, 0.125, 0.0],
             t: Some(v1::Complex::default()),
             residual: 1e-16,
@@ -286,6 +295,17 @@ impl FakeWorker {
         (lease.first..lease.first + lease.count)
             .map(result)
             .collect()
+    }
+
+    pub async fn give_back(&mut self, lease: &v1::Lease, why: &str) {
+        let request = v1::GiveBackRequest {
+            identity: self.identity(),
+            leases: lease.id.clone().into_iter().collect(),
+            reason: v1::GiveBackReason::Failed.into(),
+            message: why.to_owned(),
+            leaving: false,
+        };
+        self.api.give_back(request).await.unwrap();
     }
 
     pub async fn report(

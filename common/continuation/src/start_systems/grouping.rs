@@ -5,8 +5,9 @@
 //! multi-homogeneous polynomial systems, 1992). Costs are bounded by counts of
 //! operations, never by a clock.
 
+use super::interruption::is_interrupted;
 use cognate_numeric::random::{Purpose, RandomStream};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most variables of an exact search: its tables grow as 4^variables.
 const MOST_EXACT: usize = 13;
@@ -63,7 +64,7 @@ impl Kinds {
             let below = |a: &[u32], b: &[u32]| a != b && a.iter().zip(b).all(|(a, b)| a <= b);
             let mut largest: Vec<Vec<u32>> = support
                 .iter()
-                .filter(|a| !support.iter().any(|b| below(a, b)))
+                .filter(|a| !is_interrupted() && !support.iter().any(|b| below(a, b)))
                 .cloned()
                 .collect();
             largest.sort_unstable();
@@ -93,7 +94,7 @@ impl Kinds {
             strides.push(states);
             states = states.checked_mul(group.len() + 1)?;
         }
-        if states > MOST_STATES {
+        if states > MOST_STATES || is_interrupted() {
             return None;
         }
         // ways[places taken in each group], equation by equation.
@@ -217,10 +218,19 @@ fn neighbours(groups: &[Vec<usize>], variables: usize) -> Vec<Vec<Vec<usize>>> {
 fn two_sides(kinds: &Kinds) -> Option<Vec<Vec<usize>>> {
     let n = kinds.variables;
     let mut side: Vec<Option<bool>> = vec![None; n];
-    let meets = |a: usize, b: usize| {
-        let together = |exponents: &Vec<u32>| exponents[a] > 0 && exponents[b] > 0;
-        a != b && kinds.exponents.iter().flatten().any(together)
-    };
+    let mut meets: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); n];
+    for exponents in kinds.exponents.iter().flatten() {
+        let mut occurring = (0..n).filter(|&v| exponents[v] > 0);
+        match (occurring.next(), occurring.next(), occurring.next()) {
+            // Of three variables two are on one side.
+            (_, _, Some(_)) => return None,
+            (Some(a), Some(b), None) => {
+                meets[a].insert(b);
+                meets[b].insert(a);
+            }
+            _ => {}
+        }
+    }
     for first in 0..n {
         if side[first].is_some() {
             continue;
@@ -228,7 +238,7 @@ fn two_sides(kinds: &Kinds) -> Option<Vec<Vec<usize>>> {
         side[first] = Some(false);
         let mut waiting = vec![first];
         while let Some(a) = waiting.pop() {
-            for b in (0..n).filter(|&b| meets(a, b)) {
+            for &b in &meets[a] {
                 if side[b] == side[a] {
                     return None;
                 }
@@ -380,6 +390,9 @@ impl<'a> Exact<'a> {
         for left in 1..1usize << n {
             let begun = n - left.count_ones() as usize;
             let mut least = vec![u64::MAX; self.states];
+            if is_interrupted() {
+                return None;
+            }
             for block in Self::blocks(left) {
                 self.fill_powers(block);
                 let (powers, after) = (&self.powers[block], &self.bounds[left ^ block]);

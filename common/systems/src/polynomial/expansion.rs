@@ -87,6 +87,11 @@ impl Polynomial {
             .map(move |exponents| variables.iter().map(|&v| exponents[v]).sum())
     }
 
+    /// Number of terms, with all their parameters.
+    pub fn term_count(&self) -> usize {
+        self.terms.len()
+    }
+
     /// The exponents of the variables that occur, each once: the support.
     pub fn support(&self) -> Vec<Vec<u32>> {
         let mut support: Vec<Vec<u32>> = self

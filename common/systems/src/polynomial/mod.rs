@@ -18,6 +18,9 @@ use std::collections::HashMap;
 
 /// Past this degree the bound that the form of an expression gives is taken as it is.
 const MOST_DEGREE: u32 = 4096;
+/// Exponents of all terms of all equations that are held at once, four bytes each: no system that could
+/// be solved from its monomials comes near.
+const MOST_EXPONENTS: usize = 1 << 25;
 
 /// The degrees of all equations.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,12 +107,16 @@ pub fn degrees(system: &System) -> Result<Degrees, PolynomialError> {
 /// generic parameters. `None` where an equation is no polynomial or takes too
 /// much to be multiplied out.
 pub fn supports(system: &System) -> Option<Vec<Vec<Vec<u32>>>> {
+    let mut left = MOST_EXPONENTS;
     system
         .equations
         .iter()
         .map(|&equation| {
             let (n, p) = (system.variable_count(), system.parameters.len());
-            Polynomial::expand(&system.expressions, equation, n, p).map(|f| f.support())
+            let expanded = Polynomial::expand(&system.expressions, equation, n, p)?;
+            // Before the exponents are copied: a file of some kilobytes can have billions of them.
+            left = left.checked_sub(expanded.term_count().saturating_mul(n))?;
+            Some(expanded.support())
         })
         .collect()
 }

@@ -11,6 +11,8 @@ use cognate_worker::transport::connect::CredentialError;
 /// Serves until somebody wants it to end; then lets running calls finish.
 pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
     cognate_worker::log::to_standard_error();
+    // Ledger, results and sockets are this user's: whoever reads them knows all problems and answers.
+    rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let config = config(a)?;
     let started = |addresses: &[ListenAddress]| {
         for address in addresses {

@@ -7,10 +7,16 @@ use crate::client::output::text::{Look, count, counted, wrapped};
 use crate::client::problem;
 use cognate_algorithms::decomposition::{DecompositionCosts, DecompositionOptions};
 use cognate_algorithms::start_costs::StartCosts;
+use cognate_continuation::start_systems::interruption::Interruption;
 use cognate_systems::formats::Problem;
 use num_complex::Complex64;
 use serde::Serialize;
 use std::fmt::Write as _;
+use std::sync::mpsc;
+use std::time::Duration;
+
+/// How long is counted at most. Default 60 s: bounds by operations end nearly all before it.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Reads and counts; solves nothing.
 pub fn run(a: &Info) -> Result<Exit, ClientError> {
@@ -23,12 +29,30 @@ pub fn run(a: &Info) -> Result<Exit, ClientError> {
         return components(a, &name, &read);
     }
     let sets = problem::read_sets(a.sets.as_deref(), &read.system)?;
-    let costs =
-        StartCosts::with_sets(&read.system, sets.as_ref()).map_err(|e| ClientError::Input {
-            origin: name.clone(),
-            message: e.to_string(),
-        })?;
+    let costs = within_time(|| StartCosts::with_sets(&read.system, sets.as_ref()));
+    let costs = costs.map_err(|e| ClientError::Input {
+        origin: name.clone(),
+        message: e.to_string(),
+    })?;
     show(a.format, &costs, |look| table(&name, &read, &costs, look))
+}
+
+/// Counts for so long at most; what is not counted by then says that it takes too long.
+fn within_time<T>(count: impl FnOnce() -> T) -> T {
+    let sign = Interruption::default();
+    let (ended, end) = mpsc::channel::<()>();
+    let timer = {
+        let sign = sign.clone();
+        move || {
+            if end.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+                sign.interrupt();
+            }
+        }
+    };
+    std::thread::spawn(timer);
+    let counted = sign.run(count);
+    drop(ended);
+    counted
 }
 
 /// Prints costs in the format that is asked for.

@@ -9,9 +9,11 @@ use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::Permissions;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
 
 /// A folder that is being filled.
 pub struct Folder {
@@ -25,10 +27,20 @@ pub struct Folder {
     points: Option<Written>,
 }
 
-/// A file with its name, for messages.
+/// A file that has its name once it is whole: beside it until then, and gone where something fails. A
+/// link of this name is replaced, not followed.
 pub(super) struct Written {
     path: PathBuf,
-    file: BufWriter<File>,
+    file: BufWriter<NamedTempFile>,
+}
+
+/// A file without a name of its own yet, in a folder.
+pub(super) fn unnamed(folder: &Path) -> std::io::Result<NamedTempFile> {
+    tempfile::Builder::new()
+        .prefix(".cognate-")
+        // As the user's mask says.
+        .permissions(Permissions::from_mode(0o666))
+        .tempfile_in(folder)
 }
 
 /// A new file in the folder.
@@ -51,7 +63,7 @@ pub(super) fn write_file(folder: &Path, name: &str, text: &str) -> Result<(), Cl
 impl Written {
     fn create(folder: &Path, name: &str) -> Result<Self, ClientError> {
         let path = folder.join(name);
-        let file = File::create(&path).map_err(|e| cannot_write(&path, e))?;
+        let file = unnamed(folder).map_err(|e| cannot_write(&path, e))?;
         Ok(Self {
             path,
             file: BufWriter::new(file),
@@ -67,8 +79,11 @@ impl Written {
         file.write_all(bytes).map_err(|e| cannot_write(path, e))
     }
 
-    pub(super) fn finish(mut self) -> Result<(), ClientError> {
-        self.file.flush().map_err(|e| cannot_write(&self.path, e))
+    pub(super) fn finish(self) -> Result<(), ClientError> {
+        let Self { path, file } = self;
+        let whole = file.into_inner().map_err(|e| e.into_error());
+        let named = whole.and_then(|file| file.persist(&path).map_err(|e| e.error));
+        named.map(drop).map_err(|e| cannot_write(&path, e))
     }
 }
 
@@ -302,5 +317,22 @@ mod tests {
         assert_eq!(lines.matches("\"undecided\":true").count(), 1);
         assert_eq!(lines.matches("\"target\":3}").count(), 4);
         assert!(read("summary.json").contains("\"total\": 3"));
+    }
+
+    #[test]
+    fn a_link_is_replaced_and_what_fails_leaves_nothing() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let victim = folder.path().join("victim");
+        std::fs::write(&victim, "precious").unwrap();
+        let name = folder.path().join("summary.json");
+        std::os::unix::fs::symlink(&victim, &name).unwrap();
+        write_file(folder.path(), "summary.json", "{}").unwrap();
+        assert_eq!(std::fs::read_to_string(&victim).unwrap(), "precious");
+        assert_eq!(std::fs::read_to_string(&name).unwrap(), "{}");
+        let mut half = create(folder.path(), "solutions.jsonl").unwrap();
+        half.write("half of it").unwrap();
+        drop(half);
+        let left = std::fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(left, 2, "the victim and the summary");
     }
 }

@@ -1,11 +1,13 @@
 //! paths.parquet: every path of a job with its verdict and its facts, a row each.
 
+use super::files::unnamed;
 use super::parquet::{Table, Values};
 use crate::client::error::ClientError;
 use cognate_protocol::v1;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
 
 /// Rows of a row group: some megabytes in memory.
 const GROUP_ROWS: usize = 50_000;
@@ -13,6 +15,8 @@ const GROUP_ROWS: usize = 50_000;
 /// The table of paths that is being written.
 pub struct Paths {
     path: PathBuf,
+    /// The file until it is whole.
+    part: Option<NamedTempFile>,
     table: Option<Table<BufWriter<File>>>,
     rows: Vec<v1::ClassifiedPath>,
     coordinates: usize,
@@ -23,6 +27,7 @@ impl Paths {
     pub fn new(path: PathBuf) -> Self {
         Self {
             path,
+            part: None,
             table: None,
             rows: vec![],
             coordinates: 0,
@@ -44,7 +49,12 @@ impl Paths {
             Some(table) => table.finish(),
             None => Ok(()),
         });
-        written.map_err(|e| cannot_write(&self.path, e))
+        let (path, part) = (&self.path, self.part);
+        let named = written.and_then(|()| match part {
+            Some(part) => part.persist(path).map(drop).map_err(|e| e.error),
+            None => Ok(()),
+        });
+        named.map_err(|e| cannot_write(&self.path, e))
     }
 
     fn write_group(&mut self) -> io::Result<()> {
@@ -55,7 +65,9 @@ impl Paths {
             none => {
                 let endpoints = rows.iter().filter_map(|r| r.result.as_ref());
                 self.coordinates = endpoints.map(|r| r.endpoint.len() / 2).max().unwrap_or(0);
-                let file = BufWriter::new(File::create(&self.path)?);
+                let folder = self.path.parent().unwrap_or(Path::new("."));
+                let part = self.part.insert(unnamed(folder)?);
+                let file = BufWriter::new(part.reopen()?);
                 none.insert(Table::new(file, columns(&[], self.coordinates))?)
             }
         };

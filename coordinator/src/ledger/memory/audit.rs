@@ -14,20 +14,26 @@ impl Chunk {
 }
 
 impl Stage {
-    /// Takes an accepted result back.
-    fn reopen(&mut self, first: u64) {
+    /// Takes the result of a finished chunk back.
+    pub fn reopen(&mut self, first: u64) {
         let Some(chunk) = self.chunks.get_mut(&first) else {
             return;
         };
-        if let ChunkState::Accepted { result, .. } = &chunk.row.state {
-            self.row.accepted.items -= chunk.row.items.len();
-            self.row.accepted.chunks -= 1;
-            self.row.cpu_micros -= result.cpu_micros;
-            self.row.outcomes.take(result.outcomes);
-            chunk.row.state = ChunkState::Ready;
-            chunk.votes.clear();
-            self.count(first);
-        }
+        let (count, result, cpu_micros) = match &chunk.row.state {
+            ChunkState::Accepted { result, .. } => {
+                (&mut self.row.accepted, result, result.cpu_micros)
+            }
+            // What the coordinator itself said of a chunk took no time that was counted.
+            ChunkState::Failed { result } => (&mut self.row.failed, result, 0),
+            ChunkState::Ready | ChunkState::Leased { .. } => return,
+        };
+        count.items -= chunk.row.items.len();
+        count.chunks -= 1;
+        self.row.cpu_micros -= cpu_micros;
+        self.row.outcomes.take(result.outcomes);
+        chunk.row.state = ChunkState::Ready;
+        chunk.votes.clear();
+        self.count(first);
     }
 
     /// Chunks of this worker for which nobody else has found the same.

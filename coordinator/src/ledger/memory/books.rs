@@ -44,6 +44,8 @@ pub struct Chunk {
     /// When the last lease began.
     pub leased_at: Option<LedgerTime>,
     pub charged: i64,
+    /// Workers that died of it, or could not do it.
+    pub accusers: BTreeSet<WorkerId>,
     /// What executions of an audited chunk found.
     pub votes: Vec<Vote>,
 }
@@ -94,6 +96,7 @@ impl Stage {
             silent_since: None,
             leased_at: None,
             charged: 0,
+            accusers: BTreeSet::new(),
             votes: Vec::new(),
         };
         self.chunks.insert(first, chunk);
@@ -191,6 +194,9 @@ impl Books {
         if let Some(chunk) = self.chunk(id) {
             // Where the elder reports, the chunk may have been ready after a silent worker.
             (chunk.request, chunk.silent_since) = (None, None);
+            if chunk.row.suspicions != 0 {
+                chunk.accusers.clear();
+            }
         }
         self.charge(id.job, micros as i64);
         let elder = self.elders.get_mut(&id);
@@ -254,7 +260,9 @@ impl Books {
                     .filter_map(|first| stage.chunks.get(first))
             })
             .filter(|chunk| is_only_worker || !chunk.has_vote_of(&request.worker))
-            .find(|chunk| chunk.row.suspicions < request.suspicion_limit)
+            .find(|chunk| {
+                chunk.row.suspicions < request.suspicion_limit && self.may_try(now, chunk, request)
+            })
             .map(|chunk| chunk.row.chunk)
     }
 
@@ -280,8 +288,9 @@ impl Books {
             first: id.first.saturating_add(wanted),
             last: chunk.row.items.last,
         };
-        // What was voted on is the whole chunk.
-        let cut = (!rest.is_empty() && chunk.votes.is_empty()).then(|| {
+        // What was voted on, or is suspected, is the whole chunk.
+        let is_whole = !chunk.votes.is_empty() || chunk.row.suspicions != 0;
+        let cut = (!rest.is_empty() && !is_whole).then(|| {
             let mut row = chunk.row.clone();
             row.chunk.first = rest.first;
             row.items = rest;

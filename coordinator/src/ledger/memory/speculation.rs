@@ -54,8 +54,8 @@ impl Books {
         let mut expired = Vec::new();
         for (id, elder) in late {
             self.elders.remove(&id);
+            self.accuse(now, id, &elder.worker);
             if let Some(chunk) = self.chunk(id) {
-                chunk.row.suspicions += 1;
                 expired.push(Expired {
                     lease: LeaseId {
                         chunk: id,

@@ -176,40 +176,62 @@ async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Result<()
     Ok(())
 }
 
-/// Takes an accepted result back.
-async fn reopen(c: &mut Connection, chunk: &ChunkRow) -> Result<(), LedgerError> {
-    let ChunkState::Accepted { result, .. } = &chunk.state else {
-        return Ok(());
+/// Takes the result of a finished chunk back.
+pub async fn reopen(c: &mut Connection, chunk: &ChunkRow) -> Result<(), LedgerError> {
+    let (result, writes) = match &chunk.state {
+        ChunkState::Accepted { result, .. } => (result, REOPEN_ACCEPTED),
+        ChunkState::Failed { result } => (result, REOPEN_FAILED),
+        ChunkState::Ready | ChunkState::Leased { .. } => return Ok(()),
     };
     let (job, stage) = (chunk.chunk.job.to_string(), chunk.chunk.stage.0);
     let items = signed(chunk.items.len());
-    query(
-        "UPDATE chunks SET state = 'ready', worker = NULL, address = NULL, hash = NULL,
-                cpu_micros = NULL, paths_regular = NULL, paths_singular = NULL,
-                paths_failed = NULL, votes = 0
-         WHERE job = ? AND stage = ? AND first = ?;
-         DELETE FROM votes WHERE job = ? AND stage = ? AND first = ?;
-         UPDATE stages SET ready_items = ready_items + ?, ready_chunks = ready_chunks + 1,
-                accepted_items = accepted_items - ?, accepted_chunks = accepted_chunks - 1,
-                cpu_micros = cpu_micros - ?, paths_regular = paths_regular - ?,
-                paths_singular = paths_singular - ?, paths_failed = paths_failed - ?
-         WHERE job = ? AND stage = ?",
-    )
-    .bind(&job)
-    .bind(stage)
-    .bind(signed(chunk.chunk.first))
-    .bind(&job)
-    .bind(stage)
-    .bind(signed(chunk.chunk.first))
-    .bind(items)
-    .bind(items)
-    .bind(signed(result.cpu_micros))
-    .bind(signed(result.outcomes.regular))
-    .bind(signed(result.outcomes.singular))
-    .bind(signed(result.outcomes.failed))
-    .bind(&job)
-    .bind(stage)
-    .execute(c)
-    .await?;
+    // What the coordinator itself said of a chunk took no time that was counted.
+    let cpu_micros = match chunk.state {
+        ChunkState::Failed { .. } => 0,
+        _ => result.cpu_micros,
+    };
+    query(writes)
+        .bind(&job)
+        .bind(stage)
+        .bind(signed(chunk.chunk.first))
+        .bind(&job)
+        .bind(stage)
+        .bind(signed(chunk.chunk.first))
+        .bind(items)
+        .bind(items)
+        .bind(signed(cpu_micros))
+        .bind(signed(result.outcomes.regular))
+        .bind(signed(result.outcomes.singular))
+        .bind(signed(result.outcomes.failed))
+        .bind(&job)
+        .bind(stage)
+        .execute(c)
+        .await?;
     Ok(())
 }
+
+/// The writes that take a result back, of a chunk in this state.
+macro_rules! reopen_writes {
+    ($state:literal) => {
+        concat!(
+            "UPDATE chunks SET state = 'ready', worker = NULL, address = NULL, hash = NULL,
+                    cpu_micros = NULL, paths_regular = NULL, paths_singular = NULL,
+                    paths_failed = NULL, votes = 0
+             WHERE job = ? AND stage = ? AND first = ?;
+             DELETE FROM votes WHERE job = ? AND stage = ? AND first = ?;
+             UPDATE stages SET ready_items = ready_items + ?, ready_chunks = ready_chunks + 1, ",
+            $state,
+            "_items = ",
+            $state,
+            "_items - ?, ",
+            $state,
+            "_chunks = ",
+            $state,
+            "_chunks - 1, cpu_micros = cpu_micros - ?, paths_regular = paths_regular - ?,
+                    paths_singular = paths_singular - ?, paths_failed = paths_failed - ?
+             WHERE job = ? AND stage = ?"
+        )
+    };
+}
+const REOPEN_ACCEPTED: &str = reopen_writes!("accepted");
+const REOPEN_FAILED: &str = reopen_writes!("failed");

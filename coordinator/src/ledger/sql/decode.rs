@@ -54,6 +54,12 @@ pub fn worker(row: &Row) -> Result<WorkerId, LedgerError> {
     WorkerId::new(text(row, "worker")?).map_err(damaged)
 }
 
+/// The question that a row's lease was asked for, where it is remembered.
+pub fn request_of(row: &Row) -> Result<Option<RequestId>, LedgerError> {
+    let request: Option<String> = row.try_get("request")?;
+    request.map(RequestId::new).transpose().map_err(damaged)
+}
+
 /// A job's id.
 pub fn job_id(row: &Row) -> Result<JobId, LedgerError> {
     text(row, "job")?.parse().map_err(damaged)
@@ -251,14 +257,14 @@ pub fn from_hex(text: &str) -> Result<Vec<u8>, LedgerError> {
         .ok_or_else(|| damaged("a job's options are no hexadecimal text"))
 }
 
-/// The lease of this row, of a chunk or of an elder, which has ended: one suspicion more.
-pub fn expired_lease(row: &Row) -> Result<Expired, LedgerError> {
+/// The lease of this row, of a chunk or of an elder, which has ended: so many suspicions more.
+pub fn expired_lease(row: &Row, more: u32) -> Result<Expired, LedgerError> {
     Ok(Expired {
         lease: LeaseId {
             chunk: chunk_id(row)?,
             epoch: Epoch(number(row, "epoch")?),
         },
         worker: worker(row)?,
-        suspicions: small(row, "suspicions")? + 1,
+        suspicions: small(row, "suspicions")? + more,
     })
 }

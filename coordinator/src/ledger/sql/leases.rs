@@ -1,5 +1,6 @@
 //! What workers write: leases and what becomes of them. Each function is one operation of a commit.
 
+use super::accusations::{accuse, forget};
 use super::decode::*;
 use super::engine::{Connection, Row, query};
 use super::speculation::{drop_elder, drop_elders_of_job, expire_elders, renew_elder, speculate};
@@ -148,10 +149,12 @@ async fn acquit(c: &mut Connection, session: &str) -> Result<(), LedgerError> {
 }
 
 /// Whose turn it is: the tenant's, then the job's least virtual time, then the first chunk; how
-/// many threads all other workers have; how many jobs are running.
+/// many threads all other workers have; how many jobs are running. A suspect is for those that have
+/// been here for a lease's time and have not tried it, where there are some.
 const CHOOSE: &str = "
     SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
            c.epoch AS chunk_epoch, c.alone AS chunk_alone, c.votes AS chunk_votes,
+           c.suspicions AS chunk_suspicions,
            (SELECT CAST(COALESCE(SUM(threads), 0) AS BIGINT) FROM workers
             WHERE last_seen > ? AND draining = 0 AND evicted = 0 AND worker <> ?)
            AS other_threads,
@@ -164,6 +167,20 @@ const CHOOSE: &str = "
      AND c.first = (SELECT MIN(r.first) FROM chunks r
                     WHERE r.job = s.job AND r.stage = s.stage AND r.state = 'ready'
                       AND r.suspicions < ?
+                      AND (r.suspicions = 0
+                           OR (EXISTS (SELECT 1 FROM workers m
+                                       WHERE m.worker = ? AND m.first_seen <= ?)
+                               AND NOT EXISTS (SELECT 1 FROM accusations a
+                                               WHERE a.job = r.job AND a.stage = r.stage
+                                                 AND a.first = r.first AND a.worker = ?))
+                           OR NOT EXISTS (SELECT 1 FROM workers p WHERE p.last_seen > ?
+                                          AND p.first_seen <= ? AND p.draining = 0
+                                          AND p.evicted = 0 AND p.numerics_revision = ?
+                                          AND p.worker <> ?
+                                          AND NOT EXISTS (SELECT 1 FROM accusations a
+                                              WHERE a.job = r.job AND a.stage = r.stage
+                                                AND a.first = r.first
+                                                AND a.worker = p.worker)))
                       AND (r.votes = 0
                            OR NOT EXISTS (SELECT 1 FROM votes v WHERE v.job = r.job
                                           AND v.stage = r.stage AND v.first = r.first
@@ -210,6 +227,13 @@ async fn lease_one(
         .bind(request.worker.as_str())
         .bind(request.suspicion_limit)
         .bind(request.worker.as_str())
+        .bind(now.0.saturating_sub_unsigned(request.duration_ms))
+        .bind(request.worker.as_str())
+        .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
+        .bind(now.0.saturating_sub_unsigned(request.duration_ms))
+        .bind(request.numerics_revision)
+        .bind(request.worker.as_str())
+        .bind(request.worker.as_str())
         .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
         .bind(request.numerics_revision)
         .bind(request.worker.as_str())
@@ -240,8 +264,9 @@ async fn lease_one(
         first: chunk.first,
         last: chunk.first.saturating_add(wanted).min(last),
     };
-    // What was voted on is the whole chunk.
-    let is_cut = items.last < last && number(&row, "chunk_votes")? == 0;
+    // What was voted on, or is suspected, is the whole chunk.
+    let is_whole = number(&row, "chunk_votes")? != 0 || number(&row, "chunk_suspicions")? != 0;
+    let is_cut = items.last < last && !is_whole;
     let items = ItemRange {
         last: if is_cut { items.last } else { last },
         ..items
@@ -481,6 +506,9 @@ pub async fn accept(
         .bind(holder.worker.as_str())
         .execute(&mut *c)
         .await?;
+    if number(&found.row, "suspicions")? != 0 {
+        forget(c, lease.chunk).await?;
+    }
     if has_elder {
         // It stays, so that the later report is known to be no error.
         query("UPDATE elders SET lease_until = NULL WHERE job = ? AND stage = ? AND first = ?")
@@ -540,17 +568,23 @@ pub async fn release(
 /// Returns one chunk.
 pub async fn give_back(
     c: &mut Connection,
+    now: LedgerTime,
     lease: LeaseId,
     why: GiveBack,
 ) -> Result<(), LedgerError> {
     let Some(found) = find(c, lease.chunk).await? else {
         return Ok(());
     };
-    let suspicions = u32::from(matches!(why, GiveBack::Failed { .. }));
-    match found.holder(lease)? {
-        Some(holder) if holder.is_elder => drop_elder(c, lease.chunk, suspicions).await,
-        Some(_) => release(c, lease.chunk, &found, suspicions, false).await,
-        None => Ok(()),
+    let Some(holder) = found.holder(lease)? else {
+        return Ok(());
+    };
+    let suspicions = match why {
+        GiveBack::Drained => 0,
+        GiveBack::Failed { .. } => accuse(c, now, lease.chunk, &holder.worker).await?,
+    };
+    match holder.is_elder {
+        true => drop_elder(c, lease.chunk, suspicions).await,
+        false => release(c, lease.chunk, &found, suspicions, false).await,
     }
 }
 
@@ -566,9 +600,10 @@ pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>,
     let mut expired = Vec::with_capacity(rows.len());
     for row in rows {
         let chunk = chunk_id(&row)?;
-        expired.push(expired_lease(&row)?);
+        let suspicions = accuse(c, now, chunk, &worker(&row)?).await?;
+        expired.push(expired_lease(&row, suspicions)?);
         if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, 1, true).await?;
+            release(c, chunk, &found, suspicions, true).await?;
         }
     }
     expired.extend(expire_elders(c, now).await?);

@@ -4,6 +4,7 @@
 //! after it. Readers have connections of their own. The statements are the same
 //! for both engines; what differs stands in `engine`.
 
+mod accusations;
 mod audit;
 mod decode;
 mod engine;
@@ -32,13 +33,14 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const PAUSE: Duration = Duration::from_millis(500);
 
 /// Version of the schema that this program writes.
-pub const SCHEMA_VERSION: i64 = 3;
+pub const SCHEMA_VERSION: i64 = 4;
 
 /// What makes version n + 1 of version n; the first makes version 1 of an empty database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
     include_str!("../schema.sql"),
     include_str!("../schema_2.sql"),
     include_str!("../schema_3.sql"),
+    include_str!("../schema_4.sql"),
 ];
 
 /// A ledger in a database.
@@ -201,6 +203,46 @@ impl Ledger for SqlLedger {
             .await
     }
 
+    async fn renew_stewardships(
+        &self,
+        who: &CoordinatorId,
+        duration_ms: u64,
+    ) -> Result<(), LedgerError> {
+        let who = who.clone();
+        self.writer
+            .write(move |c, now| Box::pin(stewardship::renew_all(c, now, who, duration_ms)))
+            .await
+    }
+
+    async fn attention(
+        &self,
+        who: &CoordinatorId,
+        suspicions: u32,
+    ) -> Result<Vec<JobId>, LedgerError> {
+        let now = self.now().await?;
+        let rows = query(
+            "SELECT j.job FROM jobs j
+             WHERE j.ended IS NULL
+               AND (j.steward IS NULL OR j.steward_until <= ?
+                    OR (j.steward = ?
+                        AND (NOT EXISTS (SELECT 1 FROM stages s
+                                         WHERE s.job = j.job AND s.closed = 0)
+                             OR EXISTS (SELECT 1 FROM stages s
+                                        WHERE s.job = j.job AND s.closed = 0
+                                          AND s.accepted_items + s.failed_items = s.items)
+                             OR EXISTS (SELECT 1 FROM chunks c
+                                        WHERE c.job = j.job AND c.state = 'ready'
+                                          AND c.suspicions >= ?))))
+             ORDER BY j.number",
+        )
+        .bind(now.0)
+        .bind(who.as_str())
+        .bind(suspicions)
+        .read_all(&self.readers)
+        .await?;
+        rows.iter().map(job_id).collect()
+    }
+
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
         let rows = query("SELECT job FROM jobs WHERE ended IS NULL ORDER BY number")
             .read_all(&self.readers)
@@ -235,6 +277,42 @@ impl Ledger for SqlLedger {
         self.writer
             .write(move |c, _| Box::pin(stewardship::fail_item(c, chunk, epoch, result)))
             .await
+    }
+
+    async fn reopen(&self, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, _| Box::pin(stewardship::reopen(c, chunk, epoch)))
+            .await
+    }
+
+    async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
+        // The younger of two leases stands in the chunk's row, the elder beside it.
+        let rows = query(
+            "SELECT worker, request FROM chunks WHERE job = ? AND stage = ? AND first = ?
+             AND epoch = ? AND state = 'leased'
+             UNION ALL
+             SELECT worker, NULL FROM elders WHERE job = ? AND stage = ? AND first = ?
+             AND epoch = ? AND lease_until IS NOT NULL",
+        );
+        let job = lease.chunk.job.to_string();
+        let (stage, first) = (lease.chunk.stage.0, signed(lease.chunk.first));
+        let rows = rows
+            .bind(&job)
+            .bind(stage)
+            .bind(first)
+            .bind(signed(lease.epoch.0));
+        let rows = rows
+            .bind(&job)
+            .bind(stage)
+            .bind(first)
+            .bind(signed(lease.epoch.0));
+        match rows.read_all(&self.readers).await?.first() {
+            Some(row) => Ok(Standing::Held {
+                worker: worker(row)?,
+                request: request_of(row)?,
+            }),
+            None => Ok(Standing::Ended),
+        }
     }
 
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
@@ -329,7 +407,7 @@ impl Ledger for SqlLedger {
 
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         self.writer
-            .write(move |c, _| Box::pin(leases::give_back(c, lease, why)))
+            .write(move |c, now| Box::pin(leases::give_back(c, now, lease, why)))
             .await
     }
 

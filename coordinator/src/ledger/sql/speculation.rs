@@ -1,6 +1,7 @@
 //! Speculation: late chunks that a second worker gets. Each function is a part of one operation of a
 //! commit.
 
+use super::accusations::accuse;
 use super::decode::*;
 use super::engine::{Connection, query};
 use crate::ledger::LedgerError;
@@ -196,8 +197,10 @@ pub async fn expire_elders(
     .await?;
     let mut expired = Vec::with_capacity(rows.len());
     for row in rows {
-        expired.push(expired_lease(&row)?);
-        drop_elder(c, chunk_id(&row)?, 1).await?;
+        let chunk = chunk_id(&row)?;
+        let suspicions = accuse(c, now, chunk, &worker(&row)?).await?;
+        expired.push(expired_lease(&row, suspicions)?);
+        drop_elder(c, chunk, suspicions).await?;
     }
     Ok(expired)
 }

@@ -1,5 +1,7 @@
 //! What clients and stewards write: jobs and stages. Each function is one operation of a commit.
 
+use super::accusations::forget;
+use super::audit;
 use super::decode::*;
 use super::engine::{Connection, query};
 use super::leases::{insert_ready, release_all};
@@ -153,6 +155,25 @@ pub async fn steward(
     Ok(Some(epoch))
 }
 
+/// Keeps all rights to drive jobs that a coordinator has.
+pub async fn renew_all(
+    c: &mut Connection,
+    now: LedgerTime,
+    who: CoordinatorId,
+    duration_ms: u64,
+) -> Result<(), LedgerError> {
+    query(
+        "UPDATE jobs SET steward_until = ?
+         WHERE ended IS NULL AND steward = ? AND steward_until > ?",
+    )
+    .bind(now.after_ms(duration_ms).0)
+    .bind(who.as_str())
+    .bind(now.0)
+    .execute(c)
+    .await?;
+    Ok(())
+}
+
 /// Closes and opens stages.
 pub async fn advance(
     c: &mut Connection,
@@ -262,6 +283,7 @@ pub async fn split(
         .filter(|whole| make_up(pieces.iter().map(|p| p.items), whole.items))
         .ok_or(LedgerError::NotAPartition(chunk.job))?;
     for statement in [
+        "DELETE FROM accusations WHERE job = ? AND stage = ? AND first = ?",
         "DELETE FROM votes WHERE job = ? AND stage = ? AND first = ?",
         "DELETE FROM elders WHERE job = ? AND stage = ? AND first = ?",
         "DELETE FROM chunks WHERE job = ? AND stage = ? AND first = ?",
@@ -333,6 +355,29 @@ pub async fn fail_item(
     .bind(chunk.stage.0)
     .execute(&mut *c)
     .await?;
+    forget(c, chunk).await?;
+    drop_elder(c, chunk, 0).await
+}
+
+/// Takes the result of a finished chunk of an open stage back.
+pub async fn reopen(c: &mut Connection, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
+    fenced(c, chunk.job, epoch).await?;
+    let row = query(
+        "SELECT c.*, s.closed FROM chunks c JOIN stages s ON s.job = c.job AND s.stage = c.stage
+         WHERE c.job = ? AND c.stage = ? AND c.first = ?",
+    )
+    .bind(chunk.job.to_string())
+    .bind(chunk.stage.0)
+    .bind(signed(chunk.first))
+    .fetch_optional(&mut *c)
+    .await?;
+    let Some(row) = row else {
+        return Ok(());
+    };
+    if number(&row, "closed")? != 0 {
+        return Err(LedgerError::StageOrder(chunk.job, chunk.stage));
+    }
+    audit::reopen(c, &chunk_row(&row)?).await?;
     drop_elder(c, chunk, 0).await
 }
 

@@ -10,6 +10,7 @@
 //! enumeration can be cut into parts (see `branches`).
 
 use super::exact::Exact;
+use crate::start_systems::interruption::is_interrupted;
 use cognate_numeric::random::{Purpose, RandomStream};
 use rug::Integer;
 
@@ -17,6 +18,9 @@ use rug::Integer;
 const LIFTING_RANGE: u64 = 1 << 20;
 /// Liftings that may turn out not to be generic before this is given up.
 pub const MOST_LIFTINGS: u32 = 20;
+/// Entries of the inverses of all cells that wait at once: half a GiB of machine words. What needs more
+/// is given up as too long.
+const MOST_OPEN_ENTRIES: usize = 1 << 26;
 /// Exponents above this are not taken.
 const MOST_EXPONENT: i64 = 1 << 20;
 
@@ -83,7 +87,13 @@ pub fn mixed_cells(
     operations: u64,
 ) -> Result<MixedSubdivision, MixedCellsError> {
     check(supports)?;
-    let mut left = operations;
+    let n = supports.len() as u64;
+    let points: u64 = supports.iter().map(|support| support.len() as u64).sum();
+    // Nothing is built that is not paid for.
+    let building = n.saturating_mul(points.saturating_add(2 * n));
+    let mut left = operations
+        .checked_sub(building)
+        .ok_or(MixedCellsError::TooLong)?;
     for attempt in 0..MOST_LIFTINGS {
         let (lifting, tuple) = lifted(supports, seed, attempt, LIFTING_RANGE);
         let mut found = tuple.enumerate::<i64>(&mut left);
@@ -176,21 +186,47 @@ impl MixedCell {
     }
 }
 
-/// Points of one support, one after the other, and their liftings.
+/// Points of one support, one after the other, and their liftings. Only the coordinates that are not 0
+/// are held: the corners of all simplices together would have n^3.
 #[derive(Clone, Debug, Default)]
 struct Points {
-    coordinates: Vec<i64>,
+    /// Variable and coordinate, ascending in each point.
+    coordinates: Vec<(usize, i64)>,
+    /// Where each point ends among the coordinates.
+    ends: Vec<usize>,
     lifting: Vec<i64>,
 }
 
 impl Points {
     fn push(&mut self, point: impl Iterator<Item = i64>, lifting: i64) {
-        self.coordinates.extend(point);
+        let sparse = point.enumerate().filter(|&(_, c)| c != 0);
+        self.coordinates.extend(sparse);
+        self.ends.push(self.coordinates.len());
         self.lifting.push(lifting);
     }
 
-    fn point(&self, place: usize, n: usize) -> &[i64] {
-        &self.coordinates[place * n..(place + 1) * n]
+    /// The origin, or a multiple of the unit vector of a variable.
+    fn push_corner(&mut self, corner: Option<(usize, i64)>, lifting: i64) {
+        self.coordinates.extend(corner);
+        self.ends.push(self.coordinates.len());
+        self.lifting.push(lifting);
+    }
+
+    fn point(&self, place: usize) -> &[(usize, i64)] {
+        let begin = place.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.coordinates[begin..self.ends[place]]
+    }
+
+    /// All coordinates of one point less those of another, of `n` each.
+    fn difference(&self, to: usize, from: usize, n: usize) -> Vec<i64> {
+        let mut difference = vec![0; n];
+        for &(j, c) in self.point(to) {
+            difference[j] += c;
+        }
+        for &(j, c) in self.point(from) {
+            difference[j] -= c;
+        }
+        difference
     }
 }
 
@@ -295,9 +331,9 @@ impl Tuple {
                 let mut simplex = Points::default();
                 let mut both = points.clone();
                 for (j, &height) in heights.iter().enumerate() {
-                    let unit = (0..n).map(|i| i64::from(i + 1 == j));
-                    simplex.push(unit.clone(), height);
-                    both.push(unit.map(|c| c * degree), height * degree);
+                    let unit = j.checked_sub(1);
+                    simplex.push_corner(unit.map(|j| (j, 1)), height);
+                    both.push_corner(unit.map(|j| (j, degree)), height * degree);
                 }
                 Support {
                     given,
@@ -354,9 +390,13 @@ impl Tuple {
         operations: &mut u64,
         found: &mut dyn FnMut(MixedCell) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
+        let most_open = MOST_OPEN_ENTRIES / (self.n * self.n).max(1);
         let mut open = vec![cell];
         while let Some(mut cell) = open.pop() {
             loop {
+                if open.len() > most_open || is_interrupted() {
+                    return Err(Stop::Error(MixedCellsError::TooLong));
+                }
                 match self.follow(cell, operations)? {
                     Followed::Open(stays, other) => {
                         open.extend(other);
@@ -484,12 +524,10 @@ impl Tuple {
         if !cell.volume.leaves_room_for(8 * self.range) {
             return Err(Stop::Overflow);
         }
-        let height = |slopes: &[T], point: &[i64]| {
+        let height = |slopes: &[T], point: &[(usize, i64)]| {
             let mut sum = zero();
-            for (slope, &c) in slopes.iter().zip(point) {
-                if c != 0 {
-                    sum = sum + slope.clone() * T::from(c);
-                }
+            for &(j, c) in point {
+                sum = sum + slopes[j].clone() * T::from(c);
             }
             sum
         };
@@ -507,10 +545,10 @@ impl Tuple {
                 .ok_or(Stop::Error(MixedCellsError::TooLong))?;
             let own = |place: usize| if support == k { rising(place) } else { 0 };
             let [a, b] = cell.edges[support];
-            let moving_base = height(&moving, points.point(a, n));
-            let rest_base = height(&rest, points.point(a, n));
+            let moving_base = height(&moving, points.point(a));
+            let rest_base = height(&rest, points.point(a));
             for place in (0..count).filter(|&place| place != a && place != b) {
-                let point = points.point(place, n);
+                let point = points.point(place);
                 let speed = cell.volume.clone() * T::from(own(place) - own(a))
                     - (height(&moving, point) - moving_base.clone());
                 if speed >= zero() {
@@ -558,10 +596,8 @@ impl Tuple {
         let n = self.n;
         let points = self.points(support, cell.stage);
         let [alpha, beta] = cell.edges[support];
-        let (from, to) = (points.point(alpha, n), points.point(place, n));
         let mut along = T::from(0);
-        for j in 0..n {
-            let c = to[j] - from[j];
+        for (j, c) in points.difference(place, alpha, n).into_iter().enumerate() {
             along = along + cell.inverse[j * n + support].clone() * T::from(c);
         }
         let zero = T::from(0);
@@ -604,14 +640,10 @@ impl Tuple {
             }
         }
         let points = self.points(support, cell.stage);
-        let (from, to) = (
-            points.point(cell.edges[support][0], n),
-            points.point(place, n),
-        );
+        let edge = points.difference(place, cell.edges[support][0], n);
         // Volume times the coordinates of the new edge along the old ones.
         let mut along = vec![T::from(0); n];
-        for j in 0..n {
-            let c = to[j] - from[j];
+        for (j, c) in edge.into_iter().enumerate() {
             if c == 0 {
                 continue;
             }
@@ -785,6 +817,22 @@ mod tests {
         assert!(found.mixed_volume > 1 << 61);
         let again = mixed_cells(&supports, 1, u64::MAX).expect("it fits in 64 bits");
         assert_eq!(found.mixed_volume, again.mixed_volume);
+    }
+
+    /// The corners of all simplices, each with all of its coordinates, took 16 n^3 bytes.
+    #[test]
+    fn a_thousand_variables_take_little_memory_and_few_operations() {
+        let n = 1000;
+        let supports: Vec<_> = (0..n).map(|i| units(n, &[&[], &[i]])).collect();
+        assert_eq!(
+            mixed_cells(&supports, 0, 10_000_000),
+            Err(MixedCellsError::TooLong)
+        );
+        let (_, tuple) = lifted(&supports, 0, 0, LIFTING_RANGE);
+        let entries = |points: &Points| points.coordinates.len();
+        let held = tuple.supports.iter();
+        let held = held.map(|s| entries(&s.simplex) + entries(&s.both) + entries(&s.points));
+        assert_eq!(held.sum::<usize>(), n * (2 * n + 2));
     }
 
     #[test]

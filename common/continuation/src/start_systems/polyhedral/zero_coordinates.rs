@@ -2,6 +2,8 @@
 
 /// Most looks at terms; past them a coordinate 0 counts as possible.
 const MOST_LOOKS: u64 = 5_000_000;
+/// A term counts as one more look for each so many variables.
+const WIDE: u64 = 128;
 
 /// Whether some coordinates can be 0 at a solution and the others not: no
 /// equation may be left with exactly one term, which would not vanish. Where
@@ -27,7 +29,7 @@ fn search(
     for support in supports {
         let (mut alive, mut open) = (0, 0);
         for term in support {
-            let Some(left) = looks.checked_sub(1) else {
+            let Some(left) = looks.checked_sub(1 + n as u64 / WIDE) else {
                 return true;
             };
             *looks = left;

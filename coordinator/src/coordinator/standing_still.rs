@@ -1,0 +1,72 @@
+//! Why a job that goes on does not get on, in words: storage, workers, suspicion.
+
+use super::{Coordinator, CoordinatorError};
+use crate::ledger::clock::LedgerTime;
+use crate::ledger::rows::{JobRow, WorkerRow};
+use crate::ledger::rules::PRESENT_MS;
+use tokio::time::Instant;
+
+/// Workers that are looked at.
+const WORKERS: u32 = 10_000;
+/// Workers that are named.
+const NAMED: usize = 5;
+
+impl Coordinator {
+    /// What a job that has not ended waits for, one sentence each.
+    pub(super) async fn standing_still(
+        &self,
+        row: &JobRow,
+    ) -> Result<Vec<String>, CoordinatorError> {
+        let mut lines: Vec<String> = self.health.troubles();
+        for line in &mut lines {
+            line.insert_str(0, "trouble: nothing is given out, because ");
+        }
+        let now = self.ledger.now().await?;
+        let wanted = row.asked.numerics_revision;
+        let is_here = |worker: &WorkerRow| {
+            now.since_ms(worker.last_seen) < PRESENT_MS && !worker.says.draining
+        };
+        let workers = self.ledger.workers(WORKERS).await?;
+        let (fit, others): (Vec<_>, Vec<_>) = workers
+            .into_iter()
+            .filter(is_here)
+            .partition(|worker| worker.says.numerics_revision == wanted && !worker.evicted);
+        let aside: Vec<(String, String)> = fit
+            .iter()
+            .filter_map(|worker| {
+                let why = self.conduct.refusal(&worker.says.worker, Instant::now())?;
+                Some((worker.says.worker.to_string(), why))
+            })
+            .collect();
+        let busy = fit.iter().filter(|worker| worker.leased_chunks > 0).count();
+        lines.push(match (fit.len(), others.len()) {
+            (0, 0) => "workers: none is here".to_owned(),
+            (0, others) => format!(
+                "workers: {others} are here, and none fits: numerics revision {wanted} is needed, and to \
+                 have been right at audits"
+            ),
+            (fit, _) => format!(
+                "workers: {fit} fit, {busy} of them have chunks, {} are put aside",
+                aside.len()
+            ),
+        });
+        for (worker, why) in aside.iter().take(NAMED) {
+            lines.push(format!("worker {worker}: {why}"));
+        }
+        let any = LedgerTime(i64::MAX);
+        let suspects = self.ledger.suspects(row.job, 1, any).await?;
+        if let Some(first) = suspects.first() {
+            let alone = suspects.iter().filter(|chunk| chunk.alone).count();
+            lines.push(format!(
+                "suspicion: workers died of {} chunks that wait, or could not do them (items {}..{} of stage {} \
+                 first; {alone} are tracked alone); a path is given up after {} different workers",
+                suspects.len(),
+                first.items.first,
+                first.items.last,
+                first.chunk.stage.0,
+                self.policy.suspicion_limit
+            ));
+        }
+        Ok(lines)
+    }
+}

@@ -1,0 +1,269 @@
+//! Planning queue: how many problems are read and planned at once, and how long each may take.
+//!
+//! What is small is done at once, beside whatever takes long. A plan that takes longer than a moment is
+//! begun again in the slow lane, where few are made at a time; the plan is the same, for no clock decides
+//! anything in it. Where the client leaves, or its time is over, counting ends.
+
+use cognate_continuation::start_systems::interruption::Interruption;
+use std::any::Any;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::timeout;
+
+/// The numbers by which planning is bounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlanningLimits {
+    /// How long a plan may take beside others. Default 300 ms: most are made in a tenth of it.
+    pub moment: Duration,
+    /// How long a plan may take at all, once its turn has come. Default 60 s: twice what counting mixed
+    /// cells takes at most on a slow machine.
+    pub longest: Duration,
+    /// How many plans may be made or waited for. Default 256: a client sends the next one again.
+    pub most: usize,
+    /// How many are made at once in each lane. Default: half of the machine's cores, at least 1.
+    pub at_once: usize,
+}
+
+impl Default for PlanningLimits {
+    fn default() -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+        Self {
+            moment: Duration::from_millis(300),
+            longest: Duration::from_secs(60),
+            most: 256,
+            at_once: (cores / 2).max(1),
+        }
+    }
+}
+
+/// Why a problem is not planned.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanningRefusal {
+    /// Too many are waiting.
+    #[error("{0} problems are being planned or wait for it: submit this one again later")]
+    Full(usize),
+    /// It takes too long.
+    #[error(
+        "planning takes longer than {} s: name a start (--start total-degree, or polyhedral, which workers \
+         count) instead of auto",
+        .0.as_secs()
+    )]
+    TooLong(Duration),
+}
+
+/// What bounds the planning of all problems of a coordinator.
+#[derive(Debug)]
+pub struct PlanningQueue {
+    limits: PlanningLimits,
+    quick: Arc<Semaphore>,
+    slow: Arc<Semaphore>,
+    there: Arc<AtomicUsize>,
+}
+
+/// One of those that are planned or wait for it.
+struct Place(Arc<AtomicUsize>);
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Interrupts the work when nobody waits for it any more.
+struct Waited(Interruption);
+
+impl Drop for Waited {
+    fn drop(&mut self) {
+        self.0.interrupt();
+    }
+}
+
+/// How one attempt ended.
+enum Attempt<T> {
+    Done(T),
+    Interrupted,
+}
+
+impl PlanningQueue {
+    /// An empty queue.
+    pub fn new(limits: PlanningLimits) -> Self {
+        let lane = || Arc::new(Semaphore::new(limits.at_once.max(1)));
+        Self {
+            limits,
+            quick: lane(),
+            slow: lane(),
+            there: Arc::default(),
+        }
+    }
+
+    /// Does work off the async executor when its turn has come. It is done twice where it takes longer
+    /// than a moment, and must answer the same both times.
+    ///
+    /// # Panics
+    /// Where the work does.
+    pub async fn plan<T: Send + 'static>(
+        &self,
+        work: impl Fn() -> T + Send + Sync + 'static,
+    ) -> Result<T, PlanningRefusal> {
+        let place = self.place()?;
+        let work = Arc::new(work);
+        let quick = (&self.quick, self.limits.moment);
+        let slow = (&self.slow, self.limits.longest);
+        for (lane, time) in [quick, slow] {
+            let permit = Arc::clone(lane).acquire_owned().await;
+            let permit = permit.expect("the lanes are never closed");
+            let work = Arc::clone(&work);
+            match attempt(permit, time, move || work()).await {
+                Attempt::Done(value) => return Ok(value),
+                Attempt::Interrupted => {}
+            }
+        }
+        drop(place);
+        Err(PlanningRefusal::TooLong(self.limits.longest))
+    }
+
+    /// Does work that cannot be interrupted off the async executor: reading a file, whose size bounds it.
+    ///
+    /// # Panics
+    /// Where the work does.
+    pub async fn read<T: Send + 'static>(
+        &self,
+        is_large: bool,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T, PlanningRefusal> {
+        let _place = self.place()?;
+        let lane = if is_large { &self.slow } else { &self.quick };
+        let permit = Arc::clone(lane).acquire_owned().await;
+        let permit = permit.expect("the lanes are never closed");
+        let working = tokio::task::spawn_blocking(move || {
+            let _permit = permit;
+            work()
+        });
+        match working.await {
+            Ok(value) => Ok(value),
+            Err(error) => std::panic::resume_unwind(panic_of(error)),
+        }
+    }
+
+    fn place(&self) -> Result<Place, PlanningRefusal> {
+        let before = self.there.fetch_add(1, Ordering::Relaxed);
+        let place = Place(Arc::clone(&self.there));
+        match before < self.limits.most {
+            true => Ok(place),
+            false => Err(PlanningRefusal::Full(before)),
+        }
+    }
+}
+
+/// What a task that did not end by itself panicked with.
+fn panic_of(error: tokio::task::JoinError) -> Box<dyn Any + Send> {
+    match error.try_into_panic() {
+        Ok(panic) => panic,
+        Err(error) => Box::new(error.to_string()),
+    }
+}
+
+/// Does work for so long at most. What does not end in time keeps its permit until it does.
+async fn attempt<T: Send + 'static>(
+    permit: OwnedSemaphorePermit,
+    time: Duration,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Attempt<T> {
+    let sign = Interruption::default();
+    let _waited = Waited(sign.clone());
+    let under = sign.clone();
+    let mut working = tokio::task::spawn_blocking(move || {
+        let _permit = permit;
+        let value = under.run(work);
+        // Whoever was interrupted may have answered as if there were more than it could count.
+        (!under.is_interrupted()).then_some(value)
+    });
+    let ended = timeout(time, &mut working).await;
+    let ended = match ended {
+        Ok(ended) => ended,
+        Err(_) => {
+            sign.interrupt();
+            // Parts that cannot be interrupted are short; the caller waits no longer than as long again.
+            match timeout(time, working).await {
+                Ok(ended) => ended,
+                Err(_) => return Attempt::Interrupted,
+            }
+        }
+    };
+    match ended {
+        Ok(Some(value)) => Attempt::Done(value),
+        Ok(None) => Attempt::Interrupted,
+        Err(error) => std::panic::resume_unwind(panic_of(error)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_continuation::start_systems::interruption::is_interrupted;
+    use std::time::Instant;
+
+    fn queue() -> PlanningQueue {
+        PlanningQueue::new(PlanningLimits {
+            moment: Duration::from_millis(50),
+            longest: Duration::from_millis(200),
+            most: 2,
+            at_once: 1,
+        })
+    }
+
+    /// Counts for as long as nobody interrupts it, or so long.
+    fn count(time: Duration) -> u32 {
+        let begin = Instant::now();
+        while begin.elapsed() < time && !is_interrupted() {
+            std::thread::yield_now();
+        }
+        7
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn what_is_short_is_done_beside_what_is_long() {
+        let queue = Arc::new(queue());
+        let long = {
+            let queue = Arc::clone(&queue);
+            tokio::spawn(async move { queue.plan(|| count(Duration::from_secs(60))).await })
+        };
+        tokio::time::sleep(Duration::from_millis(100)).await;
+        assert_eq!(queue.plan(|| count(Duration::ZERO)).await, Ok(7));
+        let refused = PlanningRefusal::TooLong(Duration::from_millis(200));
+        assert_eq!(long.await.unwrap(), Err(refused));
+        // What takes longer than a moment is made all the same.
+        let some = Duration::from_millis(80);
+        assert_eq!(queue.plan(move || count(some)).await, Ok(7));
+        assert_eq!(queue.there.load(Ordering::Relaxed), 0);
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn whoever_leaves_ends_what_he_asked_for() {
+        let queue = Arc::new(queue());
+        let ended = Arc::new(AtomicUsize::new(0));
+        let calls: Vec<_> = (0..2)
+            .map(|_| {
+                let (queue, ended) = (Arc::clone(&queue), Arc::clone(&ended));
+                let work = move || {
+                    count(Duration::from_secs(60));
+                    ended.fetch_add(1, Ordering::Relaxed);
+                };
+                tokio::spawn(async move { queue.plan(work).await })
+            })
+            .collect();
+        tokio::time::sleep(Duration::from_millis(20)).await;
+        let full = queue.plan(|| count(Duration::ZERO)).await;
+        assert_eq!(full, Err(PlanningRefusal::Full(2)));
+        for call in &calls {
+            call.abort();
+        }
+        for call in calls {
+            assert!(call.await.unwrap_err().is_cancelled());
+        }
+        assert_eq!(queue.plan(|| count(Duration::ZERO)).await, Ok(7));
+        assert!(ended.load(Ordering::Relaxed) >= 1);
+    }
+}
