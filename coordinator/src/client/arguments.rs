@@ -6,6 +6,7 @@
 use super::connection::Target;
 use super::error::ClientError;
 use super::mechanism::arguments::MechanismCommand;
+use super::sets::arguments as sets;
 use crate::config::DEFAULT_ADDRESS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
@@ -57,6 +58,16 @@ pub enum Command {
     Convert(Convert),
     /// Every irreducible component of every dimension, with its degree and multiplicity
     Decompose(Decompose),
+    /// On which components points lie
+    Member(sets::Member),
+    /// Points of components
+    Sample(sets::Sample),
+    /// Dimension and degree of the images of components
+    Project(sets::Project),
+    /// Degrees of components by groups of variables
+    Multidegree(sets::Multidegree),
+    /// In how many directions points can be moved
+    Mobility(sets::Mobility),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths
@@ -455,7 +466,7 @@ pub struct Decompose {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
-    /// Also write summary.json, decomposition.json and witness_points.jsonl here
+    /// Also write what `cognate member` and others read, and Bertini's input, witness_data and main_data, here
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// What is seen meanwhile.

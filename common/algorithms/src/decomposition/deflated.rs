@@ -49,7 +49,7 @@ const SAME: f64 = 1e-14;
 
 /// Witness points that are to be told apart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct PureSet {
+pub(crate) struct PureSet {
     pub dimension: usize,
     /// Rank of the Jacobian before each deflation.
     pub ranks: Vec<u32>,
@@ -114,18 +114,23 @@ impl PureSet {
 }
 
 /// The first coordinates of a point.
-pub(super) fn doubles(point: &RefinedPoint, own: usize) -> Vec<Complex64> {
+pub(crate) fn doubles(point: &RefinedPoint, own: usize) -> Vec<Complex64> {
     point.point[..own].iter().map(rounded).collect()
 }
 
 /// A point of a multiple set at which the equations are regular after these deflations.
 #[derive(Clone, Debug)]
-pub(super) struct DeflatedPoint {
+pub(crate) struct DeflatedPoint {
     ranks: Vec<u32>,
     pub refined: RefinedPoint,
 }
 
 impl DeflatedPoint {
+    /// Rank of the Jacobian before each deflation.
+    pub fn ranks(&self) -> &[u32] {
+        &self.ranks
+    }
+
     /// Whether the given equations are regular there.
     pub fn is_reduced(&self) -> bool {
         self.ranks.is_empty()
@@ -134,7 +139,7 @@ impl DeflatedPoint {
 
 /// A point of a multiple set.
 #[derive(Clone, Debug)]
-pub(super) struct Multiple {
+pub(crate) struct Multiple {
     pub point: DeflatedPoint,
     /// Its multiplicity, where it is known.
     pub scheme: Option<u64>,
@@ -159,7 +164,7 @@ impl Multiple {
 }
 
 /// Refined points with how many paths came to each, each point once.
-pub(super) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(RefinedPoint, u64)> {
+pub(crate) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(RefinedPoint, u64)> {
     let first = |k: usize| points[k].0.point.first().map_or(0.0, |z| rounded(z).re);
     let mut by_first: Vec<usize> = (0..points.len()).collect();
     by_first.sort_by(|&a, &b| first(a).total_cmp(&first(b)));
@@ -187,13 +192,23 @@ pub(super) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(Refine
 
 /// Deflated equations by their ranks, made once.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Deflations {
+pub(crate) struct Deflations {
     systems: BTreeMap<Vec<u32>, Arc<System>>,
     of_stages: BTreeMap<StageSystem, Arc<System>>,
     sliced: BTreeMap<(Vec<u32>, usize), Arc<SlicedEquations>>,
+    /// Slices instead of the problem's.
+    slices: Option<Vec<Vec<Complex64>>>,
 }
 
 impl Deflations {
+    /// Equations with these slices instead of the problem's.
+    pub fn on_slices(slices: Vec<Vec<Complex64>>) -> Self {
+        Self {
+            slices: Some(slices),
+            ..Self::default()
+        }
+    }
+
     fn system(&mut self, problem: &Problem, ranks: &[u32]) -> Arc<System> {
         if let Some(known) = self.systems.get(ranks) {
             return Arc::clone(known);
@@ -247,7 +262,9 @@ impl Deflations {
             return Arc::clone(known);
         }
         let system = self.system(problem, ranks);
-        let made = Arc::new(SlicedEquations::new(&system, problem.slices(dimension)));
+        let slices = self.slices.clone();
+        let slices = slices.unwrap_or_else(|| problem.slices(dimension));
+        let made = Arc::new(SlicedEquations::new(&system, slices));
         self.sliced.insert(key, Arc::clone(&made));
         made
     }
@@ -317,6 +334,32 @@ impl Deflations {
             *place = exactly(-multiplier);
         }
         longer
+    }
+
+    /// Points on these slices, each `None` where the equations are not regular there after these deflations, or
+    /// where Newton's method leaves.
+    pub fn points_on(
+        &mut self,
+        problem: &Problem,
+        (slices, ranks): (&[Vec<Complex64>], &[u32]),
+        points: &[Vec<Complex64>],
+    ) -> Vec<Option<RefinedPoint>> {
+        let system = self.system(problem, ranks);
+        let equations = SlicedEquations::new(&system, slices.to_vec());
+        let mut refine = |values: &Vec<Complex64>| {
+            let mut start: Vec<Number> = values.iter().map(|&z| exactly(z)).collect();
+            for depth in 1..=ranks.len() {
+                start = self.with_multipliers(problem, slices.len(), &ranks[..depth], &start);
+            }
+            let refined = equations.refine(&start);
+            refined.filter(|refined| settled(refined, MOVED))
+        };
+        points.iter().map(&mut refine).collect()
+    }
+
+    /// The equations after these deflations.
+    pub fn equations(&mut self, problem: &Problem, ranks: &[u32]) -> Arc<System> {
+        self.system(problem, ranks)
     }
 
     /// The set of these points at which the given equations are regular.

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// What a stage is tracked with.
 #[derive(Clone, Debug)]
-pub(super) struct Tracking {
+pub(crate) struct Tracking {
     pub settings: Settings,
     pub tolerances: Tolerances,
     pub max_retries: u16,
@@ -28,7 +28,7 @@ pub(super) struct Tracking {
 
 /// The system that a stage is of: what is written down of it, so that it can be made again.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) enum StageSystem {
+pub(crate) enum StageSystem {
     /// Combinations of the equations, as many as there are variables.
     Staircase,
     /// All given equations with the slices of this dimension.
@@ -75,7 +75,7 @@ enum Doing {
 
 /// One stage, and all that belongs to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Job {
+pub(crate) struct Job {
     pub system: StageSystem,
     work: Doing,
 }

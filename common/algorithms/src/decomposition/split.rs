@@ -321,23 +321,7 @@ impl Split {
 
     /// The sum of second derivatives over these points.
     fn trace(&self, points: impl Iterator<Item = usize>, own: usize) -> Trace {
-        let mut sum = vec![Number::zero(()); own];
-        let (mut lengths, mut errors) = (0.0, 0.0);
-        for k in points {
-            let bend = &self.bends()[k];
-            let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
-            lengths += length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
-            errors += bend.error;
-            for (sum, t) in sum.iter_mut().zip(&bend.acceleration) {
-                sum.add(t);
-            }
-        }
-        let sum: Vec<Complex64> = sum.iter().map(rounded).collect();
-        Trace {
-            deviation: bounded(length(&sum) / lengths),
-            noise: bounded(errors / lengths).max(LEAST_NOISE),
-            precision_bits: 106,
-        }
+        trace_of(points.map(|k| &self.bends()[k]), own)
     }
 
     /// Whether not even all open points together are closed: some are missing, and no loop helps.
@@ -557,7 +541,28 @@ fn bounded(x: f64) -> f64 {
     }
 }
 
-fn is_closed(trace: &Trace) -> bool {
+/// The sum of second derivatives of these points in the first `own` unknowns.
+pub(crate) fn trace_of<'a>(bends: impl Iterator<Item = &'a Bend>, own: usize) -> Trace {
+    let mut sum = vec![Number::zero(()); own];
+    let (mut lengths, mut errors) = (0.0, 0.0);
+    for bend in bends {
+        let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
+        lengths += length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
+        errors += bend.error;
+        for (sum, t) in sum.iter_mut().zip(&bend.acceleration) {
+            sum.add(t);
+        }
+    }
+    let sum: Vec<Complex64> = sum.iter().map(rounded).collect();
+    Trace {
+        deviation: bounded(length(&sum) / lengths),
+        noise: bounded(errors / lengths).max(LEAST_NOISE),
+        precision_bits: 106,
+    }
+}
+
+/// Whether points with this sum are whole components.
+pub(crate) fn is_closed(trace: &Trace) -> bool {
     trace.noise < NOISY && trace.deviation <= CLOSED * trace.noise
 }
 

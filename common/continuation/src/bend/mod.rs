@@ -117,6 +117,11 @@ fn zeros(count: usize) -> Vec<Number> {
 }
 
 fn doubles(numbers: &[Number]) -> Vec<Complex64> {
+    doubles_of(numbers)
+}
+
+/// The numbers as doubles.
+pub fn doubles_of(numbers: &[Number]) -> Vec<Complex64> {
     numbers.iter().map(rounded).collect()
 }
 

@@ -2,6 +2,7 @@
 
 pub mod path;
 pub mod problem;
+pub mod question;
 pub mod solution;
 
 use crate::error::ProtocolError;

@@ -1,5 +1,6 @@
 //! Problem message to Submission, System message to a checked System.
 
+use super::question::question;
 use super::{digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
@@ -165,6 +166,10 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             false => Some(equation_sets("sets", &m.sets)?),
         },
         decompose: m.decompose.map(decompose).transpose()?,
+        question: match m.question {
+            None => None,
+            Some(asked) => Some(question(asked).map_err(|e| e.within("question"))?),
+        },
     })
 }
 

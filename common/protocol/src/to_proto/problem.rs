@@ -1,5 +1,6 @@
 //! Submission to Problem message, System to System message.
 
+use super::question::question;
 use super::{complexes, digest, pairs};
 use crate::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
@@ -104,6 +105,7 @@ pub fn options(options: &Options) -> v1::Options {
             method: wanted.method.map(|method| method_number(method) as i32),
             verify: wanted.verify,
         }),
+        question: options.question.as_ref().map(question),
     }
 }
 

@@ -1,5 +1,7 @@
 //! The same answers for people and for programs.
 
+pub mod answers;
+mod bertini;
 pub mod certificates;
 pub mod decomposition;
 pub mod drawing;
