@@ -68,6 +68,8 @@ pub enum Command {
     Multidegree(sets::Multidegree),
     /// In how many directions points can be moved
     Mobility(sets::Mobility),
+    /// Loops, arcs and singular points of real curves
+    RealCurve(sets::RealCurve),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths

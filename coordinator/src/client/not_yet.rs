@@ -19,6 +19,7 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         | Command::Project(_)
         | Command::Multidegree(_)
         | Command::Mobility(_)
+        | Command::RealCurve(_)
         | Command::Explain(_)
         | Command::Cancel(_)
         | Command::Results(_)

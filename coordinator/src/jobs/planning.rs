@@ -16,6 +16,7 @@ use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
+use cognate_continuation::work::Work;
 use cognate_protocol::submission::{
     Asked, Decompose, Options, PrecisionChoice, StartKind, StartSolutions,
 };
@@ -187,7 +188,9 @@ pub fn plan_job(
         let found = given.as_ref().filter(|(object, _)| *object == wanted);
         found.map(|(_, points)| Arc::clone(points))
     };
-    if let Next::Open(opening) = plan.algorithm.clone().next() {
+    if let Next::Open(opening) = plan.algorithm.clone().next()
+        && matches!(opening.stage.work, Work::Track | Work::CountMixedCells)
+    {
         let find = |wanted: Digest| opening.object(wanted).or_else(|| find(wanted));
         let system = opening.system.as_deref().unwrap_or(&plan.system);
         PreparedWork::check(system, &opening.stage, &find)?;

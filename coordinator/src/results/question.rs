@@ -6,6 +6,7 @@ use crate::jobs::planning::Planned;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{Contribution, JobRow, StageRow};
 use cognate_algorithms::questions::QuestionSolve;
+use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::{Answer, TrackedPaths};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -19,7 +20,7 @@ pub const ANSWER: RecordKind = RecordKind(b"CGNANS01");
 pub struct QuestionSummary {
     /// Id of the job.
     pub job: String,
-    /// What was asked: `member`, `sample`, `project`, `multidegree` or `mobility`.
+    /// What was asked: `member`, `sample`, `project`, `multidegree`, `mobility` or `real-curve`.
     pub question: String,
     /// The system and the seed.
     pub problem: AskedProblem,
@@ -29,6 +30,9 @@ pub struct QuestionSummary {
     /// What is said of each component.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub components: Option<Vec<Value>>,
+    /// Real curves with their vertices and arcs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curves: Option<Vec<Value>>,
     /// Groups of variables, where degrees are by groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<Vec<Vec<String>>>,
@@ -124,6 +128,7 @@ fn blocks(answer: &Answer) -> Blocks {
             });
             (None, Some(each.collect()), Some(groups.clone()))
         }
+        Answer::RealCurve(curves) => (None, Some(curves.iter().map(counts).collect()), None),
         Answer::Mobility(points) => {
             let each = points.iter().map(|p| {
                 let on: Vec<String> = p.on.iter().map(ToString::to_string).collect();
@@ -136,6 +141,44 @@ fn blocks(answer: &Answer) -> Blocks {
             (Some(each.collect()), None, None)
         }
     }
+}
+
+/// What the real part of a component consists of.
+fn counts(curve: &RealCurve) -> Value {
+    let counts = curve.counts();
+    json!({
+        "id": curve.id.to_string(), "degree": curve.degree,
+        "closed_loops": counts.closed_loops, "unbounded_arcs": counts.unbounded_arcs,
+        "isolated_points": counts.isolated_points, "singular_points": counts.singular_points,
+        "connected_components": counts.connected_components,
+        "vertices": curve.vertices.len(), "edges": curve.edges.len(),
+        "settled": curve.doubts.is_empty(),
+    })
+}
+
+/// A real curve as it is drawn.
+fn graph(curve: &RealCurve) -> Value {
+    let point = |p: &Vec<Complex64>| -> Value {
+        let values: Vec<Value> = p.iter().map(|z| json!([z.re, z.im])).collect();
+        Value::Array(values)
+    };
+    let mut edges_of = vec![Vec::new(); curve.vertices.len()];
+    for (k, edge) in curve.edges.iter().enumerate() {
+        for end in edge.ends.into_iter().flatten() {
+            edges_of[end].push(k);
+        }
+    }
+    let vertices = curve.vertices.iter().zip(edges_of).map(|(v, edges)| {
+        json!({ "kind": v.kind, "point": point(&v.point), "value": v.value, "edges": edges })
+    });
+    let edges = curve.edges.iter().map(|e| {
+        let samples: Vec<Value> = e.samples.iter().map(point).collect();
+        json!({ "ends": e.ends, "samples": samples })
+    });
+    json!({
+        "id": curve.id.to_string(), "form": curve.form,
+        "vertices": vertices.collect::<Vec<_>>(), "edges": edges.collect::<Vec<_>>(),
+    })
 }
 
 impl QuestionSummary {
@@ -153,6 +196,10 @@ impl QuestionSummary {
     ) -> Self {
         let answer = asked.answer().expect("the job is done");
         let (points, components, groups) = blocks(answer);
+        let curves = match answer {
+            Answer::RealCurve(curves) => Some(curves.iter().map(graph).collect()),
+            _ => None,
+        };
         let unsettled = asked.doubts();
         Self {
             job: job.job.to_string(),
@@ -166,6 +213,7 @@ impl QuestionSummary {
             },
             points,
             components,
+            curves,
             groups,
             settled: unsettled.is_empty(),
             unsettled,

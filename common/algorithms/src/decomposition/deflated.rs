@@ -13,7 +13,7 @@ use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::witness::Multiplicity;
 use cognate_systems::system::{System, VariableGroup};
-use cognate_systems::transform::{deflate, slice};
+use cognate_systems::transform::{critical, deflate, fibre, slice};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
@@ -234,6 +234,11 @@ impl Deflations {
             StageSystem::Cut { dimension, factor } => {
                 let cut = problem.cut(*dimension, *factor as usize);
                 Arc::new(cut.expect("it has been made of equations with degrees"))
+            }
+            StageSystem::Critical { form } => Arc::new(critical(&problem.curve_equations(), form)),
+            StageSystem::Fibre { form, values } => {
+                let values = values.map(f64::from_bits);
+                Arc::new(fibre(&problem.curve_equations(), form, values))
             }
             StageSystem::Sliced { dimension } => {
                 Arc::new(slice(&problem.given, *dimension, problem.variables()))

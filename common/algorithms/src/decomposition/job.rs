@@ -51,6 +51,19 @@ pub(crate) enum StageSystem {
         /// Which factor.
         factor: u32,
     },
+    /// Combinations of the equations that cut out curves, with the equation of the points that are critical for a real
+    /// linear form.
+    Critical {
+        /// Coefficients of the form: real and imaginary parts.
+        form: Vec<[i32; 2]>,
+    },
+    /// The same combinations, with fibres of the form.
+    Fibre {
+        /// Coefficients of the form: real and imaginary parts.
+        form: Vec<[i32; 2]>,
+        /// Bits of the values from which and to which the form goes.
+        values: [u64; 2],
+    },
     /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
     Tracked {
         /// Rank of the Jacobian before each deflation.
@@ -133,6 +146,19 @@ impl Job {
             self.work = Doing::Tracked(Box::new(stages.ends_only()));
         }
         self
+    }
+
+    /// Paths from these points along the path variable of the system.
+    pub fn along(
+        (description, system): (StageSystem, &System),
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        let homotopy = HomotopyKind::PathVariable {
+            parameters: vec![Complex64::default()],
+        };
+        let first = opening(Work::Track, homotopy, stored(points), with);
+        Self::tracked((description, system), first, with)
     }
 
     /// Whether these candidates at the only target are isolated.

@@ -312,6 +312,20 @@ impl Problem {
         Ok(slice(&rows, dimension, self.variables()))
     }
 
+    /// As many combinations of the equations as cut out curves.
+    pub fn curve_equations(&self) -> System {
+        let mut rows = combine(
+            &self.given,
+            &self.degrees,
+            self.variables() - 1,
+            self.seed(),
+        );
+        rows.symmetry.clear();
+        rows.conjugates.clear();
+        rows.degenerate.clear();
+        rows
+    }
+
     /// The first rows of the staircase with the slices of that dimension.
     pub fn level_equations(&self, dimension: usize) -> SlicedEquations {
         let mut rows = (*self.staircase).clone();

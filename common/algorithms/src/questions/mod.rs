@@ -10,6 +10,7 @@ mod mobility;
 mod multidegree;
 mod operand;
 mod project;
+mod real_curve;
 mod sample;
 #[cfg(test)]
 mod tests;
@@ -34,6 +35,7 @@ use multidegree::Multidegree;
 use operand::Operand;
 pub use operand::{MOST_WITNESS_POINTS, OperandError};
 use project::Project;
+use real_curve::RealCurves;
 use sample::Sample;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -44,6 +46,8 @@ pub const MOST_POINTS: usize = 100_000;
 pub const MOST_SAMPLES: u64 = 1_000_000;
 /// Highest order of functionals at a point.
 pub const MOST_DEPTH: u32 = 20;
+/// Most samples on either side of the middle of an arc.
+pub const MOST_ARC_SAMPLES: u32 = 1000;
 
 /// Why a question cannot be asked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -75,6 +79,7 @@ enum Asking {
     Project(Project),
     Multidegree(Multidegree),
     Mobility(Mobility),
+    RealCurve(Box<RealCurves>),
     Done(Box<Answer>),
 }
 
@@ -155,6 +160,16 @@ impl QuestionSolve {
             Question::Mobility { points, depth } => {
                 Asking::Mobility(Mobility::new(system, points, *depth)?)
             }
+            Question::RealCurve { samples } => {
+                if !(1..=MOST_ARC_SAMPLES).contains(samples) {
+                    return Err(QuestionError::Wish {
+                        field: "samples",
+                        found: samples.to_string(),
+                        expected: format!("1 to {MOST_ARC_SAMPLES}"),
+                    });
+                }
+                Asking::RealCurve(Box::new(RealCurves::new(*samples)))
+            }
         };
         Self::try_from(State {
             system: Arc::new(system.clone()),
@@ -219,6 +234,7 @@ impl QuestionSolve {
             Asking::Project(asking) => asking.advance(&mut with, done),
             Asking::Multidegree(asking) => asking.advance(&mut with, done),
             Asking::Mobility(asking) => asking.advance(&mut with, done),
+            Asking::RealCurve(asking) => asking.advance(&mut with, done),
             Asking::Done(_) => None,
         };
         if job.is_none() {
@@ -229,6 +245,7 @@ impl QuestionSolve {
                 Asking::Project(asking) => Answer::Project(asking.take()),
                 Asking::Multidegree(asking) => asking.take(&state.system),
                 Asking::Mobility(asking) => Answer::Mobility(asking.take(&with)),
+                Asking::RealCurve(asking) => Answer::RealCurve(asking.take()),
                 Asking::Done(_) => return None,
             };
             state.asking = Asking::Done(Box::new(answer));
@@ -284,6 +301,7 @@ impl Solve for QuestionSolve {
             Asking::Project(_) => "moving slices to fibres",
             Asking::Multidegree(_) => "moving slices into groups",
             Asking::Mobility(_) => "asking points for their dual spaces",
+            Asking::RealCurve(_) => "following real branches between critical points",
             Asking::Done(_) => "done",
         };
         Progress {

@@ -325,3 +325,81 @@ fn what_is_not_whole_is_found() {
         }
     );
 }
+
+/// Loops, arcs, isolated and singular points, connected parts.
+fn real_counts(text: &str, seed: u64) -> [u64; 5] {
+    let system = system(text);
+    let found = components(&system, seed);
+    let question = Question::RealCurve { samples: 2 };
+    let (answer, doubts) = ask(&system, &found.components, &question);
+    let Answer::RealCurve(curves) = answer else {
+        panic!("{answer:?}");
+    };
+    assert!(doubts.is_empty(), "seed {seed}: {doubts:?}");
+    let mut sum = [0; 5];
+    for curve in &curves {
+        let c = curve.counts();
+        let own = [
+            c.closed_loops,
+            c.unbounded_arcs,
+            c.isolated_points,
+            c.singular_points,
+            c.connected_components,
+        ];
+        for (sum, own) in sum.iter_mut().zip(own) {
+            *sum += own;
+        }
+        for point in curve.edges.iter().flat_map(|edge| &edge.samples) {
+            assert!(point.iter().all(|z| z.im.abs() < 1e-9), "{point:?}");
+        }
+    }
+    sum
+}
+
+#[test]
+fn real_curves_have_their_loops_arcs_and_points() {
+    let curves = [
+        (
+            "variable_group x, y; function f; f = x^2 + y^2 - 1;",
+            [1, 0, 0, 0, 1],
+        ),
+        (
+            "variable_group x, y; function f; f = x^2 - y^2 - 1;",
+            [0, 2, 0, 0, 2],
+        ),
+        (
+            "variable_group x, y; function f; f = y^2 - x*(x - 1)*(x + 1);",
+            [1, 1, 0, 0, 2],
+        ),
+        (
+            "variable_group x, y; function f; f = y^2 - x^2*(x - 1);",
+            [0, 1, 1, 1, 2],
+        ),
+        (
+            "variable_group x, y; function f; f = y^2 - x^2*(x + 1);",
+            [0, 0, 0, 1, 1],
+        ),
+        (
+            "variable_group x, y; function f; f = y^2 - x^3;",
+            [0, 1, 0, 1, 1],
+        ),
+        (
+            "variable_group x, y; function f; f = x^2 + y^2 + 1;",
+            [0, 0, 0, 0, 0],
+        ),
+        (
+            "variable_group x, y; function f; f = x - 2*y + 1;",
+            [0, 1, 0, 0, 1],
+        ),
+        (
+            "variable_group x, y; function f; f = (x^2 + y^2 - 1)*(x - 2*y);",
+            [1, 1, 0, 0, 2],
+        ),
+        (TWISTED_CUBIC, [0, 1, 0, 0, 1]),
+    ];
+    for (text, expected) in curves {
+        for seed in 1..=2 {
+            assert_eq!(real_counts(text, seed), expected, "seed {seed}: {text}");
+        }
+    }
+}

@@ -34,6 +34,9 @@ pub fn question(m: v1::Question) -> Result<Asked, ProtocolError> {
         },
         v1::question::Kind::Sample(sample) => Question::Sample(wish(sample)?),
         v1::question::Kind::Project(project) => Question::Project { onto: project.onto },
+        v1::question::Kind::RealCurve(curve) => Question::RealCurve {
+            samples: curve.samples,
+        },
         v1::question::Kind::Multidegree(_) => Question::Multidegree,
         v1::question::Kind::Mobility(mobility) => Question::Mobility {
             points: given(required("mobility.points", mobility.points)?)?,

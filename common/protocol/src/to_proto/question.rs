@@ -21,6 +21,9 @@ pub fn question(asked: &Asked) -> v1::Question {
         Question::Project { onto } => {
             Some(Kind::Project(v1::ProjectQuestion { onto: onto.clone() }))
         }
+        Question::RealCurve { samples } => {
+            Some(Kind::RealCurve(v1::RealCurveQuestion { samples: *samples }))
+        }
         Question::Multidegree => Some(Kind::Multidegree(true)),
         Question::Mobility { points, depth } => Some(Kind::Mobility(v1::MobilityQuestion {
             points: Some(given(points)),

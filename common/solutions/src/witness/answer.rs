@@ -1,6 +1,7 @@
 //! Answer: what was found about components that are known by their witness sets.
 
 use super::evidence::Trace;
+use super::real_curve::RealCurve;
 use super::witness_set::ComponentId;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -132,6 +133,8 @@ pub enum Answer {
     },
     /// How points can be moved.
     Mobility(Vec<Mobility>),
+    /// Real curves.
+    RealCurve(Vec<RealCurve>),
 }
 
 impl Answer {
@@ -144,6 +147,7 @@ impl Answer {
             Self::Project(_) => "project",
             Self::Multidegree { .. } => "multidegree",
             Self::Mobility(_) => "mobility",
+            Self::RealCurve(_) => "real-curve",
         }
     }
 
@@ -162,6 +166,10 @@ impl Answer {
                 each.flat_map(|c| of_component(c.id, &c.doubts)).collect()
             }
             Self::Mobility(points) => points.iter().filter_map(mobility_doubt).collect(),
+            Self::RealCurve(curves) => {
+                let each = curves.iter();
+                each.flat_map(|c| of_component(c.id, &c.doubts)).collect()
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! [`witness_set`] is one irreducible component, or what could not be told apart; [`evidence`] says what
 //! the claim rests on; [`decomposition`] is all of them, with counts that add up in each dimension; [`method`] how they were found.
-//! [`bertini`] writes and reads the files of Bertini; [`question`] is what can be asked about them afterwards, [`answer`] what is said then.
+//! [`bertini`] writes and reads the files of Bertini; [`question`] is what can be asked about them afterwards, [`answer`] what is said then, with [`real_curve`] among it.
 //! (Sommese, Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 and 15.)
 
 pub mod answer;
@@ -11,6 +11,7 @@ pub mod decomposition;
 pub mod evidence;
 pub mod method;
 pub mod question;
+pub mod real_curve;
 pub mod witness_set;
 
 pub use answer::Answer;

@@ -51,4 +51,9 @@ pub enum Question {
         /// The highest order.
         depth: u32,
     },
+    /// The real part of each component of dimension 1.
+    RealCurve {
+        /// Points of each arc, on either side of its middle.
+        samples: u32,
+    },
 }

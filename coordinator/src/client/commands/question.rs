@@ -1,13 +1,14 @@
-//! `cognate member`, `sample`, `project`, `multidegree` and `mobility`: what is asked of components that were found
+//! `cognate member`, `sample`, `project`, `multidegree`, `mobility` and `real-curve`: what is asked of components that were found
 //! before. Each is a job, of a coordinator of its own or of a running one.
 
 use crate::client::commands::solve;
 use crate::client::connection::{Connection, Target};
 use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
+use crate::client::output::curve_svg;
 use crate::client::problem::Prepared;
 use crate::client::sets::arguments::{
-    Member, Mobility, Multidegree, Project, Ranges, Sample, SetArguments,
+    Member, Mobility, Multidegree, Project, Ranges, RealCurve, Sample, SetArguments,
 };
 use crate::client::sets::{KnownSet, points};
 use cognate_continuation::tracker::settings::Preset;
@@ -87,6 +88,22 @@ pub async fn mobility(a: &Mobility) -> Result<Exit, ClientError> {
         Ok(Question::Mobility { points, depth })
     })
     .await
+}
+
+/// The real part of curves.
+pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
+    let samples = a.samples;
+    let axes = std::sync::Mutex::new(Vec::new());
+    let ended = ask(&a.set, |set| {
+        let own = curve_svg::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
+        *axes.lock().expect("one command has it") = own;
+        Ok(Question::RealCurve { samples })
+    })
+    .await?;
+    if let Some(folder) = &a.set.output {
+        curve_svg::write(folder, &axes.into_inner().expect("one command has it"))?;
+    }
+    Ok(ended)
 }
 
 /// Reads and checks the components, asks, and shows the answer.

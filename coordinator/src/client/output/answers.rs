@@ -151,6 +151,16 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
             "reason",
         ],
         "sample" => &["id", "count", "wanted", "failed"],
+        "real-curve" => &[
+            "id",
+            "degree",
+            "closed_loops",
+            "unbounded_arcs",
+            "isolated_points",
+            "singular_points",
+            "connected_components",
+            "settled",
+        ],
         _ => &[
             "id",
             "dimension",
@@ -219,5 +229,40 @@ fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result
         }
         out.finish()?;
     }
+    if let Some(curves) = &summary.curves {
+        let list = Value::Array(curves.clone());
+        write_file(folder, "curve.json", &format!("{list:#}\n"))?;
+        write_file(
+            folder,
+            "samples.csv",
+            &arcs(curves, summary.problem.variables),
+        )?;
+    }
     write_file(folder, "summary.json", &json::summary(summary_json))
+}
+
+/// The points of arcs, one a line.
+fn arcs(curves: &[Value], variables: u64) -> String {
+    let parts = (0..variables).map(|v| format!("re{v},im{v}"));
+    let mut text = format!(
+        "component,edge,index,{}\n",
+        parts.collect::<Vec<_>>().join(",")
+    );
+    for curve in curves {
+        for (edge, arc) in curve["edges"].as_array().into_iter().flatten().enumerate() {
+            let samples = arc["samples"].as_array().into_iter().flatten();
+            for (index, point) in samples.enumerate() {
+                let coordinates = point.as_array().into_iter().flatten();
+                let numbers = coordinates.map(|z| format!("{},{}", z[0], z[1]));
+                let numbers: Vec<String> = numbers.collect();
+                let _ = writeln!(
+                    text,
+                    "{},{edge},{index},{}",
+                    cell(&curve["id"]),
+                    numbers.join(",")
+                );
+            }
+        }
+    }
+    text
 }

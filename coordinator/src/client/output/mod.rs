@@ -3,6 +3,7 @@
 pub mod answers;
 mod bertini;
 pub mod certificates;
+pub mod curve_svg;
 pub mod decomposition;
 pub mod drawing;
 pub mod files;

@@ -34,7 +34,7 @@ pub struct SetArguments {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
-    /// Also write summary.json here, and points as samples.csv
+    /// Also write summary.json here, points as samples.csv, real curves as curve.json and curve.svg
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// What is seen meanwhile.
@@ -124,6 +124,23 @@ pub struct Multidegree {
     /// Components.
     #[command(flatten)]
     pub set: SetArguments,
+}
+
+/// `cognate real-curve`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate real-curve here --component 1.1 --output curve && open curve/curve.svg")]
+pub struct RealCurve {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Points of each arc on either side of its middle
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub samples: u32,
+    /// The two variables that curve.svg shows [default: the first two]; of a pair of conjugates real and imaginary part
+    #[arg(long, value_name = "X,Y", value_delimiter = ',')]
+    pub axes: Vec<String>,
 }
 
 /// `cognate mobility`.
