@@ -362,6 +362,34 @@ impl Deflations {
         points.iter().map(&mut refine).collect()
     }
 
+    /// The least gap between singular values that were taken as not 0 and as 0: before each deflation at the rank that
+    /// it uses, and after the last at the rank that the dimension leaves. Where there is no further singular value
+    /// rounding error stands for it.
+    pub fn rank_gap(
+        &mut self,
+        problem: &Problem,
+        (dimension, ranks): (usize, &[u32]),
+        point: &RefinedPoint,
+    ) -> f64 {
+        let mut least = f64::INFINITY;
+        for depth in 0..=ranks.len() {
+            let system = self.system(problem, &ranks[..depth]);
+            let unknowns = system.variable_count();
+            let rank = match ranks.get(depth) {
+                Some(&rank) => rank as usize,
+                None => unknowns - dimension,
+            };
+            let equations = SlicedEquations::new(&system, Vec::new());
+            let values = equations.singular_values(&point.point[..unknowns]);
+            let largest = values.first().copied().unwrap_or(0.0);
+            let before = rank.checked_sub(1).and_then(|k| values.get(k));
+            let before = before.copied().unwrap_or(largest);
+            let after = values.get(rank).copied().unwrap_or(0.0);
+            least = least.min(before / after.max(f64::EPSILON * largest));
+        }
+        least
+    }
+
     /// The equations after these deflations.
     pub fn equations(&mut self, problem: &Problem, ranks: &[u32]) -> Arc<System> {
         self.system(problem, ranks)

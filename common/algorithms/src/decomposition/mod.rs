@@ -227,7 +227,7 @@ impl DecompositionSolve {
                 state.sets.retain(|set| asked(set.dimension));
             }
             Step::Split(split) => {
-                let (found, dimension) = split.components(problem);
+                let (found, dimension) = split.components(problem, &mut self.deflations);
                 state.components.extend(found);
                 let of = state.dimensions.iter_mut();
                 if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
