@@ -65,9 +65,11 @@ pub enum Command {
     /// Dimension and degree of the images of components
     Project(sets::Project),
     /// Degrees of components by groups of variables
-    Multidegree(sets::Multidegree),
+    Multidegree(sets::Plain),
     /// In how many directions points can be moved
     Mobility(sets::Mobility),
+    /// Which witness points of components are proved
+    Certify(sets::Plain),
     /// Loops, arcs and singular points of real curves
     RealCurve(sets::RealCurve),
     /// One path again, step by step

@@ -67,6 +67,7 @@ fn in_runtime(command: Command) -> Result<Exit, ClientError> {
             Command::Project(a) => commands::question::project(&a).await,
             Command::Multidegree(a) => commands::question::multidegree(&a).await,
             Command::Mobility(a) => commands::question::mobility(&a).await,
+            Command::Certify(a) => commands::question::certify(&a).await,
             Command::RealCurve(a) => commands::question::real_curve(&a).await,
             other => tokio::select! {
                 ended = one_shot(other) => ended,
@@ -100,6 +101,7 @@ async fn one_shot(command: Command) -> Result<Exit, ClientError> {
         | Command::Multidegree(_)
         | Command::Mobility(_)
         | Command::RealCurve(_)
+        | Command::Certify(_)
         | Command::Coordinator(_)
         | Command::Worker(_)
         | Command::Synthesize(_) => unreachable!("these were run before"),

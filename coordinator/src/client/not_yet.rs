@@ -20,6 +20,7 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         | Command::Multidegree(_)
         | Command::Mobility(_)
         | Command::RealCurve(_)
+        | Command::Certify(_)
         | Command::Explain(_)
         | Command::Cancel(_)
         | Command::Results(_)

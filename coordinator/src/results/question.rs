@@ -20,7 +20,8 @@ pub const ANSWER: RecordKind = RecordKind(b"CGNANS01");
 pub struct QuestionSummary {
     /// Id of the job.
     pub job: String,
-    /// What was asked: `member`, `sample`, `project`, `multidegree`, `mobility` or `real-curve`.
+    /// What was asked: `member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve` or
+    /// `certify`.
     pub question: String,
     /// The system and the seed.
     pub problem: AskedProblem,
@@ -77,6 +78,15 @@ fn blocks(answer: &Answer) -> Blocks {
         Answer::Check(components) => {
             let each = components.iter().map(|c| {
                 json!({ "id": c.id.to_string(), "closed": c.closed, "multiplicity": c.multiplicity })
+            });
+            (None, Some(each.collect()), None)
+        }
+        Answer::Certify(components) => {
+            let each = components.iter().map(|c| {
+                json!({
+                    "id": c.id.to_string(), "points": c.points, "certified": c.certified,
+                    "distinct": c.distinct,
+                })
             });
             (None, Some(each.collect()), None)
         }

@@ -181,6 +181,20 @@ impl Job {
         )
     }
 
+    /// Whether these points on slices are proved to be near solutions.
+    pub fn certify(
+        system: StageSystem,
+        slices: Vec<Complex64>,
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        let homotopy = HomotopyKind::Parameter {
+            start: slices.clone(),
+            targets: vec![slices],
+        };
+        Self::ask(system, Work::Certify, homotopy, stored(points), with)
+    }
+
     /// How these witness points move when the parameters go from the first to the second.
     pub fn bend(
         system: StageSystem,

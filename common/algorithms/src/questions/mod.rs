@@ -4,6 +4,7 @@
 //! What moves witness points to other slices is a parameter homotopy, tracked in stages like any other. (Sommese,
 //! Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 to 16.)
 
+mod certify;
 mod check;
 mod member;
 mod mobility;
@@ -22,6 +23,7 @@ use crate::decomposition::{DecompositionOptions, ProblemError};
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
 use crate::solve::{Next, Root, Solve, StageNumbers};
+use certify::Certify;
 use check::Check;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
@@ -74,6 +76,7 @@ pub enum QuestionError {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Asking {
     Check(Check),
+    Certify(Certify),
     Member(Member),
     Sample(Sample),
     Project(Project),
@@ -153,6 +156,7 @@ impl QuestionSolve {
     ) -> Result<Self, QuestionError> {
         let asking = match question {
             Question::Check => Asking::Check(Check::default()),
+            Question::Certify => Asking::Certify(Certify::default()),
             Question::Member { points } => Asking::Member(Member::new(system, points)?),
             Question::Sample(wish) => Asking::Sample(Sample::new(system, wish)?),
             Question::Project { onto } => Asking::Project(Project::new(system, onto)?),
@@ -229,6 +233,7 @@ impl QuestionSolve {
         };
         let job = match &mut state.asking {
             Asking::Check(asking) => asking.advance(&mut with, done),
+            Asking::Certify(asking) => asking.advance(&mut with, done),
             Asking::Member(asking) => asking.advance(&mut with, done),
             Asking::Sample(asking) => asking.advance(&mut with, done),
             Asking::Project(asking) => asking.advance(&mut with, done),
@@ -240,6 +245,7 @@ impl QuestionSolve {
         if job.is_none() {
             let answer = match &mut state.asking {
                 Asking::Check(asking) => Answer::Check(asking.take()),
+                Asking::Certify(asking) => Answer::Certify(asking.take()),
                 Asking::Member(asking) => Answer::Member(asking.take(&with)),
                 Asking::Sample(asking) => Answer::Sample(asking.take()),
                 Asking::Project(asking) => Answer::Project(asking.take()),
@@ -296,6 +302,7 @@ impl Solve for QuestionSolve {
     fn progress(&self) -> Progress {
         let description = match &self.state.asking {
             Asking::Check(_) => "checking witness points",
+            Asking::Certify(_) => "proving witness points",
             Asking::Member(_) => "moving slices through points",
             Asking::Sample(_) => "moving slices to samples",
             Asking::Project(_) => "moving slices to fibres",

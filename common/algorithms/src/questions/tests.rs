@@ -403,3 +403,24 @@ fn real_curves_have_their_loops_arcs_and_points() {
         }
     }
 }
+
+#[test]
+fn witness_points_are_proved_and_different() {
+    for text in [
+        ILLUSTRATIVE,
+        "variable_group x, y; function f; f = (x - y)^2*(y - x^2 + 2);",
+    ] {
+        let system = system(text);
+        let found = components(&system, 2);
+        let (answer, doubts) = ask(&system, &found.components, &Question::Certify);
+        let Answer::Certify(proved) = answer else {
+            panic!("{answer:?}");
+        };
+        assert!(doubts.is_empty(), "{doubts:?}");
+        let points: u64 = proved.iter().map(|c| c.certified).sum();
+        assert_eq!(
+            points,
+            found.components.iter().map(|set| set.degree).sum::<u64>()
+        );
+    }
+}

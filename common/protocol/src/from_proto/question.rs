@@ -37,6 +37,7 @@ pub fn question(m: v1::Question) -> Result<Asked, ProtocolError> {
         v1::question::Kind::RealCurve(curve) => Question::RealCurve {
             samples: curve.samples,
         },
+        v1::question::Kind::Certify(_) => Question::Certify,
         v1::question::Kind::Multidegree(_) => Question::Multidegree,
         v1::question::Kind::Mobility(mobility) => Question::Mobility {
             points: given(required("mobility.points", mobility.points)?)?,

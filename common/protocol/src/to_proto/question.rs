@@ -24,6 +24,7 @@ pub fn question(asked: &Asked) -> v1::Question {
         Question::RealCurve { samples } => {
             Some(Kind::RealCurve(v1::RealCurveQuestion { samples: *samples }))
         }
+        Question::Certify => Some(Kind::Certify(true)),
         Question::Multidegree => Some(Kind::Multidegree(true)),
         Question::Mobility { points, depth } => Some(Kind::Mobility(v1::MobilityQuestion {
             points: Some(given(points)),

@@ -19,6 +19,19 @@ pub struct CheckedComponent {
     pub multiplicity: Option<u64>,
 }
 
+/// How many witness points of one component are proved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CertifiedComponent {
+    /// The component.
+    pub id: ComponentId,
+    /// Its witness points.
+    pub points: u64,
+    /// ... of which each is alone in a box, as a solution of combinations of the equations on the slice.
+    pub certified: u64,
+    /// Whether those are proved to be different.
+    pub distinct: bool,
+}
+
 /// A component of which it is not clear whether a point lies on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Near {
@@ -118,6 +131,8 @@ pub struct Mobility {
 pub enum Answer {
     /// Whether what was read is whole.
     Check(Vec<CheckedComponent>),
+    /// Which witness points are proved.
+    Certify(Vec<CertifiedComponent>),
     /// On which components each point lies.
     Member(Vec<Membership>),
     /// Points of each component.
@@ -142,6 +157,7 @@ impl Answer {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Check(_) => "check",
+            Self::Certify(_) => "certify",
             Self::Member(_) => "member",
             Self::Sample(_) => "sample",
             Self::Project(_) => "project",
@@ -155,6 +171,7 @@ impl Answer {
     pub fn doubts(&self) -> Vec<String> {
         match self {
             Self::Check(components) => components.iter().filter_map(check_doubt).collect(),
+            Self::Certify(components) => components.iter().filter_map(certify_doubt).collect(),
             Self::Member(points) => points.iter().filter_map(member_doubt).collect(),
             Self::Sample(components) => components.iter().filter_map(sample_doubt).collect(),
             Self::Project(components) => {
@@ -187,6 +204,19 @@ fn check_doubt(found: &CheckedComponent) -> Option<String> {
             found.id
         )
     })
+}
+
+fn certify_doubt(found: &CertifiedComponent) -> Option<String> {
+    let (id, certified, points) = (found.id, found.certified, found.points);
+    match (certified == points, found.distinct) {
+        (true, true) => None,
+        (true, false) => Some(format!(
+            "component {id}: its witness points are not proved to be different"
+        )),
+        (false, _) => Some(format!(
+            "component {id}: {certified} of {points} witness points are proved"
+        )),
+    }
 }
 
 fn member_doubt(found: &Membership) -> Option<String> {

@@ -30,6 +30,8 @@ pub struct SampleWish {
 pub enum Question {
     /// Whether what was read is whole: traces and multiplicities.
     Check,
+    /// Which witness points are proved, and whether they are proved to be different.
+    Certify,
     /// On which components each point lies.
     Member {
         /// The points.

@@ -1,4 +1,4 @@
-//! `cognate member`, `sample`, `project`, `multidegree`, `mobility` and `real-curve`: what is asked of components that were found
+//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve` and `certify`: what is asked of components that were found
 //! before. Each is a job, of a coordinator of its own or of a running one.
 
 use crate::client::commands::solve;
@@ -8,7 +8,7 @@ use crate::client::error::{ClientError, Exit};
 use crate::client::output::curve_svg;
 use crate::client::problem::Prepared;
 use crate::client::sets::arguments::{
-    Member, Mobility, Multidegree, Project, Ranges, RealCurve, Sample, SetArguments,
+    Member, Mobility, Plain, Project, Ranges, RealCurve, Sample, SetArguments,
 };
 use crate::client::sets::{KnownSet, points};
 use cognate_continuation::tracker::settings::Preset;
@@ -76,8 +76,13 @@ pub async fn project(a: &Project) -> Result<Exit, ClientError> {
 }
 
 /// Degrees of components by groups of variables.
-pub async fn multidegree(a: &Multidegree) -> Result<Exit, ClientError> {
+pub async fn multidegree(a: &Plain) -> Result<Exit, ClientError> {
     ask(&a.set, |_| Ok(Question::Multidegree)).await
+}
+
+/// Which witness points are proved.
+pub async fn certify(a: &Plain) -> Result<Exit, ClientError> {
+    ask(&a.set, |_| Ok(Question::Certify)).await
 }
 
 /// How points can be moved.

@@ -151,6 +151,7 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
             "reason",
         ],
         "sample" => &["id", "count", "wanted", "failed"],
+        "certify" => &["id", "points", "certified", "distinct"],
         "real-curve" => &[
             "id",
             "degree",

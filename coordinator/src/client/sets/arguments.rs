@@ -118,9 +118,9 @@ pub struct Project {
     pub onto: Vec<String>,
 }
 
-/// `cognate multidegree`.
+/// `cognate multidegree` and `cognate certify`.
 #[derive(Clone, Debug, Args)]
-pub struct Multidegree {
+pub struct Plain {
     /// Components.
     #[command(flatten)]
     pub set: SetArguments,
