@@ -198,6 +198,17 @@ pub(crate) struct Deflations {
     sliced: BTreeMap<(Vec<u32>, usize), Arc<SlicedEquations>>,
     /// Slices instead of the problem's.
     slices: Option<Vec<Vec<Complex64>>>,
+    movable: Movable,
+}
+
+/// Equations by their ranks, compiled once, whose slices are exchanged. A copy begins without them.
+#[derive(Debug, Default)]
+struct Movable(BTreeMap<Vec<u32>, SlicedEquations>);
+
+impl Clone for Movable {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl Deflations {
@@ -349,8 +360,12 @@ impl Deflations {
         (slices, ranks): (&[Vec<Complex64>], &[u32]),
         points: &[Vec<Complex64>],
     ) -> Vec<Option<RefinedPoint>> {
-        let system = self.system(problem, ranks);
-        let equations = SlicedEquations::new(&system, slices.to_vec());
+        let known = self.movable.0.remove(ranks);
+        let mut equations = known.unwrap_or_else(|| {
+            let system = self.system(problem, ranks);
+            SlicedEquations::new(&system, Vec::new())
+        });
+        equations.set_slices(slices.to_vec());
         let mut refine = |values: &Vec<Complex64>| {
             let mut start: Vec<Number> = values.iter().map(|&z| exactly(z)).collect();
             for depth in 1..=ranks.len() {
@@ -359,7 +374,9 @@ impl Deflations {
             let refined = equations.refine(&start);
             refined.filter(|refined| settled(refined, MOVED))
         };
-        points.iter().map(&mut refine).collect()
+        let refined = points.iter().map(&mut refine).collect();
+        self.movable.0.insert(ranks.to_vec(), equations);
+        refined
     }
 
     /// The least gap between singular values that were taken as not 0 and as 0: before each deflation at the rank that

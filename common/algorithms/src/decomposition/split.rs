@@ -371,10 +371,8 @@ impl Split {
         if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied(), own)) {
             return Loops::Sound;
         }
-        let mut place = vec![None; self.set.points.len()];
-        for (k, &point) in class.points.iter().enumerate() {
-            place[point] = Some(k);
-        }
+        let places = class.points.iter().enumerate();
+        let place: BTreeMap<usize, usize> = places.map(|(k, &point)| (point, k)).collect();
         let mut answer = Loops::Sound;
         for number in 0..self.edges.len() {
             let others = self.edges.iter().enumerate();
@@ -642,7 +640,7 @@ impl Split {
 /// The points in the parts that these pairs leave; `place`: where each point of the set is among them.
 fn parts<'a>(
     points: &[usize],
-    place: &[Option<usize>],
+    place: &BTreeMap<usize, usize>,
     pairs: impl Iterator<Item = &'a [usize; 2]>,
 ) -> Vec<Vec<usize>> {
     let mut parent: Vec<usize> = (0..points.len()).collect();
@@ -654,7 +652,7 @@ fn parts<'a>(
         k
     }
     for [from, to] in pairs {
-        if let (Some(a), Some(b)) = (place[*from], place[*to]) {
+        if let (Some(&a), Some(&b)) = (place.get(from), place.get(to)) {
             let (a, b) = (root(&mut parent, a), root(&mut parent, b));
             parent[a.max(b)] = a.min(b);
         }

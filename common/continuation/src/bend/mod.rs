@@ -156,6 +156,11 @@ impl SlicedEquations {
         }
     }
 
+    /// Puts these slices in the place of its own.
+    pub fn set_slices(&mut self, slices: Vec<Vec<Complex64>>) {
+        self.slices = slices;
+    }
+
     fn rows(&self) -> usize {
         Evaluate::<f64>::shape(&self.equations).equations
     }
