@@ -398,7 +398,7 @@ impl RealCurves {
             for refined in refined {
                 let point = doubles_of(&refined.point);
                 let apart = distance(&point, &involution.image(&point));
-                let limit = REAL * refined.condition.max(1.0).min(1e4);
+                let limit = REAL * refined.condition.clamp(1.0, 1e4);
                 if apart > limit && apart <= limit * CLEAR {
                     return self.doubt("a point is neither clearly real nor clearly not");
                 }

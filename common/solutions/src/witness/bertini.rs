@@ -216,7 +216,7 @@ impl<'a> Reader<'a> {
 /// The double nearest to a quotient of integers.
 fn fraction(p: &str, q: &str) -> Option<f64> {
     let (p, q) = (p.parse::<Rational>().ok()?, q.parse::<Rational>().ok()?);
-    (q != Rational::new()).then(|| Rational::from(p / q).to_f64())
+    (q != Rational::new()).then(|| (p / q).to_f64())
 }
 
 /// One point of a file.
