@@ -111,7 +111,6 @@ impl Member {
                 on: Vec::new(),
                 unsettled: Vec::new(),
                 solves: with.problem.solves(&exact, &known),
-                unexplained: false,
             }
         })
         .collect()
@@ -242,19 +241,8 @@ impl Member {
         }
     }
 
-    pub fn take(&mut self, with: &Context<'_>) -> Vec<Membership> {
-        let mut found = self.found.take().unwrap_or_default();
-        let all = with.operands.iter().map(|o| o.dimension()).max();
-        let least = with.problem.variables() - with.problem.levels;
-        for point in &mut found {
-            // Where only some components were asked, others may hold the point.
-            let nowhere = point.on.is_empty() && point.unsettled.is_empty();
-            point.unexplained = false;
-            if nowhere && point.solves == Some(true) && all.is_none_or(|most| most < least) {
-                point.unexplained = true;
-            }
-        }
-        found
+    pub fn take(&mut self) -> Vec<Membership> {
+        self.found.take().unwrap_or_default()
     }
 }
 

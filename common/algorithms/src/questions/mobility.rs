@@ -121,8 +121,8 @@ impl Mobility {
         (found, isolated)
     }
 
-    pub fn take(&mut self, with: &Context<'_>) -> Vec<Found> {
-        let memberships = self.member.take(with);
+    pub fn take(&mut self) -> Vec<Found> {
+        let memberships = self.member.take();
         let found = self.found.take().unwrap_or_default();
         let pairs = found.into_iter().zip(memberships);
         pairs

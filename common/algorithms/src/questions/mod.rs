@@ -246,11 +246,11 @@ impl QuestionSolve {
             let answer = match &mut state.asking {
                 Asking::Check(asking) => Answer::Check(asking.take()),
                 Asking::Certify(asking) => Answer::Certify(asking.take()),
-                Asking::Member(asking) => Answer::Member(asking.take(&with)),
+                Asking::Member(asking) => Answer::Member(asking.take()),
                 Asking::Sample(asking) => Answer::Sample(asking.take()),
                 Asking::Project(asking) => Answer::Project(asking.take()),
                 Asking::Multidegree(asking) => asking.take(&state.system),
-                Asking::Mobility(asking) => Answer::Mobility(asking.take(&with)),
+                Asking::Mobility(asking) => Answer::Mobility(asking.take()),
                 Asking::RealCurve(asking) => Answer::RealCurve(asking.take()),
                 Asking::Done(_) => return None,
             };

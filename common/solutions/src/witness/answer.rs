@@ -53,8 +53,6 @@ pub struct Membership {
     pub unsettled: Vec<Near>,
     /// Whether it solves the equations, within its accuracy; `None` where that is not clear.
     pub solves: Option<bool>,
-    /// It solves the equations, and lies on none of the components although these are all.
-    pub unexplained: bool,
 }
 
 /// Points of one component.
@@ -221,11 +219,6 @@ fn certify_doubt(found: &CertifiedComponent) -> Option<String> {
 
 fn member_doubt(found: &Membership) -> Option<String> {
     let index = found.index;
-    if found.unexplained {
-        return Some(format!(
-            "point {index}: it solves the equations, and lies on no component"
-        ));
-    }
     let near = found.unsettled.first()?;
     Some(match near.distance {
         Some(distance) => format!(
