@@ -352,6 +352,26 @@ impl Deflations {
         longer
     }
 
+    /// Whether these deflations, which somebody else names, can be made.
+    pub fn admits(&mut self, problem: &Problem, ranks: &[u32]) -> bool {
+        if ranks.len() > MOST_DEFLATIONS {
+            return false;
+        }
+        let mut unknowns = problem.variables();
+        for (depth, &rank) in ranks.iter().enumerate() {
+            let rank = rank as usize;
+            if rank >= unknowns || unknowns + rank >= MOST_UNKNOWNS {
+                return false;
+            }
+            let system = self.system(problem, &ranks[..depth]);
+            if system.expressions.nodes().len() >= MOST_NODES {
+                return false;
+            }
+            unknowns += rank + 1;
+        }
+        true
+    }
+
     /// Points on these slices, each `None` where the equations are not regular there after these deflations, or
     /// where Newton's method leaves.
     pub fn points_on(

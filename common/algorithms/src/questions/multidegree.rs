@@ -54,11 +54,9 @@ impl Multidegree {
                 degrees: Vec::new(),
                 doubts: Vec::new(),
             };
-            if ways.len() > MOST_WAYS {
-                let doubt = format!(
-                    "{} ways to share slices out; at most {MOST_WAYS}",
-                    ways.len()
-                );
+            let most = MOST_WAYS.min(operand.most_targets() / SLICES);
+            if ways.len() > most {
+                let doubt = format!("{} ways to share slices out; at most {most}", ways.len());
                 known.doubts.push(doubt);
                 self.found.push(known);
                 continue;

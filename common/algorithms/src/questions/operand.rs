@@ -58,6 +58,24 @@ pub enum OperandError {
         /// The point's place, from 1.
         point: usize,
     },
+    /// No component of the system has such a dimension.
+    #[error("component {id}: components of this system have dimensions {least} to {most}")]
+    Dimension {
+        /// The component.
+        id: ComponentId,
+        /// The lowest that a component can have.
+        least: u32,
+        /// The highest that a component can have.
+        most: u32,
+    },
+    /// Its deflations cannot be made.
+    #[error(
+        "component {id}: the ranks of its deflations are not those of such equations, or too many"
+    )]
+    Deflation {
+        /// The component.
+        id: ComponentId,
+    },
     /// Two points are one.
     #[error("component {id}: two of its witness points are the same")]
     Twice {
@@ -89,6 +107,8 @@ impl OperandError {
             Self::NotThere { id, point } => Some((*id, Some(point - 1))),
             Self::Shape { id, .. }
             | Self::Degree { id, .. }
+            | Self::Dimension { id, .. }
+            | Self::Deflation { id }
             | Self::Twice { id }
             | Self::Multiplicity { id, .. }
             | Self::Name(id) => Some((*id, None)),
@@ -115,6 +135,9 @@ impl Operand {
     ) -> Result<Self, OperandError> {
         let id = given.id;
         check_shape(problem, given)?;
+        if !deflations.admits(problem, &given.deflation) {
+            return Err(OperandError::Deflation { id });
+        }
         let slices = problem.tracked_slices(&given.slice);
         let points: Vec<Vec<Complex64>> = given
             .points
@@ -221,6 +244,14 @@ fn check_shape(problem: &Problem, given: &WitnessSet) -> Result<(), OperandError
         expected,
     };
     let dimension = id.dimension as usize;
+    let (least, most) = (n - problem.levels, n - 1);
+    if !(least..=most).contains(&dimension) {
+        return Err(OperandError::Dimension {
+            id,
+            least: least as u32,
+            most: most as u32,
+        });
+    }
     if given.slice.len() != dimension {
         return Err(wrong("its slice".into(), given.slice.len(), dimension));
     }

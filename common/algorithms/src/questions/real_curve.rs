@@ -20,6 +20,8 @@ use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
+/// Most stages between fibres: one for each end of a slab and for each sample.
+const MOST_STAGES: usize = 20_000;
 /// Forms that are tried until one leaves no doubt.
 const MOST_FORMS: u32 = 3;
 /// A point is real within this, relative to its size: regular ones, whose digits are known,
@@ -408,6 +410,12 @@ impl RealCurves {
             self.now.fibres.push(fibre);
         }
         self.plan_tasks();
+        let stages = self.now.tasks.len();
+        if stages > MOST_STAGES {
+            return self.doubt(format!(
+                "{stages} stages between fibres; at most {MOST_STAGES}: fewer samples take fewer"
+            ));
+        }
         self.next_task(with, 0)
     }
 

@@ -314,6 +314,14 @@ fn what_is_not_whole_is_found() {
     let mut multiple = found.components.clone();
     multiple[0].multiplicity.scheme = Some(2);
     assert!(refused(&multiple).contains("multiplicity 2"));
+    let mut deflated = found.components.clone();
+    for ranks in [vec![1000; 3], vec![0; 9], vec![u32::MAX]] {
+        deflated[0].deflation = ranks;
+        assert!(refused(&deflated).contains("deflations"));
+    }
+    let mut too_large = found.components.clone();
+    too_large[0].id.dimension = 3;
+    assert!(refused(&too_large).contains("dimensions 0 to 2"));
     let mut twice = found.components.clone();
     twice[1].id = twice[2].id;
     assert!(refused(&twice).contains("there twice"));
