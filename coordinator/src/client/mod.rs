@@ -5,6 +5,7 @@
 
 pub mod arguments;
 pub mod commands;
+pub mod common_arguments;
 pub mod config_file;
 pub mod connection;
 pub mod embedded;

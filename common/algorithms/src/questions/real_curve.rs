@@ -6,11 +6,12 @@
 //! Wampler: Finding all real points of a complex curve, Contemp. Math. 448, 2007).
 
 mod assembled;
+mod tracing;
 
 use super::{Context, Operand};
 use crate::decomposition::deflated::equal_ones_merged;
 use crate::decomposition::job::{Job, StageSystem};
-use assembled::{End, assemble};
+use assembled::assemble;
 use cognate_continuation::bend::{SlicedEquations, doubles_of, exactly};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -19,6 +20,7 @@ use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use tracing::{Critical, End, FibrePoint, Task, Tracing, distance, row_of, value};
 
 /// Most stages between fibres: one for each end of a slab and for each sample.
 const MOST_STAGES: usize = 20_000;
@@ -50,50 +52,6 @@ enum Phase {
     Fibres,
     /// Tasks by place.
     Slabs(usize),
-}
-
-/// A real point where the form is critical or the curve singular.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Critical {
-    pub point: Vec<Complex64>,
-    pub value: f64,
-    /// Whether the form is critical there in a regular way.
-    pub regular: bool,
-}
-
-/// What a stage between fibres is for.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Task {
-    pub slab: usize,
-    /// The value to which the form goes.
-    pub to: f64,
-    /// The level at the end of the slab, by place; `None` for samples.
-    pub level: Option<usize>,
-}
-
-/// A point of a fibre in the middle of a slab.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct FibrePoint {
-    pub point: Vec<Complex64>,
-    pub real: bool,
-}
-
-/// The current component.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Tracing {
-    pub form: Vec<[i32; 2]>,
-    /// Points on the slice of the level, then on all its forms.
-    start: Vec<Vec<Complex64>>,
-    pub critical: Vec<Critical>,
-    /// Values of the critical points, ascending, each once.
-    pub levels: Vec<f64>,
-    /// Values in the middle of the slabs: before the first level, between, after the last.
-    pub middles: Vec<f64>,
-    pub fibres: Vec<Vec<FibrePoint>>,
-    pub tasks: Vec<Task>,
-    /// Where the points of each task's slab came, in the order of the points.
-    pub ends: Vec<Vec<Option<End>>>,
-    pub doubts: Vec<String>,
 }
 
 /// Component by component.
@@ -517,23 +475,6 @@ fn form(with: &Context<'_>, number: u32) -> Vec<[i32; 2]> {
     form
 }
 
-/// The slice where the form has a value.
-pub(super) fn row_of(form: &[[i32; 2]], value: f64) -> Vec<Complex64> {
-    let coefficients = form
-        .iter()
-        .map(|&[re, im]| Complex64::new(f64::from(re), f64::from(im)));
-    std::iter::once(Complex64::new(-value, 0.0))
-        .chain(coefficients)
-        .collect()
-}
-
-/// The form at a point.
-pub(super) fn value(form: &[[i32; 2]], point: &[Complex64]) -> f64 {
-    let row = row_of(form, 0.0);
-    let terms = row[1..].iter().zip(point).map(|(c, x)| (c * x).re);
-    terms.sum()
-}
-
 /// The order of magnitude of the form on a component.
 fn size_of(operand: &Operand, form: &[[i32; 2]]) -> f64 {
     let row = row_of(form, 0.0);
@@ -556,14 +497,4 @@ fn critical_degree(with: &mut Context<'_>, form: &[[i32; 2]]) -> u32 {
     let degrees = cognate_systems::polynomial::degrees(&system);
     // A constant that is not 0 has degree 0, and one that vanishes has none.
     degrees.map_or(0, |degrees| degrees.total.last().copied().unwrap_or(0))
-}
-
-/// Distance relative to the size of the first, or to 1.
-pub(super) fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
-    let (mut apart, mut size) = (0.0, 1.0f64);
-    for (x, y) in a.iter().zip(b) {
-        apart += (x - y).norm_sqr();
-        size += x.norm_sqr();
-    }
-    (apart / size).sqrt()
 }

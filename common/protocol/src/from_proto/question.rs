@@ -1,7 +1,6 @@
 //! Questions to components inwards. Whether points and slices fit the system is the planner's business.
 
-use super::problem::points;
-use super::required;
+use super::{points, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::submission::Asked;
@@ -16,6 +15,10 @@ const MOST_COMPONENTS: usize = 100_000;
 
 /// A question with its components.
 pub fn question(m: v1::Question) -> Result<Asked, ProtocolError> {
+    asked(m).map_err(|e| e.within("question"))
+}
+
+fn asked(m: v1::Question) -> Result<Asked, ProtocolError> {
     if m.components.len() > MOST_COMPONENTS {
         return Err(ProtocolError::invalid(
             "components",

@@ -1,6 +1,6 @@
 //! Questions to components outwards.
 
-use super::problem::points;
+use super::points;
 use crate::submission::Asked;
 use crate::v1;
 use cognate_continuation::start_points::StoredPoints;

@@ -15,6 +15,9 @@ const COLORS: [&str; 7] = [
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000",
 ];
 
+/// From coordinates to pixels.
+type Placement<'a> = dyn Fn((f64, f64)) -> (f64, f64) + 'a;
+
 /// A coordinate that is shown: of which variable, and whether its imaginary part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisOf {
@@ -145,7 +148,7 @@ fn draw_arc(
     curve: &Value,
     edge: &Value,
     axes: &[AxisOf],
-    (place, color): (&dyn Fn((f64, f64)) -> (f64, f64), &str),
+    (place, color): (&Placement<'_>, &str),
 ) {
     let end = |k: usize| {
         let vertex = edge["ends"][k].as_u64()?;

@@ -1,6 +1,6 @@
 //! Arguments of the commands that ask components.
 
-use crate::client::arguments::{Format, OutputArguments, PresetName, ProgressArguments};
+use crate::client::common_arguments::{Format, OutputArguments, PresetName, ProgressArguments};
 use clap::Args;
 use cognate_solutions::witness::ComponentId;
 use cognate_worker::transport::connect::CredentialFiles;

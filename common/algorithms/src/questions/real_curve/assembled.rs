@@ -1,11 +1,10 @@
 //! The graph of a real curve, put together from what paths between fibres found.
 
 use super::super::{Context, Operand};
-use super::{Tracing, distance, value};
+use super::tracing::{End, FibrePoint, Tracing, distance, value};
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 
 /// An end of a path this near a critical point, relative to its size, is that point.
 const AT_CRITICAL: f64 = 1e-3;
@@ -15,16 +14,6 @@ const SAME: f64 = 1e-7;
 const SINGULAR: f64 = 1e-4;
 /// ... and not above this.
 const SMOOTH: f64 = 1e-3;
-
-/// Where a path came.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(in super::super) enum End {
-    Infinite,
-    At {
-        point: Vec<Complex64>,
-        regular: bool,
-    },
-}
 
 /// Vertices and arcs so far.
 struct Assembly<'a> {
@@ -96,7 +85,7 @@ impl<'a> Assembly<'a> {
             .fibres
             .iter()
             .map(|fibre| {
-                let arc = |p: &super::FibrePoint| {
+                let arc = |p: &FibrePoint| {
                     p.real.then(|| {
                         edges.push(CurveEdge {
                             ends: [None, None],
