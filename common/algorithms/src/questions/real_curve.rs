@@ -6,7 +6,7 @@
 //! Wampler: Finding all real points of a complex curve, Contemp. Math. 448, 2007).
 
 mod assembled;
-mod tracing;
+mod traced;
 
 use super::{Context, Operand};
 use crate::decomposition::deflated::equal_ones_merged;
@@ -20,7 +20,7 @@ use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use tracing::{Critical, End, FibrePoint, Task, Tracing, distance, row_of, value};
+use traced::{Critical, End, FibrePoint, Task, Tracing, distance, row_of, value};
 
 /// Most stages between fibres: one for each end of a slab and for each sample.
 const MOST_STAGES: usize = 20_000;

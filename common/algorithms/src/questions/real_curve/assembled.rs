@@ -1,7 +1,7 @@
 //! The graph of a real curve, put together from what paths between fibres found.
 
 use super::super::{Context, Operand};
-use super::tracing::{End, FibrePoint, Tracing, distance, value};
+use super::traced::{End, FibrePoint, Tracing, distance, value};
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};
 use num_complex::Complex64;
