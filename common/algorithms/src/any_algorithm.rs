@@ -8,6 +8,7 @@ use crate::monodromy::counts::LoopCounts;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::progress::Progress;
+use crate::questions::QuestionSolve;
 use crate::regeneration_solve::RegenerationSolve;
 use crate::solve::{Next, PathAlgorithm, Solve, StageNumbers};
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
@@ -21,7 +22,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 14;
+const VERSION: u8 = 15;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,6 +39,8 @@ pub enum AnySolve {
     Regeneration(Box<RegenerationSolve>),
     /// All components of one system.
     Decomposition(Box<DecompositionSolve>),
+    /// A question to components that are known.
+    Question(Box<QuestionSolve>),
 }
 
 /// A job: a solve, what is done with its endpoints afterwards, and the numbers of its stages.
@@ -84,6 +87,7 @@ impl AnySolve {
             Self::Decomposition(solve) => {
                 Self::Decomposition(Box::new(solve.with_max_retries(most)))
             }
+            Self::Question(solve) => Self::Question(Box::new(solve.with_max_retries(most))),
         }
     }
 
@@ -95,6 +99,7 @@ impl AnySolve {
             Self::Polyhedral(solve) => &**solve,
             Self::Regeneration(solve) => &**solve,
             Self::Decomposition(solve) => &**solve,
+            Self::Question(solve) => &**solve,
         }
     }
 
@@ -106,6 +111,7 @@ impl AnySolve {
             Self::Polyhedral(solve) => &mut **solve,
             Self::Regeneration(solve) => &mut **solve,
             Self::Decomposition(solve) => &mut **solve,
+            Self::Question(solve) => &mut **solve,
         }
     }
 }
@@ -153,7 +159,8 @@ impl AnyAlgorithm {
             | AnySolve::Parameter(_)
             | AnySolve::Polyhedral(_)
             | AnySolve::Regeneration(_)
-            | AnySolve::Decomposition(_) => None,
+            | AnySolve::Decomposition(_)
+            | AnySolve::Question(_) => None,
         }
     }
 
@@ -165,7 +172,21 @@ impl AnyAlgorithm {
             | AnySolve::Parameter(_)
             | AnySolve::Polyhedral(_)
             | AnySolve::Regeneration(_)
-            | AnySolve::Monodromy(_) => None,
+            | AnySolve::Monodromy(_)
+            | AnySolve::Question(_) => None,
+        }
+    }
+
+    /// The question to components with what was found, where it is one.
+    pub fn question(&self) -> Option<&QuestionSolve> {
+        match &self.solve {
+            AnySolve::Question(solve) => Some(&**solve),
+            AnySolve::ZeroDimensional(_)
+            | AnySolve::Parameter(_)
+            | AnySolve::Polyhedral(_)
+            | AnySolve::Regeneration(_)
+            | AnySolve::Monodromy(_)
+            | AnySolve::Decomposition(_) => None,
         }
     }
 
@@ -181,7 +202,10 @@ impl AnyAlgorithm {
             AnySolve::Polyhedral(solve) => Some(solve.results()),
             AnySolve::Regeneration(solve) => Some(solve.results()),
             AnySolve::ZeroDimensional(solve) => solve.paths().results_with_images(),
-            AnySolve::Parameter(_) | AnySolve::Monodromy(_) | AnySolve::Decomposition(_) => None,
+            AnySolve::Parameter(_)
+            | AnySolve::Monodromy(_)
+            | AnySolve::Decomposition(_)
+            | AnySolve::Question(_) => None,
         }
     }
 

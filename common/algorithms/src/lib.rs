@@ -17,6 +17,7 @@
 //! | parameters | solutions of other members of a family, from those of one | [`parameter_solve`] |
 //! | monodromy | solutions of a generic member, from one of them, by loops | [`monodromy`] |
 //! | decomposition | components of every dimension, by witness sets | [`decomposition`] |
+//! | questions | members, samples, images, degrees by groups of known components | [`questions`] |
 //!
 //! After any of these come [`closings`]: solutions get more digits and are proved. Inside all of them: [`retried_stage`] tracks again what failed or met. Paths meet that end at one
 //! regular point, or that entered the endgame at one point; a jump also shows where turns around an end are no
@@ -44,6 +45,7 @@ pub mod plan;
 pub mod plan_error;
 pub mod polyhedral_solve;
 pub mod progress;
+pub mod questions;
 pub mod regeneration_solve;
 pub mod retried_stage;
 pub mod run_locally;

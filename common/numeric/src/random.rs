@@ -33,6 +33,8 @@ pub enum Purpose {
     DeclaredConstant = 14,
     /// Liftings of supports.
     Lifting = 20,
+    /// Slices and projections of questions to components.
+    Question = 21,
 }
 
 /// A stream of random numbers.

@@ -74,7 +74,7 @@ fn of_starts(options: &Options) -> [(&'static str, bool, &'static [StartKind]); 
 impl Options {
     /// Whether the options go with each other; what the system says to them is the planner's business.
     pub fn check(&self) -> Result<(), OptionMisfit> {
-        if self.decompose.is_some() {
+        if self.decompose.is_some() || self.question.is_some() {
             return self.check_decomposition();
         }
         for (field, given, starts) in of_starts(self) {
@@ -95,8 +95,17 @@ impl Options {
         }
     }
 
-    /// A decomposition has a start of its own, and no isolated solutions to do something with.
+    /// A decomposition, or a question to components, has starts of its own, and no isolated solutions to do something
+    /// with.
     fn check_decomposition(&self) -> Result<(), OptionMisfit> {
+        let other = match &self.question {
+            Some(_) => "question",
+            None => "decompose",
+        };
+        if self.decompose.is_some() && self.question.is_some() {
+            let field = "decompose";
+            return Err(OptionMisfit::NotWith { field, other });
+        }
         let others = [
             ("start", self.start != StartKind::Auto),
             ("start_parameters", !self.start_parameters.is_empty()),
@@ -106,10 +115,7 @@ impl Options {
         ];
         let of_starts = of_starts(self).map(|(field, given, _)| (field, given));
         match others.iter().chain(&of_starts).find(|(_, given)| *given) {
-            Some((field, _)) => Err(OptionMisfit::NotWith {
-                field,
-                other: "decompose",
-            }),
+            Some((field, _)) => Err(OptionMisfit::NotWith { field, other }),
             None => Ok(()),
         }
     }

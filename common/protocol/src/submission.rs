@@ -2,7 +2,7 @@
 
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::{Preset, Settings};
-use cognate_solutions::witness::Method;
+use cognate_solutions::witness::{Method, Question, WitnessSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -73,6 +73,17 @@ pub struct Options {
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
     /// All irreducible components are wanted instead of isolated solutions.
     pub decompose: Option<Decompose>,
+    /// This is asked of known components instead of isolated solutions.
+    pub question: Option<Asked>,
+}
+
+/// What a client asks of components that are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    /// The components, each of the submitted system.
+    pub components: Vec<WitnessSet>,
+    /// What is asked of all of them.
+    pub question: Question,
 }
 
 /// Which components a client asks for.

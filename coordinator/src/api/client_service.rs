@@ -15,6 +15,7 @@ use cognate_protocol::error::{ProtocolError, within_limit};
 use cognate_protocol::limits::{self, OBJECT_BYTES};
 use cognate_protocol::v1::client_api_server::ClientApi;
 use cognate_protocol::{PROTOCOL_VERSION, from_proto, to_proto, v1};
+use cognate_solutions::witness::Decomposition;
 use futures::future::ready;
 use futures::{StreamExt, stream};
 use prost::Message;
@@ -33,6 +34,16 @@ const JOBS_LIMIT: u32 = 10_000;
 const LARGE_PROBLEM: usize = 1 << 20;
 /// Most workers in a list.
 const WORKERS_LIMIT: u32 = 10_000;
+
+/// A decomposition with what it is of.
+#[derive(serde::Serialize)]
+struct WithSystem {
+    #[serde(flatten)]
+    found: Decomposition,
+    /// The system, as JSON that is read as a problem.
+    system: String,
+    seed: u64,
+}
 
 /// The service for clients.
 pub struct ClientService {
@@ -255,9 +266,16 @@ impl ClientApi for ClientService {
         request: Request<v1::GetDecompositionRequest>,
     ) -> Result<Response<Self::GetDecompositionStream>, Status> {
         let job = job(&request.into_inner().job)?;
-        let found = self.context.coordinator.decomposition(job).await;
+        let coordinator = &self.context.coordinator;
+        let found = coordinator.decomposition(job).await;
         let found = found.map_err(ApiError::from)?;
-        let json = serde_json::to_vec(&found).expect("names and numbers can be written as JSON");
+        let (system, seed) = coordinator.decomposed(job).await.map_err(ApiError::from)?;
+        let object = WithSystem {
+            found,
+            system,
+            seed,
+        };
+        let json = serde_json::to_vec(&object).expect("names and numbers can be written as JSON");
         Ok(Response::new(pieces(json.into())))
     }
 

@@ -74,6 +74,7 @@ fn code(error: &CoordinatorError) -> Code {
         | CoordinatorError::Store(StoreError::Missing(_)) => Code::NotFound,
         CoordinatorError::NoResult { .. }
         | CoordinatorError::Decomposed(_)
+        | CoordinatorError::Answered(_)
         | CoordinatorError::NotDecomposed(_) => Code::FailedPrecondition,
         CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
         CoordinatorError::NotPlanned(_) | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => {

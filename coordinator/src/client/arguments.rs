@@ -3,9 +3,13 @@
 //! Options that belong to the command line but not to this version are parsed
 //! here and refused by `not_yet`, so that nothing is half there in silence.
 
+pub use super::common_arguments::{
+    Format, OutputArguments, PresetName, ProgressArguments, ProgressForm,
+};
 use super::connection::Target;
 use super::error::ClientError;
 use super::mechanism::arguments::MechanismCommand;
+use super::sets::arguments as sets;
 use crate::config::DEFAULT_ADDRESS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
@@ -57,6 +61,20 @@ pub enum Command {
     Convert(Convert),
     /// Every irreducible component of every dimension, with its degree and multiplicity
     Decompose(Decompose),
+    /// On which components points lie
+    Member(sets::Member),
+    /// Points of components
+    Sample(sets::Sample),
+    /// Dimension and degree of the images of components
+    Project(sets::Project),
+    /// Degrees of components by groups of variables
+    Multidegree(sets::Plain),
+    /// In how many directions points can be moved
+    Mobility(sets::Mobility),
+    /// Which witness points of components are proved
+    Certify(sets::Plain),
+    /// Loops, arcs and singular points of real curves
+    RealCurve(sets::RealCurve),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths
@@ -86,28 +104,6 @@ pub enum Command {
     /// As many workers in a batch system as the backlog asks for
     #[command(subcommand)]
     Fleet(Fleet),
-}
-
-/// How results are shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// A table for people
-    #[default]
-    Table,
-    /// One JSON object on standard output, nothing else there
-    Json,
-}
-
-/// How progress is shown, on standard error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum ProgressForm {
-    /// A bar on a terminal, else a line every few seconds, or nothing with --format json
-    #[default]
-    Auto,
-    /// A JSON object on a line whenever something has changed
-    Json,
-    /// Nothing
-    None,
 }
 
 /// Where the paths begin, as typed.
@@ -146,20 +142,6 @@ impl From<Start> for StartKind {
             Start::Monodromy => Self::Monodromy,
         }
     }
-}
-
-/// Named settings of the tracker, as typed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum PresetName {
-    /// Tighter steps, slower, fewest path jumps
-    Careful,
-    /// What the known answers are checked with
-    #[default]
-    Default,
-    /// Faster, more path jumps for the crossing check to repair
-    Fast,
-    /// Fastest; for experiments
-    Reckless,
 }
 
 /// A probability that is neither 0 nor 1.
@@ -261,27 +243,6 @@ pub struct ProblemArguments {
     /// rounding, where loops without anything new are only evidence
     #[arg(long)]
     pub trace_test: bool,
-}
-
-/// Where the answer goes.
-#[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Output")]
-pub struct OutputArguments {
-    /// How the answer is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
-    /// Also write summary.json, solutions.jsonl, paths.parquet and Bertini's files here
-    #[arg(long, value_name = "DIR")]
-    pub output: Option<PathBuf>,
-}
-
-/// What is seen while a job runs.
-#[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Output")]
-pub struct ProgressArguments {
-    /// How progress is shown on standard error
-    #[arg(long, value_enum, default_value_t)]
-    pub progress: ProgressForm,
 }
 
 /// Which coordinator is asked.
@@ -455,7 +416,7 @@ pub struct Decompose {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
-    /// Also write summary.json, decomposition.json and witness_points.jsonl here
+    /// Also write what `cognate member` and others read, and Bertini's input, witness_data and main_data, here
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// What is seen meanwhile.

@@ -5,6 +5,7 @@
 
 pub mod arguments;
 pub mod commands;
+pub mod common_arguments;
 pub mod config_file;
 pub mod connection;
 pub mod embedded;
@@ -14,6 +15,7 @@ pub mod mechanism;
 pub mod not_yet;
 pub mod output;
 pub mod problem;
+pub mod sets;
 pub mod synthesis;
 
 use arguments::{Arguments, Command};
@@ -61,6 +63,13 @@ fn in_runtime(command: Command) -> Result<Exit, ClientError> {
             Command::Solve(a) => commands::solve::run(&a).await,
             Command::Decompose(a) => commands::decompose::run(&a).await,
             Command::Synthesize(a) => commands::synthesize::run(&a).await,
+            Command::Member(a) => commands::question::member(&a).await,
+            Command::Sample(a) => commands::question::sample(&a).await,
+            Command::Project(a) => commands::question::project(&a).await,
+            Command::Multidegree(a) => commands::question::multidegree(&a).await,
+            Command::Mobility(a) => commands::question::mobility(&a).await,
+            Command::Certify(a) => commands::question::certify(&a).await,
+            Command::RealCurve(a) => commands::question::real_curve(&a).await,
             other => tokio::select! {
                 ended = one_shot(other) => ended,
                 () = interrupted() => Err(ClientError::Interrupted),
@@ -87,6 +96,13 @@ async fn one_shot(command: Command) -> Result<Exit, ClientError> {
         | Command::Path(_)
         | Command::Mechanism(_)
         | Command::Decompose(_)
+        | Command::Member(_)
+        | Command::Sample(_)
+        | Command::Project(_)
+        | Command::Multidegree(_)
+        | Command::Mobility(_)
+        | Command::RealCurve(_)
+        | Command::Certify(_)
         | Command::Coordinator(_)
         | Command::Worker(_)
         | Command::Synthesize(_) => unreachable!("these were run before"),

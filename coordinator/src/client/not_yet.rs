@@ -14,6 +14,13 @@ pub fn refuse(command: &Command) -> Result<(), ClientError> {
         Command::Submit(c) => precision(c.problem.precision),
         Command::Coordinator(c) => coordinator(c),
         Command::Watch(_)
+        | Command::Member(_)
+        | Command::Sample(_)
+        | Command::Project(_)
+        | Command::Multidegree(_)
+        | Command::Mobility(_)
+        | Command::RealCurve(_)
+        | Command::Certify(_)
         | Command::Explain(_)
         | Command::Cancel(_)
         | Command::Results(_)

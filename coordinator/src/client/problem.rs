@@ -114,12 +114,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         );
         return Err(wrong("--start-parameters", &message));
     }
-    let preset = match a.preset {
-        PresetName::Careful => Preset::Careful,
-        PresetName::Default => Preset::Default,
-        PresetName::Fast => Preset::Fast,
-        PresetName::Reckless => Preset::Reckless,
-    };
+    let preset = Preset::from(a.preset);
     let mut target_parameters = parameters(a.target_parameters.as_deref(), &system)?;
     if start_parameters.is_empty()
         && target_parameters.is_empty()
@@ -154,6 +149,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         warnings,
         sets,
         decompose: None,
+        question: None,
     };
     options.check().map_err(misfit)?;
     Ok(Prepared {
@@ -163,6 +159,17 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         },
         name: short_name(&a.file),
     })
+}
+
+impl From<PresetName> for Preset {
+    fn from(name: PresetName) -> Self {
+        match name {
+            PresetName::Careful => Self::Careful,
+            PresetName::Default => Self::Default,
+            PresetName::Fast => Self::Fast,
+            PresetName::Reckless => Self::Reckless,
+        }
+    }
 }
 
 /// The submission that asks for these components instead of isolated solutions.

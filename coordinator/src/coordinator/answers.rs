@@ -8,8 +8,9 @@ use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
 use crate::results::AnySummary;
 use crate::results::decomposition::DECOMPOSITION;
+use crate::results::question::ANSWER;
 use crate::results::summary::SOLUTIONS;
-use cognate_algorithms::AnyAlgorithm;
+use cognate_algorithms::{AnyAlgorithm, AnySolve};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
@@ -18,6 +19,7 @@ use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::Decomposition;
+use cognate_systems::formats;
 use serde_json::json;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -216,6 +218,9 @@ impl Coordinator {
         if self.store.is_of_kind(&DECOMPOSITION, digest).await? {
             return Err(CoordinatorError::Decomposed(job));
         }
+        if self.store.is_of_kind(&ANSWER, digest).await? {
+            return Err(CoordinatorError::Answered(job));
+        }
         let sets: Arc<Vec<SolutionSet>> = Arc::new(self.store.record(&SOLUTIONS, digest).await?);
         self.solutions.keep(digest, Arc::clone(&sets));
         Ok(sets)
@@ -230,6 +235,23 @@ impl Coordinator {
             }
             _ => Err(CoordinatorError::NotDecomposed(job)),
         }
+    }
+
+    /// What was decomposed, as JSON that is read as a problem, and the seed.
+    pub async fn decomposed(&self, job: JobId) -> Result<(String, u64), CoordinatorError> {
+        let row = self.solved(job).await?;
+        let planned = Planned::from_bytes(&row.asked.options)?;
+        let state: Vec<u8> = self.store.record(&STATE, planned.first_state).await?;
+        let unreadable = |error: String| {
+            CoordinatorError::Problem(format!("the system of job {job} cannot be read: {error}"))
+        };
+        let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
+        let AnySolve::Decomposition(solve) = algorithm.solve() else {
+            return Err(CoordinatorError::NotDecomposed(job));
+        };
+        let system = solve.system().map_err(|e| unreadable(e.to_string()))?;
+        let text = formats::json::write(&system).map_err(|e| unreadable(e.to_string()))?;
+        Ok((text, solve.seed()))
     }
 
     /// All paths of a solved job, by their indices.

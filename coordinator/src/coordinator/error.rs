@@ -41,8 +41,11 @@ pub enum CoordinatorError {
     /// The job has components, not solutions.
     #[error("job {0} is a decomposition: it has witness points, and no list of solutions or paths")]
     Decomposed(JobId),
+    /// The job has an answer of components, not solutions.
+    #[error("job {0} is a question to components: its answer is its summary")]
+    Answered(JobId),
     /// The job has solutions, not components.
-    #[error("job {0} is no decomposition: it has solutions, and no witness points")]
+    #[error("job {0} is no decomposition: it has no witness points")]
     NotDecomposed(JobId),
     /// A worker's report is no result of its chunk.
     #[error("the report of lease {lease} is no result of its chunk: {what}")]

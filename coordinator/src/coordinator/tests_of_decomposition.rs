@@ -3,7 +3,9 @@
 use super::simulation::*;
 use super::*;
 use crate::ledger::rows::JobRow;
-use cognate_protocol::submission::Decompose;
+use crate::results::AnySummary;
+use cognate_protocol::submission::{Asked, Decompose};
+use cognate_solutions::witness::Question;
 
 /// A double line, a parabola, and a circle.
 fn problem() -> NewProblem {
@@ -37,4 +39,37 @@ async fn quiet() -> JobRow {
 async fn any_cluster_finds_the_same_components() {
     let reference = quiet().await;
     check_any_cluster(&problem(), &reference, &[1, 2, 3], 24).await;
+}
+
+/// The real curve of the parabola and the circle, by the witness sets that a decomposition found.
+async fn question() -> NewProblem {
+    let (cluster, _) = undisturbed(&problem()).await;
+    let found = cluster.coordinator(0).decomposition(cluster.job).await;
+    let mut components = found.unwrap().components;
+    components.retain(|set| set.deflation.is_empty());
+    let mut asked = problem();
+    asked.options.decompose = None;
+    asked.options.question = Some(Asked {
+        components,
+        question: Question::RealCurve { samples: 1 },
+    });
+    asked
+}
+
+#[tokio::test]
+async fn any_cluster_gives_the_same_answer() {
+    let question = question().await;
+    let (cluster, reference) = undisturbed(&question).await;
+    let coordinator = cluster.coordinator(0);
+    let (summary, _) = coordinator.summary(cluster.job).await.unwrap();
+    let AnySummary::Question(summary) = summary else {
+        panic!("{summary:?}");
+    };
+    assert!(summary.settled, "{:?}", summary.unsettled);
+    let components = summary.components.unwrap();
+    let sum = |field: &str| -> u64 { components.iter().filter_map(|c| c[field].as_u64()).sum() };
+    assert_eq!((sum("closed_loops"), sum("unbounded_arcs")), (1, 1));
+    let refused = coordinator.solutions(cluster.job).await;
+    assert!(matches!(refused, Err(CoordinatorError::Answered(_))));
+    check_any_cluster(&question, &reference, &[1, 2], 24).await;
 }

@@ -14,6 +14,7 @@ use crate::ledger::identity::{ChunkId, Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::decomposition::{DECOMPOSITION, DecompositionSummary};
+use crate::results::question::{ANSWER, QuestionSummary};
 use crate::results::store::Store;
 use crate::results::summary::{self, LargeAnswer, Summary};
 use cognate_algorithms::Opening;
@@ -330,6 +331,17 @@ impl Drive {
             let end = JobEnd::Solved { solutions, summary };
             ledger.finish(self.job, self.epoch, end).await?;
             tracing::info!(job = %self.job, "the job is decomposed");
+            return Ok(());
+        }
+        if let Some(asked) = self.steward().question()
+            && let Some(answer) = asked.answer()
+        {
+            let summary = QuestionSummary::new(&row, &self.planned, asked, &stages, &workers, now);
+            let solutions = store.put_record(&ANSWER, answer.clone()).await?;
+            let summary = store.put(summary.to_json().into()).await?;
+            let end = JobEnd::Solved { solutions, summary };
+            ledger.finish(self.job, self.epoch, end).await?;
+            tracing::info!(job = %self.job, "the question is answered");
             return Ok(());
         }
         let mut sets = self.at_work(|steward| steward.solution_sets()).await;

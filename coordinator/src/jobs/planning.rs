@@ -8,6 +8,7 @@ use crate::results::store::RecordKind;
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, ProblemError};
 use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
+use cognate_algorithms::questions::{QuestionError, QuestionSolve};
 use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::start_costs::StartKind as PlannedStart;
 use cognate_algorithms::{AnySolve, Next, PathAlgorithm, PlanError};
@@ -15,8 +16,9 @@ use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{DamagedPoints, Digest, StoredPoints};
+use cognate_continuation::work::Work;
 use cognate_protocol::submission::{
-    Decompose, Options, PrecisionChoice, StartKind, StartSolutions,
+    Asked, Decompose, Options, PrecisionChoice, StartKind, StartSolutions,
 };
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_systems::system::System;
@@ -88,6 +90,9 @@ pub enum PlanningError {
     /// The system cannot be decomposed.
     #[error(transparent)]
     Decomposition(#[from] ProblemError),
+    /// The question cannot be asked.
+    #[error("question: {0}")]
+    Question(#[from] QuestionError),
     /// The object of start solutions is none.
     #[error("the start solutions cannot be used: {0}")]
     StartSolutions(#[from] DamagedPoints),
@@ -166,13 +171,15 @@ pub fn plan_job(
     counting_operations: u64,
 ) -> Result<Plan, PlanningError> {
     let decompose = options.decompose;
+    let asked = options.question.clone();
     let options = PlanOptions {
         counting_operations,
         ..plan_options(options, start_solutions)?
     };
-    let plan = match decompose {
-        Some(wanted) => plan_decomposition(system, wanted, options.clone())?,
-        None => plan(system, &options)?,
+    let plan = match (decompose, asked) {
+        (_, Some(asked)) => plan_question(system, &asked, options.clone())?,
+        (Some(wanted), None) => plan_decomposition(system, wanted, options.clone())?,
+        (None, None) => plan(system, &options)?,
     };
     let points = start_solutions.map(StoredPoints::from_bytes).transpose()?;
     let given = options.start_points.map(|start| start.object).zip(points);
@@ -181,12 +188,48 @@ pub fn plan_job(
         let found = given.as_ref().filter(|(object, _)| *object == wanted);
         found.map(|(_, points)| Arc::clone(points))
     };
-    if let Next::Open(opening) = plan.algorithm.clone().next() {
+    if let Next::Open(opening) = plan.algorithm.clone().next()
+        && matches!(opening.stage.work, Work::Track | Work::CountMixedCells)
+    {
         let find = |wanted: Digest| opening.object(wanted).or_else(|| find(wanted));
         let system = opening.system.as_deref().unwrap_or(&plan.system);
         PreparedWork::check(system, &opening.stage, &find)?;
     }
     Ok(plan)
+}
+
+/// How paths on components are tracked, and at which values of the parameters.
+fn tracking_of_components(options: PlanOptions) -> Result<DecompositionOptions, PlanningError> {
+    let mut targets = options.target_parameters;
+    let parameters = match targets.len() {
+        0 | 1 => targets.pop().unwrap_or_default(),
+        several => return Err(PlanError::SeveralTargets(several).into()),
+    };
+    Ok(DecompositionOptions {
+        seed: options.seed,
+        parameters,
+        settings: options.settings,
+        tolerances: options.tolerances,
+        max_retries: options.max_retries,
+        ..DecompositionOptions::default()
+    })
+}
+
+/// The plan that answers a question to components.
+fn plan_question(
+    system: &System,
+    asked: &Asked,
+    options: PlanOptions,
+) -> Result<Plan, PlanningError> {
+    let options = tracking_of_components(options)?;
+    let solve = QuestionSolve::new(system, &options, &asked.components, &asked.question)?;
+    Ok(Plan {
+        system: system.clone(),
+        algorithm: AnySolve::Question(Box::new(solve)).into(),
+        start: PlannedStart::Cascade,
+        paths: None,
+        why: "components are asked that are known: their slices move".into(),
+    })
 }
 
 /// The plan that finds all components.
@@ -195,23 +238,13 @@ fn plan_decomposition(
     wanted: Decompose,
     options: PlanOptions,
 ) -> Result<Plan, PlanningError> {
-    let mut targets = options.target_parameters;
-    let parameters = match targets.len() {
-        0 | 1 => targets.pop().unwrap_or_default(),
-        several => return Err(PlanError::SeveralTargets(several).into()),
-    };
     let default = DecompositionOptions::default();
     let options = DecompositionOptions {
-        seed: options.seed,
-        parameters,
         dimensions: wanted.dimensions.map(|[lowest, highest]| lowest..=highest),
-        settings: options.settings,
-        tolerances: options.tolerances,
-        max_retries: options.max_retries,
         idle_loops: wanted.idle_loops.unwrap_or(default.idle_loops),
         method: wanted.method,
         verify: wanted.verify,
-        ..default
+        ..tracking_of_components(options)?
     };
     let solve = DecompositionSolve::new(system, &options)?;
     Ok(Plan {

@@ -6,6 +6,7 @@
 
 use crate::ledger::rows::StageRow;
 use crate::results::summary::MonodromyBlock;
+use cognate_algorithms::questions::QuestionSolve;
 use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
@@ -146,6 +147,11 @@ impl Steward {
     /// The components, where the job asks for them and all is done.
     pub fn decomposition(&self) -> Option<&Decomposition> {
         self.algorithm.decomposition()
+    }
+
+    /// The question to components with its answer, where the job is one and all is done.
+    pub fn question(&self) -> Option<&QuestionSolve> {
+        self.algorithm.question()
     }
 
     /// How the solutions were found, in a solve by monodromy.

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Decompositions as objects.
-pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC02");
+pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC03");
 
 /// More isolated points than these stand together, by multiplicity.
 const MOST_POINTS_LISTED: usize = 1000;
@@ -128,7 +128,7 @@ pub struct EvidenceBlock {
     pub loops: u32,
     /// Precision of the derivatives, in bits; `null` for a point.
     pub precision_bits: Option<u32>,
-    /// Least gap between singular values that were taken as 0 and as not 0; not kept yet.
+    /// Least gap between singular values that were taken as not 0 and as 0.
     pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: Option<f64>,
@@ -243,7 +243,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
             smallest_wrong_union: evidence.smallest_wrong_union.and_then(finite),
             loops: evidence.loops,
             precision_bits: evidence.trace.map(|trace| trace.precision_bits),
-            rank_gap: None,
+            rank_gap: evidence.rank_gap.and_then(finite),
             worst_condition: finite(evidence.worst_condition),
             doubts: evidence.doubts.clone(),
         },

@@ -10,6 +10,7 @@ impl AnySummary {
         match self {
             Self::Solve(summary) => summary.lines(),
             Self::Decomposition(summary) => summary.lines(),
+            Self::Question(summary) => summary.lines(),
         }
     }
 }

@@ -29,7 +29,7 @@ pub struct DecompositionCosts {
 impl DecompositionCosts {
     /// Those of a system; nothing is followed.
     pub fn of(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
-        let problem = Problem::new(system, super::tracking_of(options), options)?;
+        let problem = Problem::of_options(system, options)?;
         let bounds = Method::ALL.map(|method| (method.name(), bound(&problem, method)));
         Ok(Self {
             variables: system.variable_count() as u64,

@@ -13,7 +13,7 @@ use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::witness::Multiplicity;
 use cognate_systems::system::{System, VariableGroup};
-use cognate_systems::transform::{deflate, slice};
+use cognate_systems::transform::{critical, deflate, fibre, slice};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
@@ -49,7 +49,7 @@ const SAME: f64 = 1e-14;
 
 /// Witness points that are to be told apart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct PureSet {
+pub(crate) struct PureSet {
     pub dimension: usize,
     /// Rank of the Jacobian before each deflation.
     pub ranks: Vec<u32>,
@@ -114,18 +114,23 @@ impl PureSet {
 }
 
 /// The first coordinates of a point.
-pub(super) fn doubles(point: &RefinedPoint, own: usize) -> Vec<Complex64> {
+pub(crate) fn doubles(point: &RefinedPoint, own: usize) -> Vec<Complex64> {
     point.point[..own].iter().map(rounded).collect()
 }
 
 /// A point of a multiple set at which the equations are regular after these deflations.
 #[derive(Clone, Debug)]
-pub(super) struct DeflatedPoint {
+pub(crate) struct DeflatedPoint {
     ranks: Vec<u32>,
     pub refined: RefinedPoint,
 }
 
 impl DeflatedPoint {
+    /// Rank of the Jacobian before each deflation.
+    pub fn ranks(&self) -> &[u32] {
+        &self.ranks
+    }
+
     /// Whether the given equations are regular there.
     pub fn is_reduced(&self) -> bool {
         self.ranks.is_empty()
@@ -134,7 +139,7 @@ impl DeflatedPoint {
 
 /// A point of a multiple set.
 #[derive(Clone, Debug)]
-pub(super) struct Multiple {
+pub(crate) struct Multiple {
     pub point: DeflatedPoint,
     /// Its multiplicity, where it is known.
     pub scheme: Option<u64>,
@@ -159,7 +164,7 @@ impl Multiple {
 }
 
 /// Refined points with how many paths came to each, each point once.
-pub(super) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(RefinedPoint, u64)> {
+pub(crate) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(RefinedPoint, u64)> {
     let first = |k: usize| points[k].0.point.first().map_or(0.0, |z| rounded(z).re);
     let mut by_first: Vec<usize> = (0..points.len()).collect();
     by_first.sort_by(|&a, &b| first(a).total_cmp(&first(b)));
@@ -187,13 +192,34 @@ pub(super) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(Refine
 
 /// Deflated equations by their ranks, made once.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Deflations {
+pub(crate) struct Deflations {
     systems: BTreeMap<Vec<u32>, Arc<System>>,
     of_stages: BTreeMap<StageSystem, Arc<System>>,
     sliced: BTreeMap<(Vec<u32>, usize), Arc<SlicedEquations>>,
+    /// Slices instead of the problem's.
+    slices: Option<Vec<Vec<Complex64>>>,
+    movable: Movable,
+}
+
+/// Equations by their ranks, compiled once, whose slices are exchanged. A copy begins without them.
+#[derive(Debug, Default)]
+struct Movable(BTreeMap<Vec<u32>, SlicedEquations>);
+
+impl Clone for Movable {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl Deflations {
+    /// Equations with these slices instead of the problem's.
+    pub fn on_slices(slices: Vec<Vec<Complex64>>) -> Self {
+        Self {
+            slices: Some(slices),
+            ..Self::default()
+        }
+    }
+
     fn system(&mut self, problem: &Problem, ranks: &[u32]) -> Arc<System> {
         if let Some(known) = self.systems.get(ranks) {
             return Arc::clone(known);
@@ -219,6 +245,11 @@ impl Deflations {
             StageSystem::Cut { dimension, factor } => {
                 let cut = problem.cut(*dimension, *factor as usize);
                 Arc::new(cut.expect("it has been made of equations with degrees"))
+            }
+            StageSystem::Critical { form } => Arc::new(critical(&problem.curve_equations(), form)),
+            StageSystem::Fibre { form, values } => {
+                let values = values.map(f64::from_bits);
+                Arc::new(fibre(&problem.curve_equations(), form, values))
             }
             StageSystem::Sliced { dimension } => {
                 Arc::new(slice(&problem.given, *dimension, problem.variables()))
@@ -247,7 +278,9 @@ impl Deflations {
             return Arc::clone(known);
         }
         let system = self.system(problem, ranks);
-        let made = Arc::new(SlicedEquations::new(&system, problem.slices(dimension)));
+        let slices = self.slices.clone();
+        let slices = slices.unwrap_or_else(|| problem.slices(dimension));
+        let made = Arc::new(SlicedEquations::new(&system, slices));
         self.sliced.insert(key, Arc::clone(&made));
         made
     }
@@ -317,6 +350,86 @@ impl Deflations {
             *place = exactly(-multiplier);
         }
         longer
+    }
+
+    /// Whether these deflations, which somebody else names, can be made.
+    pub fn admits(&mut self, problem: &Problem, ranks: &[u32]) -> bool {
+        if ranks.len() > MOST_DEFLATIONS {
+            return false;
+        }
+        let mut unknowns = problem.variables();
+        for (depth, &rank) in ranks.iter().enumerate() {
+            let rank = rank as usize;
+            if rank >= unknowns || unknowns + rank >= MOST_UNKNOWNS {
+                return false;
+            }
+            let system = self.system(problem, &ranks[..depth]);
+            if system.expressions.nodes().len() >= MOST_NODES {
+                return false;
+            }
+            unknowns += rank + 1;
+        }
+        true
+    }
+
+    /// Points on these slices, each `None` where the equations are not regular there after these deflations, or
+    /// where Newton's method leaves.
+    pub fn points_on(
+        &mut self,
+        problem: &Problem,
+        (slices, ranks): (&[Vec<Complex64>], &[u32]),
+        points: &[Vec<Complex64>],
+    ) -> Vec<Option<RefinedPoint>> {
+        let known = self.movable.0.remove(ranks);
+        let mut equations = known.unwrap_or_else(|| {
+            let system = self.system(problem, ranks);
+            SlicedEquations::new(&system, Vec::new())
+        });
+        equations.set_slices(slices.to_vec());
+        let mut refine = |values: &Vec<Complex64>| {
+            let mut start: Vec<Number> = values.iter().map(|&z| exactly(z)).collect();
+            for depth in 1..=ranks.len() {
+                start = self.with_multipliers(problem, slices.len(), &ranks[..depth], &start);
+            }
+            let refined = equations.refine(&start);
+            refined.filter(|refined| settled(refined, MOVED))
+        };
+        let refined = points.iter().map(&mut refine).collect();
+        self.movable.0.insert(ranks.to_vec(), equations);
+        refined
+    }
+
+    /// The least gap between singular values that were taken as not 0 and as 0: before each deflation at the rank that
+    /// it uses, and after the last at the rank that the dimension leaves. Where there is no further singular value
+    /// rounding error stands for it.
+    pub fn rank_gap(
+        &mut self,
+        problem: &Problem,
+        (dimension, ranks): (usize, &[u32]),
+        point: &RefinedPoint,
+    ) -> f64 {
+        let mut least = f64::INFINITY;
+        for depth in 0..=ranks.len() {
+            let system = self.system(problem, &ranks[..depth]);
+            let unknowns = system.variable_count();
+            let rank = match ranks.get(depth) {
+                Some(&rank) => rank as usize,
+                None => unknowns - dimension,
+            };
+            let equations = SlicedEquations::new(&system, Vec::new());
+            let values = equations.singular_values(&point.point[..unknowns]);
+            let largest = values.first().copied().unwrap_or(0.0);
+            let before = rank.checked_sub(1).and_then(|k| values.get(k));
+            let before = before.copied().unwrap_or(largest);
+            let after = values.get(rank).copied().unwrap_or(0.0);
+            least = least.min(before / after.max(f64::EPSILON * largest));
+        }
+        least
+    }
+
+    /// The equations after these deflations.
+    pub fn equations(&mut self, problem: &Problem, ranks: &[u32]) -> Arc<System> {
+        self.system(problem, ranks)
     }
 
     /// The set of these points at which the given equations are regular.

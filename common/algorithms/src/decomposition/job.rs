@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// What a stage is tracked with.
 #[derive(Clone, Debug)]
-pub(super) struct Tracking {
+pub(crate) struct Tracking {
     pub settings: Settings,
     pub tolerances: Tolerances,
     pub max_retries: u16,
@@ -28,7 +28,7 @@ pub(super) struct Tracking {
 
 /// The system that a stage is of: what is written down of it, so that it can be made again.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) enum StageSystem {
+pub(crate) enum StageSystem {
     /// Combinations of the equations, as many as there are variables.
     Staircase,
     /// All given equations with the slices of this dimension.
@@ -50,6 +50,19 @@ pub(super) enum StageSystem {
         dimension: usize,
         /// Which factor.
         factor: u32,
+    },
+    /// Combinations of the equations that cut out curves, with the equation of the points that are critical for a real
+    /// linear form.
+    Critical {
+        /// Coefficients of the form: real and imaginary parts.
+        form: Vec<[i32; 2]>,
+    },
+    /// The same combinations, with fibres of the form.
+    Fibre {
+        /// Coefficients of the form: real and imaginary parts.
+        form: Vec<[i32; 2]>,
+        /// Bits of the values from which and to which the form goes.
+        values: [u64; 2],
     },
     /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
     Tracked {
@@ -75,7 +88,7 @@ enum Doing {
 
 /// One stage, and all that belongs to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Job {
+pub(crate) struct Job {
     pub system: StageSystem,
     work: Doing,
 }
@@ -135,6 +148,19 @@ impl Job {
         self
     }
 
+    /// Paths from these points along the path variable of the system.
+    pub fn along(
+        (description, system): (StageSystem, &System),
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        let homotopy = HomotopyKind::PathVariable {
+            parameters: vec![Complex64::default()],
+        };
+        let first = opening(Work::Track, homotopy, stored(points), with);
+        Self::tracked((description, system), first, with)
+    }
+
     /// Whether these candidates at the only target are isolated.
     pub fn isolate(
         system: StageSystem,
@@ -153,6 +179,20 @@ impl Job {
             Arc::new(candidates),
             with,
         )
+    }
+
+    /// Whether these points on slices are proved to be near solutions.
+    pub fn certify(
+        system: StageSystem,
+        slices: Vec<Complex64>,
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        let homotopy = HomotopyKind::Parameter {
+            start: slices.clone(),
+            targets: vec![slices],
+        };
+        Self::ask(system, Work::Certify, homotopy, stored(points), with)
     }
 
     /// How these witness points move when the parameters go from the first to the second.

@@ -11,15 +11,15 @@
 
 mod cascade;
 mod costs;
-mod deflated;
+pub(crate) mod deflated;
 mod equations;
-mod job;
+pub(crate) mod job;
 mod junk;
 mod options;
-mod problem;
+pub(crate) mod problem;
 mod slices;
-mod split;
-mod superset;
+pub(crate) mod split;
+pub(crate) mod superset;
 
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
@@ -37,7 +37,7 @@ use cognate_systems::system::System;
 pub use costs::DecompositionCosts;
 use deflated::{Deflations, PureSet};
 use equations::{Equations, Prefixes};
-use job::{Job, StageSystem, Tracking};
+use job::{Job, StageSystem};
 use junk::Sieve;
 pub use options::DecompositionOptions;
 use problem::Problem;
@@ -134,17 +134,8 @@ impl TryFrom<State> for DecompositionSolve {
     }
 }
 
-fn tracking_of(options: &DecompositionOptions) -> Tracking {
-    Tracking {
-        settings: options.settings.clone(),
-        tolerances: options.tolerances.clone(),
-        max_retries: options.max_retries,
-        seed: options.seed,
-    }
-}
-
 fn problem_of(system: &System, options: &DecompositionOptions) -> Result<Problem, ProblemError> {
-    Problem::new(system, tracking_of(options), options)
+    Problem::of_options(system, options)
 }
 
 impl DecompositionSolve {
@@ -236,7 +227,7 @@ impl DecompositionSolve {
                 state.sets.retain(|set| asked(set.dimension));
             }
             Step::Split(split) => {
-                let (found, dimension) = split.components(problem);
+                let (found, dimension) = split.components(problem, &mut self.deflations);
                 state.components.extend(found);
                 let of = state.dimensions.iter_mut();
                 if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
@@ -329,6 +320,17 @@ impl DecompositionSolve {
         };
         found.check_counts();
         found
+    }
+
+    /// The system at the values of its parameters.
+    pub fn system(&self) -> Result<System, ProblemError> {
+        problem::with_values(&self.state.system, &self.state.options.parameters)
+            .map(std::borrow::Cow::into_owned)
+    }
+
+    /// Seed of everything random.
+    pub fn seed(&self) -> u64 {
+        self.state.options.seed
     }
 
     /// What was found, when `next` has said `Done`.

@@ -67,7 +67,7 @@ impl From<PolynomialError> for ProblemError {
 
 /// The equations in one affine group, and all that is made of them once.
 #[derive(Debug)]
-pub(super) struct Problem {
+pub(crate) struct Problem {
     /// The equations that are given, and patches; each scaled to about 1.
     pub given: Arc<System>,
     degrees: Degrees,
@@ -97,7 +97,21 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    pub fn new(
+    /// The problem with the tracking that the options ask for.
+    pub fn of_options(
+        system: &System,
+        options: &DecompositionOptions,
+    ) -> Result<Self, ProblemError> {
+        let tracking = Tracking {
+            settings: options.settings.clone(),
+            tolerances: options.tolerances.clone(),
+            max_retries: options.max_retries,
+            seed: options.seed,
+        };
+        Self::new(system, tracking, options)
+    }
+
+    fn new(
         system: &System,
         tracking: Tracking,
         options: &DecompositionOptions,
@@ -276,12 +290,40 @@ impl Problem {
         self.scaling.to_variables(point)
     }
 
+    /// Slices that are given in the variables of the system, in those that are tracked.
+    pub fn tracked_slices(&self, slices: &[Vec<Complex64>]) -> Vec<Vec<Complex64>> {
+        let tracked = |row: &Vec<Complex64>| {
+            let coefficients = self.scaling.to_variables(&row[1..]);
+            row[..1].iter().copied().chain(coefficients).collect()
+        };
+        slices.iter().map(tracked).collect()
+    }
+
+    /// A point that is given in the variables of the system, in those that are tracked.
+    pub fn to_unknowns(&self, point: &[Complex64]) -> Vec<Complex64> {
+        self.scaling.to_unknowns(point)
+    }
+
     /// As many combinations of the equations of a system as cut out a set of this dimension, and its slices.
     pub fn tracked(&self, equations: &System, dimension: usize) -> Result<System, ProblemError> {
         let of = degrees(equations)?;
         let rows = equations.variable_count() - dimension;
         let rows = combine(equations, &of, rows, self.seed());
         Ok(slice(&rows, dimension, self.variables()))
+    }
+
+    /// As many combinations of the equations as cut out curves.
+    pub fn curve_equations(&self) -> System {
+        let mut rows = combine(
+            &self.given,
+            &self.degrees,
+            self.variables() - 1,
+            self.seed(),
+        );
+        rows.symmetry.clear();
+        rows.conjugates.clear();
+        rows.degenerate.clear();
+        rows
     }
 
     /// The first rows of the staircase with the slices of that dimension.
@@ -361,7 +403,7 @@ impl FactorValues {
 
 /// How well an equation must hold at a point.
 #[derive(Debug)]
-pub(super) struct Known {
+pub(crate) struct Known {
     /// What it is, relative to how its degree lets it grow: rounding error below this.
     value: f64,
     /// How far it is from where it is 0, relative to the point's size: none below the first, some above the
@@ -371,13 +413,26 @@ pub(super) struct Known {
 }
 
 /// A point that was refined to 32 digits.
-pub(super) const REFINED: Known = Known {
+pub(crate) const REFINED: Known = Known {
     value: 1e-26,
     distance: 1e-16,
     other_distance: 1e-9,
 };
+impl Known {
+    /// What is asked of a point that is known to this accuracy, relative to its size: only what is clearly no
+    /// solution is called none.
+    pub fn to_accuracy(accuracy: f64) -> Self {
+        let accuracy = accuracy.max(f64::EPSILON);
+        Self {
+            value: 1e2 * accuracy,
+            distance: 1e2 * accuracy,
+            other_distance: (1e4 * accuracy).min(1e-4).max(1e2 * accuracy),
+        }
+    }
+}
+
 /// A singular end of a path, known to some 8 digits.
-pub(super) const SINGULAR: Known = Known {
+pub(crate) const SINGULAR: Known = Known {
     value: 1e-14,
     distance: 1e-5,
     other_distance: 1e-4,
@@ -424,7 +479,7 @@ fn without_vanishing(system: Cow<'_, System>) -> Cow<'_, System> {
 }
 
 /// The system with these values of its parameters.
-fn with_values<'a>(
+pub(crate) fn with_values<'a>(
     system: &'a System,
     values: &[Complex64],
 ) -> Result<Cow<'a, System>, ProblemError> {

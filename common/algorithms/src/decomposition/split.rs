@@ -33,6 +33,10 @@ const NOISY: f64 = 1e-16;
 const LEAST_NOISE: f64 = 1e-28;
 /// Most classes of which all unions are tried.
 const MOST_CLASSES: usize = 16;
+/// Most parts of a class of which all unions are tried, to tell a false loop.
+const MOST_PARTS: usize = 12;
+/// Witness points of a set whose ranks are looked at.
+const GAPS_ASKED: usize = 16;
 /// Most loops in all.
 const MOST_LOOPS: u32 = 200;
 /// A path that came back is at a witness point within this, relative to the point.
@@ -50,6 +54,19 @@ struct Class {
     closed: Option<Trace>,
 }
 
+/// What is known of the loops that brought a closed class together.
+enum Loops {
+    /// Without any of them no proper part is closed.
+    Sound,
+    /// Without one of them there are more parts than unions of them can be tried.
+    Untested,
+    /// Without this one it falls into these parts, some of which are closed together.
+    Jumped {
+        number: usize,
+        parts: Vec<Vec<usize>>,
+    },
+}
+
 /// One set on its way to components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Split {
@@ -61,6 +78,8 @@ pub(super) struct Split {
     loops: u32,
     idle: u32,
     broken: u64,
+    /// Where each loop took each point, without those that came back to themselves.
+    edges: Vec<Vec<[usize; 2]>>,
     /// The leg that is open, its points, and the witness points where its paths began.
     leg: usize,
     travellers: Vec<usize>,
@@ -85,6 +104,7 @@ impl Split {
             loops: 0,
             idle: 0,
             broken: 0,
+            edges: Vec::new(),
             leg: 0,
             travellers: Vec::new(),
             mirroring: false,
@@ -206,7 +226,8 @@ impl Split {
         self.close(own);
         let open = self.open().count();
         let more = self.idle < problem.idle_loops && self.loops < MOST_LOOPS;
-        if open <= 1 || self.hopeless(own) || !more {
+        let untested = self.open().any(|class| self.is_untested(class, own));
+        if (open <= 1 && !untested) || self.hopeless(own) || !more {
             return None;
         }
         self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
@@ -272,20 +293,11 @@ impl Split {
         self.loops += 1;
         self.leg = 0;
         let before = self.classes.len();
-        for (&from, to) in self.travellers.iter().zip(images) {
-            let place = |classes: &[Class], point: usize| {
-                let holds = |class: &Class| class.points.contains(&point);
-                classes
-                    .iter()
-                    .position(holds)
-                    .expect("every point has a class")
-            };
-            let (a, b) = (place(&self.classes, from), place(&self.classes, to));
-            if a != b {
-                let joined = self.classes.remove(a.max(b));
-                self.classes[a.min(b)].points.extend(joined.points);
-            }
-        }
+        let pairs = self.travellers.iter().zip(images);
+        let moved = pairs.filter(|(from, to)| **from != *to);
+        let edge: Vec<[usize; 2]> = moved.map(|(&from, to)| [from, to]).collect();
+        join(&mut self.classes, &edge);
+        self.edges.push(edge);
         match self.classes.len() < before {
             true => self.idle = 0,
             false => self.idle += 1,
@@ -321,23 +333,7 @@ impl Split {
 
     /// The sum of second derivatives over these points.
     fn trace(&self, points: impl Iterator<Item = usize>, own: usize) -> Trace {
-        let mut sum = vec![Number::zero(()); own];
-        let (mut lengths, mut errors) = (0.0, 0.0);
-        for k in points {
-            let bend = &self.bends()[k];
-            let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
-            lengths += length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
-            errors += bend.error;
-            for (sum, t) in sum.iter_mut().zip(&bend.acceleration) {
-                sum.add(t);
-            }
-        }
-        let sum: Vec<Complex64> = sum.iter().map(rounded).collect();
-        Trace {
-            deviation: bounded(length(&sum) / lengths),
-            noise: bounded(errors / lengths).max(LEAST_NOISE),
-            precision_bits: 106,
-        }
+        trace_of(points.map(|k| &self.bends()[k]), own)
     }
 
     /// Whether not even all open points together are closed: some are missing, and no loop helps.
@@ -346,10 +342,82 @@ impl Split {
         !is_closed(&self.trace(all, own))
     }
 
+    /// Takes back what loops did in which paths jumped from one component to another: classes that one loop brought
+    /// together to a closed one, of which a proper part is closed without it. No proper part of a component is.
+    fn take_jumps_back(&mut self, own: usize) {
+        let mut k = 0;
+        while k < self.classes.len() {
+            let class = &self.classes[k];
+            if let (None, Loops::Jumped { number, parts }) =
+                (&class.closed, self.loops_of(class, own))
+            {
+                let inside = self.classes.remove(k).points;
+                self.edges[number].retain(|pair| !inside.contains(&pair[0]));
+                self.broken += 1;
+                let open = |points| Class {
+                    points,
+                    closed: None,
+                };
+                self.classes.extend(parts.into_iter().map(open));
+                k = 0;
+            } else {
+                k += 1;
+            }
+        }
+    }
+
+    /// What the loops are worth that brought a class together, where it is closed.
+    fn loops_of(&self, class: &Class, own: usize) -> Loops {
+        if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied(), own)) {
+            return Loops::Sound;
+        }
+        let places = class.points.iter().enumerate();
+        let place: BTreeMap<usize, usize> = places.map(|(k, &point)| (point, k)).collect();
+        let mut answer = Loops::Sound;
+        for number in 0..self.edges.len() {
+            let others = self.edges.iter().enumerate();
+            let others = others.filter(|(other, _)| *other != number);
+            let parts = parts(&class.points, &place, others.flat_map(|(_, edge)| edge));
+            match parts.len() {
+                1 => {}
+                many if many > MOST_PARTS => answer = Loops::Untested,
+                _ if self.has_closed_part(&parts, own) => return Loops::Jumped { number, parts },
+                _ => {}
+            }
+        }
+        answer
+    }
+
+    /// Whether a proper union of these parts is closed.
+    fn has_closed_part(&self, parts: &[Vec<usize>], own: usize) -> bool {
+        let sums: Vec<(Vec<Complex64>, f64)> =
+            parts.iter().map(|part| self.rough(part, own)).collect();
+        let closed = |mask: u32| {
+            let members = (0..parts.len()).filter(|k| mask >> k & 1 == 1);
+            let mut sum = vec![Complex64::default(); own];
+            let mut lengths = 0.0;
+            for k in members.clone() {
+                lengths += sums[k].1;
+                for (sum, t) in sum.iter_mut().zip(&sums[k].0) {
+                    *sum += t;
+                }
+            }
+            let points = members.flat_map(|k| parts[k].iter().copied());
+            length(&sum) <= 1e-10 * lengths && is_closed(&self.trace(points, own))
+        };
+        (1..(1u32 << parts.len()) - 1).any(closed)
+    }
+
+    /// Whether an open class is closed, and more loops must say that none of those that made it jumped.
+    fn is_untested(&self, class: &Class, own: usize) -> bool {
+        class.closed.is_none() && matches!(self.loops_of(class, own), Loops::Untested)
+    }
+
     /// Finds the classes that are components, alone or, where few are left, in unions.
     fn close(&mut self, own: usize) {
+        self.take_jumps_back(own);
         for k in 0..self.classes.len() {
-            if self.classes[k].closed.is_none() {
+            if self.classes[k].closed.is_none() && !self.is_untested(&self.classes[k], own) {
                 let trace = self.trace(self.classes[k].points.iter().copied(), own);
                 match is_closed(&trace) {
                     true => self.classes[k].closed = Some(trace),
@@ -379,6 +447,7 @@ impl Split {
         let places = 0..self.classes.len();
         let open: Vec<usize> = places
             .filter(|&k| self.classes[k].closed.is_none())
+            .filter(|&k| !self.is_untested(&self.classes[k], own))
             .collect();
         if open.len() < 2 || open.len() > MOST_CLASSES {
             return None;
@@ -435,8 +504,16 @@ impl Split {
     }
 
     /// What was found of the set, and what it says of its dimension.
-    pub fn components(&self, problem: &Problem) -> (Vec<WitnessSet>, Dimension) {
+    pub fn components(
+        &self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+    ) -> (Vec<WitnessSet>, Dimension) {
         let own = problem.variables();
+        let kind = (self.set.dimension, self.set.ranks.as_slice());
+        let points = self.set.points.iter().take(GAPS_ASKED);
+        let gaps = points.map(|point| deflations.rank_gap(problem, kind, point));
+        let rank_gap = gaps.reduce(f64::min).map(bounded);
         let dimension = self.set.dimension as u32;
         let mut doubts = Vec::new();
         let mut components = Vec::new();
@@ -444,7 +521,12 @@ impl Split {
         let mut classes_left = 0;
         for class in &self.classes {
             if dimension == 0 {
-                components.push(self.component(problem, &class.points, None, Vec::new()));
+                components.push(self.component(
+                    (problem, rank_gap),
+                    &class.points,
+                    None,
+                    Vec::new(),
+                ));
                 continue;
             }
             match class.closed {
@@ -454,7 +536,12 @@ impl Split {
                         true => Vec::new(),
                         false => vec![Doubt::Open { classes: 1 }],
                     };
-                    components.push(self.component(problem, &class.points, Some(trace), doubts));
+                    components.push(self.component(
+                        (problem, rank_gap),
+                        &class.points,
+                        Some(trace),
+                        doubts,
+                    ));
                 }
                 None => {
                     classes_left += 1;
@@ -471,7 +558,7 @@ impl Split {
             let open = vec![Doubt::Open {
                 classes: classes_left,
             }];
-            components.push(self.component(problem, &left, Some(trace), open));
+            components.push(self.component((problem, rank_gap), &left, Some(trace), open));
         }
         if self.broken > 0 && !left.is_empty() {
             doubts.push(Doubt::BrokenLoops { loops: self.broken });
@@ -503,7 +590,7 @@ impl Split {
 
     fn component(
         &self,
-        problem: &Problem,
+        (problem, rank_gap): (&Problem, Option<f64>),
         points: &[usize],
         trace: Option<Trace>,
         mut doubts: Vec<Doubt>,
@@ -538,6 +625,7 @@ impl Split {
                 trace,
                 smallest_wrong_union: self.smallest_wrong,
                 loops: self.loops,
+                rank_gap,
                 worst_condition: points
                     .iter()
                     .map(condition)
@@ -545,6 +633,49 @@ impl Split {
                     .min(f64::MAX),
                 doubts,
             },
+        }
+    }
+}
+
+/// The points in the parts that these pairs leave; `place`: where each point of the set is among them.
+fn parts<'a>(
+    points: &[usize],
+    place: &BTreeMap<usize, usize>,
+    pairs: impl Iterator<Item = &'a [usize; 2]>,
+) -> Vec<Vec<usize>> {
+    let mut parent: Vec<usize> = (0..points.len()).collect();
+    fn root(parent: &mut [usize], mut k: usize) -> usize {
+        while parent[k] != k {
+            parent[k] = parent[parent[k]];
+            k = parent[k];
+        }
+        k
+    }
+    for [from, to] in pairs {
+        if let (Some(&a), Some(&b)) = (place.get(from), place.get(to)) {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (k, &point) in points.iter().enumerate() {
+        parts.entry(root(&mut parent, k)).or_default().push(point);
+    }
+    parts.into_values().collect()
+}
+
+/// Joins the classes of each of these pairs of points.
+fn join(classes: &mut Vec<Class>, pairs: &[[usize; 2]]) {
+    let place = |classes: &[Class], point: usize| {
+        let holds = |class: &Class| class.points.contains(&point);
+        let place = classes.iter().position(holds);
+        place.expect("every point has a class")
+    };
+    for &[from, to] in pairs {
+        let (a, b) = (place(classes, from), place(classes, to));
+        if a != b {
+            let joined = classes.remove(a.max(b));
+            classes[a.min(b)].points.extend(joined.points);
         }
     }
 }
@@ -557,7 +688,28 @@ fn bounded(x: f64) -> f64 {
     }
 }
 
-fn is_closed(trace: &Trace) -> bool {
+/// The sum of second derivatives of these points in the first `own` unknowns.
+pub(crate) fn trace_of<'a>(bends: impl Iterator<Item = &'a Bend>, own: usize) -> Trace {
+    let mut sum = vec![Number::zero(()); own];
+    let (mut lengths, mut errors) = (0.0, 0.0);
+    for bend in bends {
+        let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
+        lengths += length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
+        errors += bend.error;
+        for (sum, t) in sum.iter_mut().zip(&bend.acceleration) {
+            sum.add(t);
+        }
+    }
+    let sum: Vec<Complex64> = sum.iter().map(rounded).collect();
+    Trace {
+        deviation: bounded(length(&sum) / lengths),
+        noise: bounded(errors / lengths).max(LEAST_NOISE),
+        precision_bits: 106,
+    }
+}
+
+/// Whether points with this sum are whole components.
+pub(crate) fn is_closed(trace: &Trace) -> bool {
     trace.noise < NOISY && trace.deviation <= CLOSED * trace.noise
 }
 
@@ -574,4 +726,112 @@ fn arrivals(job: &Job) -> Option<Vec<Vec<Complex64>>> {
         ends.insert(result.origin.0, values);
     }
     Some(ends.into_values().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_continuation::bend::{RefinedPoint, exactly};
+    use cognate_solutions::witness::Multiplicity;
+
+    /// Two components of so many points each, whose second derivatives sum to 0.
+    fn two_components(degree: usize) -> Split {
+        let mut random = RandomStream::new(5, Purpose::Test, 1);
+        let mut bends = Vec::new();
+        for _ in 0..2 {
+            let mut sum = Complex64::default();
+            for k in 0..degree {
+                // Few bits: the sum is exact.
+                let part =
+                    |random: &mut RandomStream| random.below(1 << 20) as f64 / 1024.0 - 512.0;
+                let z = Complex64::new(part(&mut random), part(&mut random));
+                let z = if k + 1 == degree { -sum } else { z };
+                sum += z;
+                bends.push(Bend {
+                    velocity: vec![exactly(Complex64::new(1.0, 0.0))],
+                    acceleration: vec![exactly(z)],
+                    error: 1e-28,
+                });
+            }
+        }
+        let point = |k: usize| RefinedPoint {
+            point: vec![exactly(Complex64::new(k as f64, 0.0))],
+            correction: 0.0,
+            moved: 0.0,
+            residual: 0.0,
+            condition: 1.0,
+        };
+        let mut split = Split::new(PureSet {
+            dimension: 1,
+            ranks: Vec::new(),
+            multiplicity: Multiplicity {
+                scheme: Some(1),
+                tracked: 1,
+                dual_dimensions: Vec::new(),
+            },
+            points: (0..2 * degree).map(point).collect(),
+        });
+        split.bends = Some(bends);
+        split.travellers = (0..2 * degree).collect();
+        split
+    }
+
+    /// A loop after which the point at each place is where it says.
+    fn go_around(split: &mut Split, images: &[usize]) {
+        let place = |k: &usize| vec![Complex64::new(*k as f64, 0.0)];
+        let ends: Vec<Vec<Complex64>> = images.iter().map(place).collect();
+        split.close_loop(&ends, 1);
+        split.close(1);
+    }
+
+    fn closed(split: &Split) -> Vec<Vec<usize>> {
+        let closed = split.classes.iter().filter(|c| c.closed.is_some());
+        let mut closed: Vec<Vec<usize>> = closed
+            .map(|class| {
+                let mut points = class.points.clone();
+                points.sort_unstable();
+                points
+            })
+            .collect();
+        closed.sort();
+        closed
+    }
+
+    #[test]
+    fn a_loop_in_which_two_paths_jumped_is_taken_back() {
+        const DEGREE: usize = 40;
+        let all: Vec<usize> = (0..2 * DEGREE).collect();
+        let components = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        // The points of each component go around among themselves.
+        let mut around: Vec<usize> = all.clone();
+        around[..DEGREE].rotate_left(1);
+        around[DEGREE..].rotate_left(1);
+        // The same in fours, so that more classes are left than unions can be tried of.
+        let mut fours: Vec<usize> = all.clone();
+        fours.chunks_mut(4).for_each(|four| four.rotate_left(1));
+        let mut split = two_components(DEGREE);
+        go_around(&mut split, &around);
+        // One loop alone has nothing beside it that says that it did not jump.
+        assert!(closed(&split).is_empty());
+        go_around(&mut split, &around);
+        assert_eq!(closed(&split), components);
+        // Ends of two paths are exchanged, in the first loop and in the second.
+        let jumped = |images: &[usize]| {
+            let mut images = images.to_vec();
+            images.swap(3, DEGREE + 4);
+            images
+        };
+        let mut split = two_components(DEGREE);
+        go_around(&mut split, &jumped(&all));
+        go_around(&mut split, &around);
+        go_around(&mut split, &around);
+        assert_eq!((closed(&split), split.broken), (components.to_vec(), 1));
+        let mut split = two_components(DEGREE);
+        go_around(&mut split, &fours);
+        go_around(&mut split, &jumped(&around));
+        // No loop says yet that the second one is wrong: nothing is closed before one does.
+        assert!(closed(&split).is_empty());
+        go_around(&mut split, &around);
+        assert_eq!((closed(&split), split.broken), (components.to_vec(), 1));
+    }
 }

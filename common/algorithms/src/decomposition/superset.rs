@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// A point at which several paths end, or one that is singular.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct SingularEnd {
+pub(crate) struct SingularEnd {
     pub values: Vec<Complex64>,
     pub accuracy: f64,
     /// How many paths end there.
@@ -19,7 +19,7 @@ pub(super) struct SingularEnd {
 
 /// Points of one dimension that solve all equations.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Superset {
+pub(crate) struct Superset {
     pub dimension: usize,
     pub regular: Vec<Vec<Complex64>>,
     pub singular: Vec<SingularEnd>,

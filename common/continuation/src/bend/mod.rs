@@ -117,6 +117,11 @@ fn zeros(count: usize) -> Vec<Number> {
 }
 
 fn doubles(numbers: &[Number]) -> Vec<Complex64> {
+    doubles_of(numbers)
+}
+
+/// The numbers as doubles.
+pub fn doubles_of(numbers: &[Number]) -> Vec<Complex64> {
     numbers.iter().map(rounded).collect()
 }
 
@@ -149,6 +154,11 @@ impl SlicedEquations {
             slices: Vec::new(),
             parameters: values.iter().map(|&z| exactly(z)).collect(),
         }
+    }
+
+    /// Puts these slices in the place of its own.
+    pub fn set_slices(&mut self, slices: Vec<Vec<Complex64>>) {
+        self.slices = slices;
     }
 
     fn rows(&self) -> usize {

@@ -2,10 +2,13 @@
 
 pub mod path;
 pub mod problem;
+pub mod question;
 pub mod solution;
 
-use crate::error::ProtocolError;
-use cognate_continuation::start_points::Digest;
+use crate::error::{ProtocolError, within_limit};
+use crate::limits;
+use crate::v1;
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use num_complex::Complex64;
 
 /// A digest, 32 bytes long.
@@ -47,4 +50,23 @@ fn finite(field: &str, values: &[Complex64]) -> Result<(), ProtocolError> {
             "finite numbers",
         )),
     }
+}
+
+/// Points, all coordinates finite.
+pub fn points(m: &v1::Points) -> Result<StoredPoints, ProtocolError> {
+    within_limit("dimension", m.dimension as usize, limits::COORDINATES)?;
+    let coordinates = pairs("coordinates", &m.coordinates)?;
+    let dimension = m.dimension as usize;
+    if dimension == 0 || !coordinates.len().is_multiple_of(dimension) {
+        return Err(ProtocolError::invalid(
+            "coordinates",
+            format!("{} coordinates", coordinates.len()),
+            format!("a multiple of the dimension {dimension}, which is not 0"),
+        ));
+    }
+    finite("coordinates", &coordinates)?;
+    Ok(StoredPoints {
+        dimension,
+        coordinates,
+    })
 }

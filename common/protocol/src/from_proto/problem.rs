@@ -1,6 +1,7 @@
 //! Problem message to Submission, System message to a checked System.
 
-use super::{digest, finite, pairs, required};
+use super::question::question;
+use super::{digest, finite, points, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::submission::{
@@ -9,7 +10,6 @@ use crate::submission::{
 };
 use crate::v1;
 use cognate_continuation::sharpening::MOST_DIGITS;
-use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_solutions::witness::Method;
@@ -151,13 +151,7 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             }
             confidence => confidence,
         },
-        digits: match m.digits {
-            Some(digits) if !(1..=MOST_DIGITS).contains(&digits) => {
-                let expected = format!("1 to {MOST_DIGITS}");
-                return Err(ProtocolError::invalid("digits", digits, expected));
-            }
-            digits => digits,
-        },
+        digits: digits(m.digits)?,
         deflate: m.deflate,
         warnings: m.warnings,
         sets: match m.sets.is_empty() {
@@ -165,7 +159,18 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             false => Some(equation_sets("sets", &m.sets)?),
         },
         decompose: m.decompose.map(decompose).transpose()?,
+        question: m.question.map(question).transpose()?,
     })
+}
+
+fn digits(digits: Option<u32>) -> Result<Option<u32>, ProtocolError> {
+    match digits {
+        Some(digits) if !(1..=MOST_DIGITS).contains(&digits) => {
+            let expected = format!("1 to {MOST_DIGITS}");
+            Err(ProtocolError::invalid("digits", digits, expected))
+        }
+        digits => Ok(digits),
+    }
 }
 
 fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
@@ -249,25 +254,6 @@ pub fn settings(m: &v1::Settings) -> Result<SettingsChoice, ProtocolError> {
         }
     };
     SettingsChoice::from_message(m, preset)
-}
-
-/// Points, all coordinates finite.
-pub fn points(m: &v1::Points) -> Result<StoredPoints, ProtocolError> {
-    within_limit("dimension", m.dimension as usize, limits::COORDINATES)?;
-    let coordinates = pairs("coordinates", &m.coordinates)?;
-    let dimension = m.dimension as usize;
-    if dimension == 0 || !coordinates.len().is_multiple_of(dimension) {
-        return Err(ProtocolError::invalid(
-            "coordinates",
-            format!("{} coordinates", coordinates.len()),
-            format!("a multiple of the dimension {dimension}, which is not 0"),
-        ));
-    }
-    finite("coordinates", &coordinates)?;
-    Ok(StoredPoints {
-        dimension,
-        coordinates,
-    })
 }
 
 /// Complex numbers, all finite.

@@ -2,10 +2,11 @@
 
 pub mod path;
 pub mod problem;
+pub mod question;
 pub mod solution;
 
 use crate::v1;
-use cognate_continuation::start_points::Digest;
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use num_complex::Complex64;
 
 /// A digest as bytes.
@@ -23,4 +24,17 @@ fn complexes(values: &[Complex64]) -> Vec<v1::Complex> {
 
 fn pairs(values: &[Complex64]) -> Vec<f64> {
     values.iter().flat_map(|z| [z.re, z.im]).collect()
+}
+
+/// Points.
+pub fn points(points: &StoredPoints) -> v1::Points {
+    v1::Points {
+        dimension: small(points.dimension),
+        coordinates: pairs(&points.coordinates),
+    }
+}
+
+/// Indices of a checked system are small.
+fn small(index: usize) -> u32 {
+    u32::try_from(index).expect("a checked system has fewer than 2^32 of anything")
 }

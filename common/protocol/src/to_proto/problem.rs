@@ -1,11 +1,11 @@
 //! Submission to Problem message, System to System message.
 
-use super::{complexes, digest, pairs};
+use super::question::question;
+use super::{complexes, digest, points, small};
 use crate::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
 use crate::v1;
-use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_solutions::witness::Method;
 use cognate_systems::expression::{Function, Node, NodeId};
@@ -104,6 +104,7 @@ pub fn options(options: &Options) -> v1::Options {
             method: wanted.method.map(|method| method_number(method) as i32),
             verify: wanted.verify,
         }),
+        question: options.question.as_ref().map(question),
     }
 }
 
@@ -136,19 +137,6 @@ pub fn settings(choice: &SettingsChoice) -> v1::Settings {
         Some(Preset::Fast) => v1::Preset::Fast,
         Some(Preset::Reckless) => v1::Preset::Reckless,
     })
-}
-
-/// Points.
-pub fn points(points: &StoredPoints) -> v1::Points {
-    v1::Points {
-        dimension: small(points.dimension),
-        coordinates: pairs(&points.coordinates),
-    }
-}
-
-/// Indices of a checked system are small.
-fn small(index: usize) -> u32 {
-    u32::try_from(index).expect("a checked system has fewer than 2^32 of anything")
 }
 
 fn indices(list: &[usize]) -> Vec<u32> {

@@ -254,6 +254,7 @@ impl Draw {
             warnings: Vec::new(),
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
             decompose: None,
+            question: None,
         }
     }
 

@@ -202,6 +202,9 @@ pub struct Evidence {
     pub smallest_wrong_union: Option<f64>,
     /// Loops that brought points together.
     pub loops: u32,
+    /// Least gap between singular values that were taken as not 0 and as 0, at some witness points.
+    #[serde(default)]
+    pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: f64,
     /// What is not clear.

@@ -59,10 +59,23 @@ pub struct WitnessSet {
     pub self_conjugate: Option<bool>,
     /// The slice, a row for each dimension: constant first, then a coefficient for each variable.
     pub slice: Vec<Vec<Complex64>>,
-    /// Values of the variables at the witness points.
+    /// Values of the variables at the witness points; in files they are apart.
+    #[serde(default)]
     pub points: Vec<Vec<Complex64>>,
     /// What it rests on.
     pub evidence: Evidence,
+}
+
+impl std::str::FromStr for ComponentId {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("`{text}` is no component; expected a name such as 1.3");
+        let (dimension, place) = text.split_once('.').ok_or_else(expected)?;
+        let number = |part: &str| part.parse::<u32>().map_err(|_| expected());
+        let (dimension, number) = (number(dimension)?, number(place)?);
+        Ok(Self { dimension, number })
+    }
 }
 
 impl WitnessSet {

@@ -3,6 +3,7 @@
 mod affine_chart;
 pub mod clear_denominators;
 mod combine;
+mod critical;
 mod deflate;
 mod factors;
 mod fix_parameters;
@@ -14,6 +15,7 @@ mod slice;
 
 pub use affine_chart::affine_chart;
 pub use combine::{combine, equilibrate};
+pub use critical::{MOST_CRITICAL_VARIABLES, critical, fibre};
 pub use deflate::deflate;
 pub use factors::factors;
 pub use fix_parameters::{FixError, fix_parameters};

@@ -10,6 +10,7 @@ pub mod info;
 pub mod jobs;
 pub mod mechanism;
 pub mod path;
+pub mod question;
 pub mod results;
 pub mod solve;
 pub mod submit;

@@ -9,7 +9,7 @@ use crate::client::output::files::Folder;
 use crate::client::output::paths::Paths;
 use crate::client::output::table::SOLUTIONS_SHOWN;
 use crate::client::output::text::{Look, counted};
-use crate::client::output::{self, decomposition, json, summary, table};
+use crate::client::output::{self, answers, decomposition, json, summary, table};
 use crate::results::AnySummary;
 use crate::results::decomposition::DecompositionSummary;
 use cognate_protocol::v1;
@@ -47,6 +47,7 @@ pub async fn show(
         AnySummary::Decomposition(summary) => {
             return components(connection, job, &json, &summary, output).await;
         }
+        AnySummary::Question(summary) => return answers::show(&json, &summary, output),
     };
     let mut rows: Vec<Solution> = vec![];
     let wanted = match output.format {

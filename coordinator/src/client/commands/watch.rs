@@ -5,7 +5,7 @@ use crate::client::connection::{Connection, Target};
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::json;
 use crate::client::output::progress::{Progress, Standing};
-use crate::client::output::{self, decomposition, summary, table, text};
+use crate::client::output::{self, answers, decomposition, summary, table, text};
 use crate::results::AnySummary;
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
@@ -143,6 +143,13 @@ pub async fn verdict(
                         line.push_str(&format!("\nnot settled: {doubt}"));
                     }
                     return Ok((decomposition::exit(&summary), line));
+                }
+                AnySummary::Question(summary) => {
+                    let mut line = format!("done in {time}: {}", answers::headline(&summary));
+                    for doubt in &summary.unsettled {
+                        line.push_str(&format!("\nnot settled: {doubt}"));
+                    }
+                    return Ok((answers::exit(&summary), line));
                 }
             };
             let paths = text::counted(summary.paths.total, "path");

@@ -1,6 +1,7 @@
 //! A decomposition for people: components by dimension, how the paths add up, what is not settled; and the
 //! folder of --output.
 
+use super::bertini;
 use super::files::{create, make_folder, write_file};
 use super::json;
 use super::table::Lines;
@@ -236,11 +237,20 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
     })
 }
 
-/// The folder of --output: `summary.json`; `decomposition.json` with slices and evidence;
+/// The folder of --output: `summary.json`; `decomposition.json` with slices and evidence; `system.json`; Bertini's files;
 /// `witness_points.jsonl` with a point on each line. Numbers stay as they were written.
 pub fn write(folder: &Path, summary: &str, mut found: Value) -> Result<(), ClientError> {
     let strange = || ClientError::GaveUp("its components are not what was agreed".into());
     make_folder(folder)?;
+    bertini::write(folder, &found)?;
+    let system = found
+        .as_object_mut()
+        .and_then(|fields| fields.remove("system"));
+    let system = system
+        .as_ref()
+        .and_then(Value::as_str)
+        .ok_or_else(strange)?;
+    write_file(folder, "system.json", system)?;
     let mut lines = create(folder, "witness_points.jsonl")?;
     let variables = found["variables"].as_array().cloned().ok_or_else(strange)?;
     let components = found["components"].as_array_mut().ok_or_else(strange)?;

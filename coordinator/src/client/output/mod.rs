@@ -1,6 +1,9 @@
 //! The same answers for people and for programs.
 
+pub mod answers;
+mod bertini;
 pub mod certificates;
+pub mod curve_svg;
 pub mod decomposition;
 pub mod drawing;
 pub mod files;

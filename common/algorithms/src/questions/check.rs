@@ -1,0 +1,135 @@
+//! Check: whether components that were read are whole, by the sums of their second derivatives, and whether their
+//! multiplicities are those of the equations.
+
+use super::{Context, Operand};
+use crate::decomposition::job::{Job, StageSystem};
+use crate::decomposition::split::{is_closed, trace_of};
+use cognate_continuation::bend::{Bend, doubles_of};
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::local_dimension::Question;
+use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::{Isolation, isolation_by};
+use cognate_solutions::witness::answer::CheckedComponent;
+use serde::{Deserialize, Serialize};
+
+/// Highest order of functionals that are asked for.
+const DEPTH: u32 = 12;
+
+/// Component by component: how its points move, and how often one of them counts.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Check {
+    found: Vec<CheckedComponent>,
+    /// The multiplicity of the last one found is being asked.
+    counting: bool,
+    bending: bool,
+}
+
+impl Check {
+    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+        if let Some(job) = done {
+            self.learn(with, job);
+        }
+        if let Some(last) = self.found.len().checked_sub(1)
+            && self.counting
+        {
+            return Some(count(with, &with.operands[last]));
+        }
+        while let Some(operand) = with.operands.get(self.found.len()) {
+            if operand.dimension() > 0 {
+                self.bending = true;
+                return Some(bend(with, operand));
+            }
+            self.found.push(CheckedComponent {
+                id: operand.id,
+                trace: None,
+                closed: true,
+                multiplicity: Some(1),
+            });
+            if !operand.set.ranks.is_empty() {
+                self.counting = true;
+                return Some(count(with, operand));
+            }
+        }
+        None
+    }
+
+    fn learn(&mut self, with: &Context<'_>, job: &Job) {
+        if self.bending {
+            self.bending = false;
+            let operand = &with.operands[self.found.len()];
+            let bends: Vec<&Bend> = job.answers().iter().filter_map(bend_of).collect();
+            let trace = trace_of(bends.iter().copied(), with.problem.variables());
+            self.found.push(CheckedComponent {
+                id: operand.id,
+                closed: bends.len() == operand.degree() && is_closed(&trace),
+                trace: Some(trace),
+                multiplicity: Some(1),
+            });
+            self.counting = !operand.set.ranks.is_empty();
+            return;
+        }
+        self.counting = false;
+        let Some(known) = self.found.last_mut() else {
+            return;
+        };
+        let fact = job.answers().first().and_then(|result| match result {
+            ItemResult::LocalDimension(result) => result.fact(),
+            _ => None,
+        });
+        let isolation = fact.map(|fact| isolation_by(fact, &with.problem.tracking.tolerances));
+        known.multiplicity = match isolation {
+            Some(Isolation::Isolated { multiplicity }) => Some(u64::from(multiplicity)),
+            _ => None,
+        };
+    }
+
+    pub fn take(&mut self) -> Vec<CheckedComponent> {
+        std::mem::take(&mut self.found)
+    }
+}
+
+fn bend_of(result: &ItemResult) -> Option<&Bend> {
+    match result {
+        ItemResult::Bend(result) => result.fact().map(|bend| &**bend),
+        _ => None,
+    }
+}
+
+/// The stage that asks how the points move when the constants of the slices do.
+fn bend(with: &Context<'_>, operand: &Operand) -> Job {
+    let problem = with.problem;
+    let mut random = RandomStream::new(problem.seed(), Purpose::Question, 0);
+    let mut moved = operand.slices.clone();
+    for row in &mut moved {
+        row[0] += random.unit();
+    }
+    let ends = [operand.slices.concat(), moved.concat()];
+    let points = operand.set.doubles();
+    Job::bend(operand.set.whole(), ends, &points, &problem.tracking)
+}
+
+/// The stage that asks the dual space of the first witness point.
+fn count(with: &Context<'_>, operand: &Operand) -> Job {
+    let problem = with.problem;
+    let point = &operand.set.points[0].point[..problem.variables()];
+    let candidate = Candidate {
+        values: doubles_of(point),
+        target: 0,
+        question: Question {
+            accuracy: f64::EPSILON,
+            bound: u64::MAX,
+            depth: DEPTH,
+        },
+    };
+    let system = StageSystem::Sliced {
+        dimension: operand.dimension(),
+    };
+    let parameters = operand.slices.concat();
+    Job::isolate(
+        system,
+        parameters,
+        to_stored(&[candidate]),
+        &problem.tracking,
+    )
+}

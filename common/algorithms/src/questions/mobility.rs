@@ -1,0 +1,152 @@
+//! Mobility: in how many directions a point can be moved on the solutions, to the first order and to higher ones.
+//!
+//! The dual space of the equations at a point counts the motions of each order; it stops growing exactly where the point
+//! is isolated (Wampler, Hauenstein, Sommese: Mechanism mobility and a local dimension test, Mech. Mach. Theory 46,
+//! 2011). Where components are known, the largest of those through the point says the local dimension.
+
+use super::member::{Member, checked};
+use super::{Context, MOST_DEPTH, QuestionError};
+use crate::decomposition::job::{Job, StageSystem};
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::local_dimension::Question;
+use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
+use cognate_continuation::path_result::LocalDimension;
+use cognate_solutions::classification::{Isolation, isolation_by};
+use cognate_solutions::witness::answer::Mobility as Found;
+use cognate_solutions::witness::question::GivenPoint;
+use cognate_systems::system::System;
+use serde::{Deserialize, Serialize};
+
+/// First the dual spaces, then the components.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Mobility {
+    points: Vec<GivenPoint>,
+    depth: u32,
+    asked: bool,
+    found: Option<Vec<(Found, bool)>>,
+    member: Member,
+}
+
+impl Mobility {
+    pub fn new(system: &System, points: &[GivenPoint], depth: u32) -> Result<Self, QuestionError> {
+        checked(system, points)?;
+        if !(1..=MOST_DEPTH).contains(&depth) {
+            return Err(QuestionError::Wish {
+                field: "depth",
+                found: depth.to_string(),
+                expected: format!("1 to {MOST_DEPTH}"),
+            });
+        }
+        Ok(Self {
+            points: points.to_vec(),
+            depth,
+            asked: false,
+            found: None,
+            member: Member::new(system, points)?,
+        })
+    }
+
+    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+        if !self.asked {
+            self.asked = true;
+            return Some(self.ask(with));
+        }
+        let mut done = done;
+        if self.found.is_none() {
+            let answers = done.take().map_or(&[][..], Job::answers);
+            let each = answers.iter().enumerate();
+            let found = each.map(|(index, answer)| self.learn(with, index, answer));
+            self.found = Some(found.collect());
+        }
+        self.member.advance(with, done)
+    }
+
+    fn ask(&self, with: &Context<'_>) -> Job {
+        let candidate = |point: &GivenPoint| Candidate {
+            values: with.problem.to_unknowns(&point.values),
+            target: 0,
+            question: Question {
+                accuracy: point.accuracy.max(f64::EPSILON),
+                bound: u64::MAX,
+                depth: self.depth,
+            },
+        };
+        let candidates: Vec<Candidate> = self.points.iter().map(candidate).collect();
+        let system = StageSystem::Sliced { dimension: 0 };
+        let tracking = &with.problem.tracking;
+        Job::isolate(system, Vec::new(), to_stored(&candidates), tracking)
+    }
+
+    /// What the dual space says, and whether the point is isolated.
+    fn learn(&self, with: &Context<'_>, index: usize, answer: &ItemResult) -> (Found, bool) {
+        let fact: Option<&LocalDimension> = match answer {
+            ItemResult::LocalDimension(result) => result.fact(),
+            _ => None,
+        };
+        let mut found = Found {
+            index: index as u64,
+            infinitesimal: None,
+            dimensions_by_order: Vec::new(),
+            local_dimension: None,
+            reason: "nothing is known of the point".into(),
+            on: Vec::new(),
+        };
+        let Some(fact) = fact else {
+            return (found, false);
+        };
+        let dimensions = &fact.dual_dimensions;
+        found.dimensions_by_order.clone_from(dimensions);
+        if let [first, second, ..] = dimensions.as_slice() {
+            found.infinitesimal = Some(second - first);
+        }
+        let tolerances = &with.problem.tracking.tolerances;
+        let isolated = match isolation_by(fact, tolerances) {
+            Isolation::Isolated { multiplicity } => {
+                found.local_dimension = Some(0);
+                found.reason = format!(
+                    "isolated, of multiplicity {multiplicity}: its dual space stops growing"
+                );
+                true
+            }
+            Isolation::PositiveDimensional => {
+                found.reason =
+                    "solutions were met beside it, and its dual space does not stop growing: not isolated".into();
+                false
+            }
+            Isolation::Undecided => {
+                found.reason = format!("dual spaces up to order {} do not tell", self.depth);
+                false
+            }
+        };
+        (found, isolated)
+    }
+
+    pub fn take(&mut self) -> Vec<Found> {
+        let memberships = self.member.take();
+        let found = self.found.take().unwrap_or_default();
+        let pairs = found.into_iter().zip(memberships);
+        pairs
+            .map(|((mut found, isolated), member)| {
+                found.on = member.on;
+                if member.solves == Some(false) {
+                    found.local_dimension = None;
+                    found.reason = "the point does not solve the equations".into();
+                    return found;
+                }
+                let largest = found.on.iter().map(|id| id.dimension).max();
+                if let (Some(largest), true) = (largest, member.unsettled.is_empty()) {
+                    if isolated && largest > 0 {
+                        found.local_dimension = None;
+                        found.reason = format!(
+                            "its dual space stops growing, and it lies on a component of dimension {largest}"
+                        );
+                    } else {
+                        found.local_dimension = Some(largest);
+                        found.reason = "the largest component through the point".into();
+                    }
+                }
+                found
+            })
+            .collect()
+    }
+}

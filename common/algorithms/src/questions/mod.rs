@@ -1,0 +1,353 @@
+//! Questions to components that are known by their witness sets: membership, samples, images, degrees by groups,
+//! mobility.
+//!
+//! What moves witness points to other slices is a parameter homotopy, tracked in stages like any other. (Sommese,
+//! Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 to 16.)
+
+mod certify;
+mod check;
+mod member;
+mod mobility;
+mod multidegree;
+mod operand;
+mod project;
+mod real_curve;
+mod sample;
+#[cfg(test)]
+mod tests;
+
+use crate::decomposition::deflated::Deflations;
+use crate::decomposition::job::Job;
+use crate::decomposition::problem::Problem;
+use crate::decomposition::{DecompositionOptions, ProblemError};
+use crate::progress::{Progress, StageProgress, VerdictCounts};
+use crate::run_locally;
+use crate::solve::{Next, Root, Solve, StageNumbers};
+use certify::Certify;
+use check::Check;
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::stage::PrepareError;
+use cognate_continuation::work::StageId;
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::witness::{Answer, Question, TrackedPaths, WitnessSet};
+use cognate_systems::system::System;
+use member::Member;
+use mobility::Mobility;
+use multidegree::Multidegree;
+use operand::Operand;
+pub use operand::{MOST_WITNESS_POINTS, OperandError};
+use project::Project;
+use real_curve::RealCurves;
+use sample::Sample;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Most points in one question.
+pub const MOST_POINTS: usize = 100_000;
+/// Most samples of a component.
+pub const MOST_SAMPLES: u64 = 1_000_000;
+/// Highest order of functionals at a point.
+pub const MOST_DEPTH: u32 = 20;
+/// Most samples on either side of the middle of an arc.
+pub const MOST_ARC_SAMPLES: u32 = 1000;
+
+/// Why a question cannot be asked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum QuestionError {
+    /// The system cannot be one of components.
+    #[error("{0}")]
+    Problem(#[from] ProblemError),
+    /// A witness set is not one of the system.
+    #[error("{0}")]
+    Operand(#[from] OperandError),
+    /// What is asked makes no sense.
+    #[error("{field}: {found}; expected {expected}")]
+    Wish {
+        /// The part of the question.
+        field: &'static str,
+        /// What it says.
+        found: String,
+        /// What it may say.
+        expected: String,
+    },
+}
+
+/// What is known so far.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Asking {
+    Check(Check),
+    Certify(Certify),
+    Member(Member),
+    Sample(Sample),
+    Project(Project),
+    Multidegree(Multidegree),
+    Mobility(Mobility),
+    RealCurve(Box<RealCurves>),
+    Done(Box<Answer>),
+}
+
+/// What is written down of a question.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct State {
+    system: Arc<System>,
+    options: DecompositionOptions,
+    components: Vec<WitnessSet>,
+    asking: Asking,
+    job: Option<Job>,
+    /// Whether something that the jobs met leaves a doubt: paths that met and did not come apart.
+    crossings_left: u64,
+    stages: Vec<StageProgress>,
+    paths: TrackedPaths,
+}
+
+/// A question as a plan that asks for paths and learns from results.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "State", try_from = "State")]
+pub struct QuestionSolve {
+    state: State,
+    /// Made of the state, and made again where it is read back.
+    problem: Arc<Problem>,
+    operands: Arc<Vec<Operand>>,
+    deflations: Deflations,
+}
+
+impl PartialEq for QuestionSolve {
+    fn eq(&self, other: &Self) -> bool {
+        self.state == other.state
+    }
+}
+
+impl From<QuestionSolve> for State {
+    fn from(solve: QuestionSolve) -> Self {
+        solve.state
+    }
+}
+
+impl TryFrom<State> for QuestionSolve {
+    type Error = QuestionError;
+
+    fn try_from(state: State) -> Result<Self, QuestionError> {
+        let problem = Problem::of_options(&state.system, &state.options)?;
+        let mut deflations = Deflations::default();
+        let operands = operand::all(&problem, &mut deflations, &state.components)?;
+        Ok(Self {
+            problem: Arc::new(problem),
+            operands: Arc::new(operands),
+            deflations,
+            state,
+        })
+    }
+}
+
+/// All that the parts of a question need.
+struct Context<'a> {
+    problem: &'a Problem,
+    operands: &'a [Operand],
+    deflations: &'a mut Deflations,
+}
+
+impl QuestionSolve {
+    /// A question to these components of a system that has been checked. Each point of them is checked.
+    pub fn new(
+        system: &System,
+        options: &DecompositionOptions,
+        components: &[WitnessSet],
+        question: &Question,
+    ) -> Result<Self, QuestionError> {
+        let asking = match question {
+            Question::Check => Asking::Check(Check::default()),
+            Question::Certify => Asking::Certify(Certify::default()),
+            Question::Member { points } => Asking::Member(Member::new(system, points)?),
+            Question::Sample(wish) => Asking::Sample(Sample::new(system, wish)?),
+            Question::Project { onto } => Asking::Project(Project::new(system, onto)?),
+            Question::Multidegree => Asking::Multidegree(Multidegree::new(system)),
+            Question::Mobility { points, depth } => {
+                Asking::Mobility(Mobility::new(system, points, *depth)?)
+            }
+            Question::RealCurve { samples } => {
+                if !(1..=MOST_ARC_SAMPLES).contains(samples) {
+                    return Err(QuestionError::Wish {
+                        field: "samples",
+                        found: samples.to_string(),
+                        expected: format!("1 to {MOST_ARC_SAMPLES}"),
+                    });
+                }
+                Asking::RealCurve(Box::new(RealCurves::new(*samples)))
+            }
+        };
+        Self::try_from(State {
+            system: Arc::new(system.clone()),
+            options: options.clone(),
+            components: components.to_vec(),
+            asking,
+            job: None,
+            crossings_left: 0,
+            stages: Vec::new(),
+            paths: TrackedPaths::default(),
+        })
+    }
+
+    /// The same with another limit of repetitions, where nothing is open yet.
+    #[must_use]
+    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
+        self.state.options.max_retries = max_retries;
+        Self::try_from(self.state.clone()).unwrap_or(self)
+    }
+
+    /// What was found, when `next` has said `Done`.
+    pub fn answer(&self) -> Option<&Answer> {
+        match &self.state.asking {
+            Asking::Done(answer) => Some(answer),
+            _ => None,
+        }
+    }
+
+    /// Paths that were tracked, counted without repetitions.
+    pub fn paths(&self) -> TrackedPaths {
+        self.state.paths
+    }
+
+    /// What is not clear, in words; empty where all is settled.
+    pub fn doubts(&self) -> Vec<String> {
+        let mut doubts = self.answer().map_or_else(Vec::new, Answer::doubts);
+        if self.state.crossings_left > 0 {
+            let left = self.state.crossings_left;
+            doubts.push(format!("{left} groups of paths met and did not come apart"));
+        }
+        doubts
+    }
+
+    /// The job that comes after the one that is done; `None` where nothing more is asked, and the answer is there.
+    fn next_job(&mut self) -> Option<Job> {
+        let state = &mut self.state;
+        let done = state.job.take();
+        if let Some(job) = &done {
+            state.paths.add(&job.paths());
+            state.crossings_left += job.crossings_left();
+        }
+        let done = done.as_ref();
+        let mut with = Context {
+            problem: &self.problem,
+            operands: &self.operands,
+            deflations: &mut self.deflations,
+        };
+        let job = match &mut state.asking {
+            Asking::Check(asking) => asking.advance(&mut with, done),
+            Asking::Certify(asking) => asking.advance(&mut with, done),
+            Asking::Member(asking) => asking.advance(&mut with, done),
+            Asking::Sample(asking) => asking.advance(&mut with, done),
+            Asking::Project(asking) => asking.advance(&mut with, done),
+            Asking::Multidegree(asking) => asking.advance(&mut with, done),
+            Asking::Mobility(asking) => asking.advance(&mut with, done),
+            Asking::RealCurve(asking) => asking.advance(&mut with, done),
+            Asking::Done(_) => None,
+        };
+        if job.is_none() {
+            let answer = match &mut state.asking {
+                Asking::Check(asking) => Answer::Check(asking.take()),
+                Asking::Certify(asking) => Answer::Certify(asking.take()),
+                Asking::Member(asking) => Answer::Member(asking.take()),
+                Asking::Sample(asking) => Answer::Sample(asking.take()),
+                Asking::Project(asking) => Answer::Project(asking.take()),
+                Asking::Multidegree(asking) => asking.take(&state.system),
+                Asking::Mobility(asking) => Answer::Mobility(asking.take()),
+                Asking::RealCurve(asking) => Answer::RealCurve(asking.take()),
+                Asking::Done(_) => return None,
+            };
+            state.asking = Asking::Done(Box::new(answer));
+        }
+        job
+    }
+}
+
+impl Solve for QuestionSolve {
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
+        loop {
+            if let Some(job) = &mut self.state.job {
+                match job.next(numbers) {
+                    Next::Open(mut opening) => {
+                        let wanted = job.system.clone();
+                        let system = self.deflations.of_stage(&self.problem, &wanted);
+                        opening.system = Some(system);
+                        let stage = &opening.stage;
+                        self.state.stages.push(StageProgress {
+                            id: stage.id,
+                            work: stage.work,
+                            attempt: stage.attempt,
+                            items: stage.items().unwrap_or_default(),
+                            absorbed: false,
+                        });
+                        return Next::Open(opening);
+                    }
+                    Next::Wait => return Next::Wait,
+                    Next::Done => {}
+                }
+            }
+            if let Asking::Done(_) = self.state.asking {
+                return Next::Done;
+            }
+            self.state.job = self.next_job();
+        }
+    }
+
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+        let job = self.state.job.as_mut();
+        job.expect("only an open stage is absorbed")
+            .absorb(stage, results);
+        if let Some(known) = self.state.stages.iter_mut().find(|known| known.id == stage) {
+            known.absorbed = true;
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        let description = match &self.state.asking {
+            Asking::Check(_) => "checking witness points",
+            Asking::Certify(_) => "proving witness points",
+            Asking::Member(_) => "moving slices through points",
+            Asking::Sample(_) => "moving slices to samples",
+            Asking::Project(_) => "moving slices to fibres",
+            Asking::Multidegree(_) => "moving slices into groups",
+            Asking::Mobility(_) => "asking points for their dual spaces",
+            Asking::RealCurve(_) => "following real branches between critical points",
+            Asking::Done(_) => "done",
+        };
+        Progress {
+            description: description.into(),
+            stages: self.state.stages.clone(),
+            paths: VerdictCounts::default(),
+            done: matches!(self.state.asking, Asking::Done(_)),
+        }
+    }
+
+    fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
+        Vec::new()
+    }
+}
+
+/// Asks in one thread, with lanes of this width: the answer, and what is not clear.
+pub fn run_locally(
+    solve: QuestionSolve,
+    width: usize,
+) -> Result<(Answer, Vec<String>), PrepareError> {
+    let system = Arc::clone(&solve.state.system);
+    let mut root = Root::new(solve);
+    run_locally::run_locally(&system, &mut root, &|_| None, width)?;
+    let doubts = root.solve.doubts();
+    let answer = root.solve.answer().cloned();
+    Ok((
+        answer.expect("it says what it found when it is done"),
+        doubts,
+    ))
+}
+
+/// The deflations after which the equations of a system are regular at a point of a slice, of which only the place is
+/// known; `None` where there are none.
+pub fn deflation_at(
+    system: &System,
+    options: &DecompositionOptions,
+    slice: &[Vec<num_complex::Complex64>],
+    point: &[num_complex::Complex64],
+) -> Result<Option<Vec<u32>>, QuestionError> {
+    let problem = Problem::of_options(system, options)?;
+    Ok(operand::ranks_at(&problem, slice, point))
+}

@@ -1,0 +1,189 @@
+//! Multidegree: how many points slices in single groups of variables cut out of each component.
+//!
+//! For each way to share the slices of a component out to the groups, its general slices move to slices in the
+//! variables of one group each; the finite points that are left are counted, at two such slices (Hauenstein, Leykin,
+//! Rodriguez, Sottile: A numerical toolkit for multiprojective varieties, 2019).
+
+use super::{Context, Operand};
+use crate::decomposition::job::Job;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::Answer;
+use cognate_solutions::witness::answer::{GroupDegree, Multidegree as Degrees};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// Slices that must lead to the same number.
+const SLICES: usize = 2;
+/// More ways to share slices out than this are not tried.
+const MOST_WAYS: usize = 1000;
+
+/// Component by component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Multidegree {
+    /// Variables of each group, and whether it is homogeneous.
+    groups: Vec<(Vec<usize>, bool)>,
+    found: Vec<Degrees>,
+    open: bool,
+}
+
+impl Multidegree {
+    pub fn new(system: &System) -> Self {
+        let groups = system.groups.iter();
+        Self {
+            groups: groups
+                .map(|g| (g.variables.clone(), g.homogeneous))
+                .collect(),
+            found: Vec::new(),
+            open: false,
+        }
+    }
+
+    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+        if let Some(job) = done
+            && self.open
+        {
+            self.open = false;
+            self.learn(with, job);
+        }
+        while let Some(operand) = with.operands.get(self.found.len()) {
+            let ways = self.ways(operand.dimension());
+            let mut known = Degrees {
+                id: operand.id,
+                degrees: Vec::new(),
+                doubts: Vec::new(),
+            };
+            let most = MOST_WAYS.min(operand.most_targets() / SLICES);
+            if ways.len() > most {
+                let doubt = format!("{} ways to share slices out; at most {most}", ways.len());
+                known.doubts.push(doubt);
+                self.found.push(known);
+                continue;
+            }
+            if operand.dimension() == 0 {
+                known.degrees.push(GroupDegree {
+                    slices: vec![0; self.groups.len()],
+                    degree: Some(1),
+                });
+                self.found.push(known);
+                continue;
+            }
+            let each = ways.iter().flat_map(|way| {
+                let slice = |number| self.special(with, operand, way, number);
+                (0..SLICES).map(slice).collect::<Vec<_>>()
+            });
+            let targets = each.collect();
+            self.found.push(known);
+            self.open = true;
+            return Some(operand.moved_to(with.problem, with.deflations, targets));
+        }
+        None
+    }
+
+    /// All ways to share so many slices out: no group takes more than it has dimensions.
+    fn ways(&self, dimension: usize) -> Vec<Vec<u32>> {
+        let mut ways = vec![(Vec::new(), dimension)];
+        for (variables, homogeneous) in &self.groups {
+            let room = variables.len() - usize::from(*homogeneous);
+            let mut longer = Vec::new();
+            for (way, left) in ways {
+                for count in (0..=room.min(left)).rev() {
+                    let mut way: Vec<u32> = way.clone();
+                    way.push(count as u32);
+                    longer.push((way, left - count));
+                }
+                if longer.len() > 100 * MOST_WAYS {
+                    break;
+                }
+            }
+            ways = longer;
+        }
+        let whole = ways.into_iter().filter(|(_, left)| *left == 0);
+        whole.map(|(way, _)| way).collect()
+    }
+
+    fn special(
+        &self,
+        with: &Context<'_>,
+        operand: &Operand,
+        way: &[u32],
+        number: usize,
+    ) -> Vec<Vec<Complex64>> {
+        let n = with.problem.variables();
+        let seed = with.problem.seed();
+        let mut random = RandomStream::new(seed, Purpose::Question, 1 << 40 | number as u64);
+        let mut rows = Vec::with_capacity(operand.dimension());
+        for ((variables, homogeneous), &count) in self.groups.iter().zip(way) {
+            for _ in 0..count {
+                let mut row = vec![Complex64::default(); n + 1];
+                // A form of a homogeneous group has no constant.
+                if !homogeneous {
+                    row[0] = random.unit();
+                }
+                for &v in variables {
+                    row[v + 1] = random.unit();
+                }
+                rows.push(row);
+            }
+        }
+        rows
+    }
+
+    fn learn(&mut self, with: &Context<'_>, job: &Job) {
+        let place = self.found.len() - 1;
+        let operand = &with.operands[place];
+        let ways = self.ways(operand.dimension());
+        let ends = job.ends();
+        let known = &mut self.found[place];
+        for (way, ends) in ways.into_iter().zip(ends.chunks(SLICES * operand.degree())) {
+            let count = |ends: &[(
+                _,
+                cognate_solutions::classification::Decision,
+                Vec<Complex64>,
+            )]| {
+                let of =
+                    |wanted: Verdict| ends.iter().filter(|(_, d, _)| d.verdict == wanted).count();
+                let (finite, infinite) = (of(Verdict::Finite), of(Verdict::AtInfinity));
+                (finite + infinite == ends.len()).then_some(finite as u64)
+            };
+            let counts: Vec<Option<u64>> = ends.chunks(operand.degree()).map(count).collect();
+            let degree = counts[0].filter(|first| counts.iter().all(|c| *c == Some(*first)));
+            if degree.is_none() {
+                let doubt = format!(
+                    "slices {way:?} in the groups: paths failed, ended at singular points, or two slices differ"
+                );
+                known.doubts.push(doubt);
+            }
+            known.degrees.push(GroupDegree {
+                slices: way,
+                degree,
+            });
+        }
+        // A curve's degree in the chart of all groups is the sum of its degrees by groups.
+        let sum: Option<u64> = known.degrees.iter().map(|d| d.degree).sum();
+        let homogeneous = self.groups.iter().all(|(_, homogeneous)| *homogeneous);
+        if let Some(sum) = sum
+            && operand.dimension() == 1
+            && homogeneous
+            && sum != operand.degree() as u64
+        {
+            let doubt = format!(
+                "degrees by groups add up to {sum}, its degree is {}",
+                operand.degree()
+            );
+            known.doubts.push(doubt);
+        }
+    }
+
+    pub fn take(&mut self, system: &System) -> Answer {
+        let name = |&v: &usize| system.variables[v].clone();
+        let groups = self.groups.iter();
+        Answer::Multidegree {
+            groups: groups
+                .map(|(own, _)| own.iter().map(name).collect())
+                .collect(),
+            components: std::mem::take(&mut self.found),
+        }
+    }
+}

@@ -1,0 +1,500 @@
+//! Real curves: the real part of components of dimension 1 as graphs.
+//!
+//! The points where a real linear form is critical on the curve, or the curve singular, are where it meets one
+//! hypersurface more. Between two of their real values every real branch is the graph of a function of the form:
+//! fibres in the middle count the branches, and real paths lead from there to both ends (Lu, Bates, Sommese,
+//! Wampler: Finding all real points of a complex curve, Contemp. Math. 448, 2007).
+
+mod assembled;
+mod traced;
+
+use super::{Context, Operand};
+use crate::decomposition::deflated::equal_ones_merged;
+use crate::decomposition::job::{Job, StageSystem};
+use assembled::assemble;
+use cognate_continuation::bend::{SlicedEquations, doubles_of, exactly};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::real_curve::RealCurve;
+use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use traced::{Critical, End, FibrePoint, Task, Tracing, distance, row_of, value};
+
+/// Most stages between fibres: one for each end of a slab and for each sample.
+const MOST_STAGES: usize = 20_000;
+/// Forms that are tried until one leaves no doubt.
+const MOST_FORMS: u32 = 3;
+/// A point is real within this, relative to its size: regular ones, whose digits are known,
+const REAL: f64 = 1e-11;
+/// ... and singular ones.
+const REAL_SINGULAR: f64 = 1e-5;
+/// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most this factor.
+const CLEAR: f64 = 1e2;
+/// Ends of paths at singular points nearer than this, relative to their size, are one point.
+const SAME_SINGULAR: f64 = 1e-5;
+/// Values of the form nearer than this part of their range are one.
+const SAME_VALUE: f64 = 1e-7;
+/// ... and farther than this are two.
+const OTHER_VALUE: f64 = 1e-5;
+
+/// What is being done with the current component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    Begin,
+    /// Conjugates of the witness points go back to their slice.
+    Mirror,
+    /// Witness points go to the slice where levels begin.
+    Start,
+    Slide,
+    Intersect,
+    Fibres,
+    /// Tasks by place.
+    Slabs(usize),
+}
+
+/// Component by component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct RealCurves {
+    /// Samples of each arc, besides its ends and its middle.
+    samples: u32,
+    found: Vec<RealCurve>,
+    phase: Phase,
+    number: u32,
+    now: Tracing,
+}
+
+impl RealCurves {
+    pub fn new(samples: u32) -> Self {
+        Self {
+            samples,
+            found: Vec::new(),
+            phase: Phase::Begin,
+            number: 0,
+            now: Tracing::default(),
+        }
+    }
+
+    pub fn take(&mut self) -> Vec<RealCurve> {
+        std::mem::take(&mut self.found)
+    }
+
+    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+        let mut done = done;
+        loop {
+            let operand = with.operands.get(self.found.len())?;
+            let job = match (self.phase.clone(), done.take()) {
+                (Phase::Begin, _) => self.begin(with, operand),
+                (Phase::Mirror, Some(job)) => self.mirrored(with, operand, job),
+                (Phase::Start, Some(job)) => self.started(with, job),
+                (Phase::Slide, Some(job)) => self.slid(with, job),
+                (Phase::Intersect, Some(job)) => self.intersected(with, operand, job),
+                (Phase::Fibres, Some(job)) => self.fibred(with, operand, job),
+                (Phase::Slabs(place), Some(job)) => self.connected(with, place, job),
+                (_, None) => unreachable!("every phase after the first waits for a stage"),
+            };
+            if job.is_some() {
+                return job;
+            }
+            self.settle(with, operand);
+        }
+    }
+
+    /// Writes down what is known of the component, or begins again with another form.
+    fn settle(&mut self, with: &Context<'_>, operand: &Operand) {
+        let now = std::mem::take(&mut self.now);
+        let begun = !matches!(self.phase, Phase::Begin | Phase::Mirror);
+        self.phase = Phase::Begin;
+        let mut curve = assemble(with, operand, &now);
+        if begun && now.doubts.is_empty() {
+            curve.check();
+        }
+        if begun && !curve.doubts.is_empty() && self.number + 1 < MOST_FORMS {
+            self.number += 1;
+            return;
+        }
+        self.number = 0;
+        self.found.push(curve);
+    }
+
+    fn doubt<T>(&mut self, doubt: impl Into<String>) -> Option<T> {
+        self.now.doubts.push(doubt.into());
+        None
+    }
+
+    fn begin(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let n = with.problem.variables();
+        if operand.dimension() != 1 {
+            let dimension = operand.dimension();
+            return self.doubt(format!("it has dimension {dimension}; curves have 1"));
+        }
+        if !operand.set.ranks.is_empty() {
+            return self
+                .doubt("it is multiple: its deflated equations are not followed to real points");
+        }
+        if n > MOST_CRITICAL_VARIABLES {
+            return self.doubt(format!("{n} variables; at most {MOST_CRITICAL_VARIABLES}"));
+        }
+        let Some(involution) = &with.problem.involution else {
+            return self.doubt("complex conjugation does not map solutions to solutions");
+        };
+        self.now.form = form(with, self.number);
+        self.phase = Phase::Mirror;
+        let row = &operand.slices[0];
+        let mut start = vec![row[0].conj()];
+        start.extend(involution.image(&row[1..]));
+        let homotopy = HomotopyKind::Parameter {
+            start,
+            targets: vec![row.clone()],
+        };
+        let points = operand.set.doubles();
+        let points: Vec<_> = points.iter().map(|p| involution.image(p)).collect();
+        let system = with
+            .deflations
+            .of_stage(with.problem, &operand.set.tracked());
+        let system = (operand.set.tracked(), &*system);
+        Some(Job::track(system, homotopy, &points, &with.problem.tracking).ends_only())
+    }
+
+    /// Whether the component is its own conjugate.
+    fn mirrored(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+        let own = operand.set.doubles();
+        let back = |end: &Vec<Complex64>| own.iter().any(|p| distance(p, end) < 1e-6);
+        let ends = job.ends();
+        let inside = ends.iter().filter(|(_, _, end)| back(end)).count();
+        if inside == 0 && ends.len() == own.len() {
+            return self.doubt(
+                "it is not its own conjugate: its real points are finitely many, and are not searched",
+            );
+        }
+        if inside < own.len() {
+            return self.doubt("whether it is its own conjugate is not clear");
+        }
+        self.phase = Phase::Start;
+        let targets = vec![with.problem.slices(1)];
+        Some(operand.moved_to(with.problem, with.deflations, targets))
+    }
+
+    fn started(&mut self, with: &mut Context<'_>, job: &Job) -> Option<Job> {
+        for (_, decision, values) in job.ends() {
+            match decision.verdict {
+                Verdict::Finite => self.now.start.push(values),
+                _ => return self.doubt("a witness point was lost on the way to another slice"),
+            }
+        }
+        let degree = critical_degree(with, &self.now.form);
+        match degree {
+            0 => self.intersect_none(with),
+            1 => self.intersect(with),
+            degree => {
+                self.phase = Phase::Slide;
+                Some(self.level(with, Some(degree - 1)))
+            }
+        }
+    }
+
+    /// A stage of the level that cuts the curve with its critical points.
+    fn level(&self, with: &mut Context<'_>, forms: Option<u32>) -> Job {
+        let n = with.problem.variables() as u32;
+        let (parameters, order, level) = (Vec::new(), (0..n).collect(), n - 1);
+        let homotopy = match forms {
+            Some(forms) => HomotopyKind::Slide {
+                parameters,
+                order,
+                level,
+                forms,
+            },
+            None => HomotopyKind::Intersect {
+                parameters,
+                order,
+                level,
+            },
+        };
+        let wanted = StageSystem::Critical {
+            form: self.now.form.clone(),
+        };
+        let system = with.deflations.of_stage(with.problem, &wanted);
+        let tracking = &with.problem.tracking;
+        Job::track((wanted, &*system), homotopy, &self.now.start, tracking).ends_only()
+    }
+
+    fn slid(&mut self, with: &mut Context<'_>, job: &Job) -> Option<Job> {
+        for (_, decision, values) in job.ends() {
+            match decision.verdict {
+                Verdict::Finite => self.now.start.push(values),
+                _ => return self.doubt("a point was lost on the way to another slice"),
+            }
+        }
+        self.intersect(with)
+    }
+
+    fn intersect(&mut self, with: &mut Context<'_>) -> Option<Job> {
+        self.phase = Phase::Intersect;
+        Some(self.level(with, None))
+    }
+
+    /// A line has no critical points.
+    fn intersect_none(&mut self, with: &mut Context<'_>) -> Option<Job> {
+        let operand = &with.operands[self.found.len()];
+        self.slabs(with, operand)
+    }
+
+    fn intersected(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+        let wanted = StageSystem::Critical {
+            form: self.now.form.clone(),
+        };
+        let system = with.deflations.of_stage(with.problem, &wanted);
+        let equations = SlicedEquations::new(&system, Vec::new());
+        let involution = with.problem.involution.as_ref()?;
+        let mut lost = 0;
+        let mut found: Vec<(Vec<Complex64>, bool)> = Vec::new();
+        for (_, decision, values) in job.ends() {
+            match decision.verdict {
+                Verdict::AtInfinity => continue,
+                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => {
+                    lost += 1;
+                    continue;
+                }
+                _ => {}
+            }
+            let start: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
+            let refined = equations.refine(&start).filter(|refined| {
+                refined.condition < 1e10 && refined.correction < 1e-20 && refined.moved < 1e-4
+            });
+            found.push(match refined {
+                Some(refined) => (doubles_of(&refined.point), true),
+                None => (values, false),
+            });
+        }
+        if lost > 0 {
+            return self.doubt(format!("{lost} paths to critical points failed"));
+        }
+        for (point, regular) in found {
+            let image = involution.image(&point);
+            let apart = distance(&point, &image);
+            let within = if regular { REAL } else { REAL_SINGULAR };
+            if apart > within * CLEAR {
+                continue;
+            }
+            if apart > within {
+                return self.doubt("a critical point is neither clearly real nor clearly not");
+            }
+            let point: Vec<Complex64> = point
+                .iter()
+                .zip(&image)
+                .map(|(a, b)| 0.5 * (a + b))
+                .collect();
+            let value = value(&self.now.form, &point);
+            let same = |known: &Critical| distance(&known.point, &point) < SAME_SINGULAR;
+            if !self.now.critical.iter().any(same) {
+                self.now.critical.push(Critical {
+                    point,
+                    value,
+                    regular,
+                });
+            }
+        }
+        self.slabs(with, operand)
+    }
+
+    /// The stage of fibres in the middle of all slabs.
+    fn slabs(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let now = &mut self.now;
+        now.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let values: Vec<f64> = now.critical.iter().map(|c| c.value).collect();
+        let range = match (values.first(), values.last()) {
+            (Some(first), Some(last)) => (last - first).max(1e-3 * first.abs().max(1.0)),
+            _ => 1.0,
+        };
+        for value in values {
+            match now.levels.last() {
+                Some(last) if value - last <= SAME_VALUE * range => {}
+                Some(last) if value - last <= OTHER_VALUE * range => {
+                    return self.doubt("two critical points have nearly the same value");
+                }
+                _ => now.levels.push(value),
+            }
+        }
+        let margin = match now.levels.len() {
+            0 | 1 => 0.5 * size_of(operand, &now.form),
+            _ => 0.2 * range,
+        };
+        now.middles = match (now.levels.first(), now.levels.last()) {
+            (Some(first), Some(last)) => {
+                let between = now.levels.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+                let before = std::iter::once(first - margin);
+                before.chain(between).chain([last + margin]).collect()
+            }
+            _ => vec![0.0],
+        };
+        let row = |value: &f64| vec![row_of(&now.form, *value)];
+        let targets = now.middles.iter().map(row).collect();
+        self.phase = Phase::Fibres;
+        Some(operand.moved_to(with.problem, with.deflations, targets))
+    }
+
+    fn fibred(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+        let involution = with.problem.involution.as_ref()?;
+        let ends = job.ends();
+        for (slab, ends) in ends.chunks(operand.degree()).enumerate() {
+            let middle = self.now.middles[slab];
+            if ends.iter().any(|(_, d, _)| d.verdict != Verdict::Finite) {
+                return self.doubt(format!("points of the fibre at {middle:.6} were lost"));
+            }
+            let rows = vec![row_of(&self.now.form, middle)];
+            let points: Vec<Vec<Complex64>> = ends.iter().map(|(_, _, v)| v.clone()).collect();
+            let refined = with
+                .deflations
+                .points_on(with.problem, (&rows, &[]), &points);
+            let Some(refined) = refined.into_iter().collect::<Option<Vec<_>>>() else {
+                return self.doubt(format!("the fibre at {middle:.6} is not regular"));
+            };
+            let apart = refined.iter().map(|p| (p.clone(), 1)).collect();
+            if equal_ones_merged(apart).len() < operand.degree() {
+                return self.doubt(format!("two paths met in the fibre at {middle:.6}"));
+            }
+            let mut fibre = Vec::new();
+            for refined in refined {
+                let point = doubles_of(&refined.point);
+                let apart = distance(&point, &involution.image(&point));
+                let limit = REAL * refined.condition.clamp(1.0, 1e4);
+                if apart > limit && apart <= limit * CLEAR {
+                    return self.doubt("a point is neither clearly real nor clearly not");
+                }
+                let real = apart <= limit;
+                fibre.push(FibrePoint { point, real });
+            }
+            self.now.fibres.push(fibre);
+        }
+        self.plan_tasks();
+        let stages = self.now.tasks.len();
+        if stages > MOST_STAGES {
+            return self.doubt(format!(
+                "{stages} stages between fibres; at most {MOST_STAGES}: fewer samples take fewer"
+            ));
+        }
+        self.next_task(with, 0)
+    }
+
+    /// Both ends of every slab, and samples in between.
+    fn plan_tasks(&mut self) {
+        let now = &mut self.now;
+        let last = now.levels.len();
+        let count = f64::from(self.samples + 1);
+        for slab in 0..now.middles.len() {
+            let middle = now.middles[slab];
+            let sides = [slab.checked_sub(1), (slab < last).then_some(slab)];
+            let other = sides.into_iter().flatten().next();
+            let reach = other.map_or(1.0, |level| (now.levels[level] - middle).abs());
+            for (side, level) in sides.into_iter().enumerate() {
+                if let Some(level) = level {
+                    let to = now.levels[level];
+                    now.tasks.push(Task {
+                        slab,
+                        to,
+                        level: Some(level),
+                    });
+                }
+                if !now.fibres[slab].iter().any(|p| p.real) {
+                    continue;
+                }
+                let sign = if side == 0 { -1.0 } else { 1.0 };
+                let end = level.map_or(middle + sign * reach, |level| now.levels[level]);
+                for k in 1..=self.samples {
+                    // Denser near the end, where arcs may turn.
+                    let part = f64::from(k) / count;
+                    let part = part * (2.0 - part);
+                    now.tasks.push(Task {
+                        slab,
+                        to: middle + part * (end - middle),
+                        level: None,
+                    });
+                }
+            }
+        }
+    }
+
+    fn next_task(&mut self, with: &mut Context<'_>, place: usize) -> Option<Job> {
+        let task = *self.now.tasks.get(place)?;
+        self.phase = Phase::Slabs(place);
+        let wanted = StageSystem::Fibre {
+            form: self.now.form.clone(),
+            values: [self.now.middles[task.slab].to_bits(), task.to.to_bits()],
+        };
+        let system = with.deflations.of_stage(with.problem, &wanted);
+        let points: Vec<Vec<Complex64>> = self.travellers(&task).map(|p| p.point.clone()).collect();
+        let tracking = &with.problem.tracking;
+        Some(Job::along((wanted, &*system), &points, tracking).ends_only())
+    }
+
+    /// The points of a task: all of the fibre to the end of a slab, real ones to samples.
+    fn travellers(&self, task: &Task) -> impl Iterator<Item = &FibrePoint> {
+        let all = task.level.is_some();
+        let fibre = self.now.fibres[task.slab].iter();
+        fibre.filter(move |p| all || p.real)
+    }
+
+    fn connected(&mut self, with: &mut Context<'_>, place: usize, job: &Job) -> Option<Job> {
+        let ends = job.ends().into_iter().map(|(_, decision, values)| {
+            let regular = match decision.verdict {
+                Verdict::Failed | Verdict::WithinDataAccuracy => return None,
+                Verdict::AtInfinity => return Some(End::Infinite),
+                verdict => verdict == Verdict::Finite,
+            };
+            Some(End::At {
+                point: values,
+                regular,
+            })
+        });
+        self.now.ends.push(ends.collect());
+        self.next_task(with, place + 1)
+    }
+}
+
+/// A random real form: integers that conjugation exchanges where it exchanges variables.
+fn form(with: &Context<'_>, number: u32) -> Vec<[i32; 2]> {
+    let n = with.problem.variables();
+    let index = (1 << 50) | u64::from(number);
+    let mut random = RandomStream::new(with.problem.seed(), Purpose::Question, index);
+    let mut part = || random.below(1999) as i32 - 999;
+    let mut form: Vec<[i32; 2]> = (0..n).map(|_| [part(), part()]).collect();
+    let places: Vec<Complex64> = (0..n).map(|v| Complex64::new(v as f64, 0.0)).collect();
+    let partners = with.problem.involution.as_ref().map(|i| i.image(&places));
+    for v in 0..n {
+        let partner = partners.as_ref().map_or(v, |p| p[v].re as usize);
+        if partner == v {
+            form[v][1] = 0;
+        } else if partner < v {
+            form[v] = [form[partner][0], -form[partner][1]];
+        }
+        if form[v] == [0, 0] {
+            form[v][0] = 1;
+        }
+    }
+    form
+}
+
+/// The order of magnitude of the form on a component.
+fn size_of(operand: &Operand, form: &[[i32; 2]]) -> f64 {
+    let row = row_of(form, 0.0);
+    let length = row.iter().map(|c| c.norm_sqr()).sum::<f64>().sqrt();
+    let points = operand.set.doubles();
+    let mut sizes: Vec<f64> = points
+        .iter()
+        .map(|p| p.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt())
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    length * sizes[sizes.len() / 2].max(1e-3)
+}
+
+/// Degree of the equation of critical points.
+fn critical_degree(with: &mut Context<'_>, form: &[[i32; 2]]) -> u32 {
+    let wanted = StageSystem::Critical {
+        form: form.to_vec(),
+    };
+    let system = with.deflations.of_stage(with.problem, &wanted);
+    let degrees = cognate_systems::polynomial::degrees(&system);
+    // A constant that is not 0 has degree 0, and one that vanishes has none.
+    degrees.map_or(0, |degrees| degrees.total.last().copied().unwrap_or(0))
+}

@@ -1,0 +1,85 @@
+//! Tracing: what is known of a real curve while it is followed.
+
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// Where a path came.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum End {
+    Infinite,
+    At {
+        point: Vec<Complex64>,
+        regular: bool,
+    },
+}
+
+/// A real point where the form is critical or the curve singular.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Critical {
+    pub point: Vec<Complex64>,
+    pub value: f64,
+    /// Whether the form is critical there in a regular way.
+    pub regular: bool,
+}
+
+/// What a stage between fibres is for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Task {
+    pub slab: usize,
+    /// The value to which the form goes.
+    pub to: f64,
+    /// The level at the end of the slab, by place; `None` for samples.
+    pub level: Option<usize>,
+}
+
+/// A point of a fibre in the middle of a slab.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct FibrePoint {
+    pub point: Vec<Complex64>,
+    pub real: bool,
+}
+
+/// The current component.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Tracing {
+    pub form: Vec<[i32; 2]>,
+    /// Points on the slice of the level, then on all its forms.
+    pub start: Vec<Vec<Complex64>>,
+    pub critical: Vec<Critical>,
+    /// Values of the critical points, ascending, each once.
+    pub levels: Vec<f64>,
+    /// Values in the middle of the slabs: before the first level, between, after the last.
+    pub middles: Vec<f64>,
+    pub fibres: Vec<Vec<FibrePoint>>,
+    pub tasks: Vec<Task>,
+    /// Where the points of each task's slab came, in the order of the points.
+    pub ends: Vec<Vec<Option<End>>>,
+    pub doubts: Vec<String>,
+}
+
+/// The slice where the form has a value.
+pub(super) fn row_of(form: &[[i32; 2]], value: f64) -> Vec<Complex64> {
+    let coefficients = form
+        .iter()
+        .map(|&[re, im]| Complex64::new(f64::from(re), f64::from(im)));
+    std::iter::once(Complex64::new(-value, 0.0))
+        .chain(coefficients)
+        .collect()
+}
+
+/// The form at a point.
+pub(super) fn value(form: &[[i32; 2]], point: &[Complex64]) -> f64 {
+    let row = row_of(form, 0.0);
+    let terms = row[1..].iter().zip(point).map(|(c, x)| (c * x).re);
+    terms.sum()
+}
+
+/// Distance relative to the size of the first, or to 1.
+pub(super) fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
+    let (mut apart, mut size) = (0.0, 1.0f64);
+    for (x, y) in a.iter().zip(b) {
+        apart += (x - y).norm_sqr();
+        size += x.norm_sqr();
+    }
+    (apart / size).sqrt()
+}

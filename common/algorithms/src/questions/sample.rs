@@ -1,0 +1,309 @@
+//! Sample: points of each component, by moving its slices: at random, near a point, or through real points of a box.
+
+use super::member::checked;
+use super::{Context, MOST_SAMPLES, Operand, QuestionError};
+use crate::decomposition::job::Job;
+use crate::decomposition::problem::Known;
+use cognate_continuation::bend::exactly;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::answer::Samples;
+use cognate_solutions::witness::question::SampleWish;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// Most coordinates of the points of a component.
+const MOST_COORDINATES: u64 = 1_000_000;
+/// Rounds of stages without enough real points before the search ends.
+const MOST_ROUNDS: u32 = 12;
+/// Slices of a round for each point that is wanted, at least.
+const LEAST_SLICES: u64 = 16;
+/// How far from a point slices pass that are to find others near it, relative to its size.
+const NEAR: f64 = 1e-2;
+/// A coordinate this small beside the point's size is no imaginary part.
+const REAL: f64 = 1e-9;
+
+/// Component by component, round by round.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Sample {
+    wish: SampleWish,
+    found: Vec<Samples>,
+    round: u32,
+    /// Slices that were used for the component.
+    used: u64,
+}
+
+impl Sample {
+    pub fn new(system: &System, wish: &SampleWish) -> Result<Self, QuestionError> {
+        let wrong = |field, found: String, expected: String| {
+            Err(QuestionError::Wish {
+                field,
+                found,
+                expected,
+            })
+        };
+        if !(1..=MOST_SAMPLES).contains(&wish.count) {
+            let expected = format!("1 to {MOST_SAMPLES}");
+            return wrong("count", wish.count.to_string(), expected);
+        }
+        let coordinates = wish.count.saturating_mul(system.variables.len() as u64);
+        if coordinates > MOST_COORDINATES {
+            let expected = format!("at most {MOST_COORDINATES} coordinates in all");
+            return wrong("count", wish.count.to_string(), expected);
+        }
+        if let Some(near) = &wish.near {
+            checked(system, std::slice::from_ref(near))?;
+        }
+        let n = system.variables.len();
+        if !wish.within.is_empty() && wish.within.len() != n {
+            let found = format!("{} pairs", wish.within.len());
+            return wrong("box", found, format!("{n}, one for each variable"));
+        }
+        for [low, high] in &wish.within {
+            if !(low.is_finite() && high.is_finite() && low < high) {
+                let expected = "two finite numbers, the lower first".into();
+                return wrong("box", format!("{low} to {high}"), expected);
+            }
+        }
+        Ok(Self {
+            wish: wish.clone(),
+            found: Vec::new(),
+            round: 0,
+            used: 0,
+        })
+    }
+
+    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+        if let Some(job) = done {
+            self.learn(with, job);
+        }
+        loop {
+            let place = self.found.len().saturating_sub(1);
+            let enough = |found: &Samples| found.points.len() as u64 >= found.wanted;
+            let current = self.found.last();
+            if current.is_none_or(enough) || self.round >= MOST_ROUNDS {
+                let operand = with.operands.get(self.found.len())?;
+                self.found.push(Samples {
+                    id: operand.id,
+                    wanted: self.wish.count,
+                    points: Vec::new(),
+                    failed: 0,
+                });
+                (self.round, self.used) = (0, 0);
+                if operand.dimension() == 0 {
+                    self.take_point(with, operand);
+                }
+                continue;
+            }
+            let operand = &with.operands[place];
+            let targets = self.targets(with, operand, &self.found[place]);
+            self.round += 1;
+            self.used += targets.len() as u64;
+            return Some(operand.moved_to(with.problem, with.deflations, targets));
+        }
+    }
+
+    fn is_real(&self) -> bool {
+        self.wish.real || !self.wish.within.is_empty()
+    }
+
+    /// An isolated point is all there is.
+    fn take_point(&mut self, with: &Context<'_>, operand: &Operand) {
+        let n = with.problem.variables();
+        let point = cognate_continuation::bend::doubles_of(&operand.set.points[0].point[..n]);
+        let values = with.problem.to_variables(&point);
+        let fits = self.fits(with, &values);
+        if let Some(found) = self.found.last_mut() {
+            found.wanted = 1;
+            if fits {
+                found.points.push(values);
+            } else {
+                found.wanted = 0;
+            }
+        }
+    }
+
+    /// The slices of the next round.
+    fn targets(
+        &self,
+        with: &Context<'_>,
+        operand: &Operand,
+        found: &Samples,
+    ) -> Vec<Vec<Vec<Complex64>>> {
+        let degree = operand.degree() as u64;
+        let missing = found.wanted - found.points.len() as u64;
+        let wanted = match (self.is_real() || self.wish.near.is_some(), self.round) {
+            (false, _) => missing.div_ceil(degree),
+            (true, 0) => missing.max(LEAST_SLICES),
+            // As many points come from a slice as before.
+            (true, _) => {
+                let each = found.points.len().max(1) as u64;
+                (missing * self.used).div_ceil(each).max(LEAST_SLICES)
+            }
+        };
+        let count = wanted.min(operand.most_targets() as u64);
+        let slice = |k: u64| self.slice(with, operand, self.used + k);
+        (0..count).map(slice).collect()
+    }
+
+    /// One slice, a row for each dimension.
+    fn slice(&self, with: &Context<'_>, operand: &Operand, number: u64) -> Vec<Vec<Complex64>> {
+        let problem = with.problem;
+        let n = problem.variables();
+        let index = (u64::from(operand.id.dimension) << 52) ^ (u64::from(operand.id.number) << 32);
+        let mut random = RandomStream::new(
+            problem.seed(),
+            Purpose::Question,
+            (1 << 60) ^ index ^ number,
+        );
+        let real = self.is_real();
+        let mut between = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let mut complex = |size: f64| Complex64::new(between(-size, size), between(-size, size));
+        let through: Vec<Complex64> = match (&self.wish.near, self.wish.within.is_empty()) {
+            (Some(near), _) => {
+                let size = NEAR * length(&near.values).max(1.0);
+                let moved = near.values.iter().map(|z| z + complex(size));
+                problem.to_unknowns(&moved.collect::<Vec<_>>())
+            }
+            (None, false) => {
+                let each = self.wish.within.iter();
+                let point: Vec<Complex64> = each
+                    .map(|[low, high]| {
+                        let part = 0.5 * (1.0 + complex(1.0).re);
+                        Complex64::new(low + (high - low) * part, 0.0)
+                    })
+                    .collect();
+                problem.to_unknowns(&point)
+            }
+            (None, true) => {
+                let size = spread(operand);
+                (0..n).map(|_| complex(size)).collect()
+            }
+        };
+        // The slice of a real wish is mapped to itself by the conjugation of the system.
+        let symmetric = |values: Vec<Complex64>| match (real, &problem.involution) {
+            (false, _) => values,
+            (true, Some(involution)) => {
+                let image = involution.image(&values);
+                let pairs = values.iter().zip(image);
+                pairs.map(|(a, b)| 0.5 * (a + b)).collect()
+            }
+            (true, None) => values.iter().map(|z| Complex64::new(z.re, 0.0)).collect(),
+        };
+        let through = symmetric(through);
+        let rows = 0..operand.dimension();
+        rows.map(|_| {
+            let coefficients = symmetric((0..n).map(|_| complex(1.0)).collect());
+            let terms = coefficients.iter().zip(&through);
+            let constant = -terms.map(|(c, x)| c * x).sum::<Complex64>();
+            std::iter::once(constant).chain(coefficients).collect()
+        })
+        .collect()
+    }
+
+    fn learn(&mut self, with: &Context<'_>, job: &Job) {
+        let n = with.problem.variables();
+        let mut taken: Vec<Vec<Complex64>> = Vec::new();
+        let mut failed = 0;
+        let place = self.found.len().saturating_sub(1);
+        let degree = with.operands[place].degree();
+        for ends in job.ends().chunks(degree) {
+            let mut of_slice: Vec<Vec<Complex64>> = Vec::new();
+            for (result, decision, end) in ends {
+                match decision.verdict {
+                    Verdict::AtInfinity => continue,
+                    Verdict::Finite => {}
+                    _ => {
+                        failed += 1;
+                        continue;
+                    }
+                }
+                let exact: Vec<_> = end[..n].iter().map(|&z| exactly(z)).collect();
+                let known = Known::to_accuracy(result.accuracy.max(1e-12));
+                let values = with.problem.to_variables(&end[..n]);
+                if with.problem.solves(&exact, &known) == Some(false) {
+                    failed += 1;
+                } else if self.fits(with, &values) {
+                    of_slice.push(values);
+                }
+            }
+            match &self.wish.near {
+                // One end of each slice is near the point.
+                Some(near) => {
+                    let apart = |p: &Vec<Complex64>| -> f64 {
+                        let pairs = p.iter().zip(&near.values);
+                        pairs.map(|(a, b)| (a - b).norm_sqr()).sum()
+                    };
+                    let nearest = of_slice
+                        .into_iter()
+                        .min_by(|a, b| apart(a).total_cmp(&apart(b)));
+                    taken.extend(nearest);
+                }
+                None => taken.extend(of_slice),
+            }
+        }
+        if let Some(found) = self.found.last_mut() {
+            let room = found.wanted as usize - found.points.len();
+            taken.truncate(room);
+            let real = self.wish.real || !self.wish.within.is_empty();
+            found
+                .points
+                .extend(taken.into_iter().map(|point| match real {
+                    true => real_parts(point),
+                    false => point,
+                }));
+            found.failed += failed;
+        }
+    }
+
+    /// Whether a point is one of those that are wanted.
+    fn fits(&self, with: &Context<'_>, values: &[Complex64]) -> bool {
+        if !self.is_real() {
+            return true;
+        }
+        let size = length(values).max(1.0);
+        // In isotropic coordinates a point is real where conjugates are each other's.
+        let image = match &with.problem.involution {
+            Some(involution) => involution.image(values),
+            None => values.iter().map(|z| z.conj()).collect(),
+        };
+        let pairs = values.iter().zip(&image);
+        let real = pairs
+            .clone()
+            .all(|(a, b)| (a - b).norm_sqr().sqrt() <= REAL * size);
+        let bounds = self.wish.within.iter().zip(values);
+        let mut inside = bounds.map(|([low, high], z)| (*low..=*high).contains(&z.re));
+        real && inside.all(|inside| inside)
+    }
+
+    pub fn take(&mut self) -> Vec<Samples> {
+        std::mem::take(&mut self.found)
+    }
+}
+
+/// How far the witness points spread, at least 1.
+fn spread(operand: &Operand) -> f64 {
+    let points = operand.set.doubles();
+    let mut sizes: Vec<f64> = points
+        .iter()
+        .map(|p| p.iter().map(|z| z.norm_sqr().sqrt()).fold(0.0, f64::max))
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes[sizes.len() / 2].max(1.0)
+}
+
+fn length(values: &[Complex64]) -> f64 {
+    values.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt()
+}
+
+/// A point without imaginary parts, where all its variables are real.
+fn real_parts(mut point: Vec<Complex64>) -> Vec<Complex64> {
+    let size = length(&point).max(1.0);
+    if point.iter().all(|z| z.im.abs() <= REAL * size) {
+        for z in &mut point {
+            z.im = 0.0;
+        }
+    }
+    point
+}

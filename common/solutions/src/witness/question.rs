@@ -1,0 +1,61 @@
+//! Question: what is asked about components that are known by their witness sets.
+
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// A point as it was given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GivenPoint {
+    /// Values of the variables.
+    pub values: Vec<Complex64>,
+    /// Its error, relative to its size; the rounding error of doubles where the numbers are exact.
+    pub accuracy: f64,
+}
+
+/// Which points of a component are wanted.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SampleWish {
+    /// How many points.
+    pub count: u64,
+    /// Points near this one.
+    pub near: Option<GivenPoint>,
+    /// Only real points.
+    pub real: bool,
+    /// Real points whose variables lie between these, one pair for each variable; empty: anywhere.
+    pub within: Vec<[f64; 2]>,
+}
+
+/// A question to all components of a set, or to those that the client chose.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Question {
+    /// Whether what was read is whole: traces and multiplicities.
+    Check,
+    /// Which witness points are proved, and whether they are proved to be different.
+    Certify,
+    /// On which components each point lies.
+    Member {
+        /// The points.
+        points: Vec<GivenPoint>,
+    },
+    /// Points of each component.
+    Sample(SampleWish),
+    /// Dimension and degree of the closure of each component's image in these variables.
+    Project {
+        /// Variables by index.
+        onto: Vec<u32>,
+    },
+    /// Degrees by groups of variables.
+    Multidegree,
+    /// How many directions a point can be moved in, to the first order and to higher ones.
+    Mobility {
+        /// The points.
+        points: Vec<GivenPoint>,
+        /// The highest order.
+        depth: u32,
+    },
+    /// The real part of each component of dimension 1.
+    RealCurve {
+        /// Points of each arc, on either side of its middle.
+        samples: u32,
+    },
+}

@@ -1,0 +1,251 @@
+//! RealCurve: the real part of a component of dimension 1 as a graph: points where a real linear form is critical or
+//! the curve singular, and between them arcs on which the form grows.
+
+use super::witness_set::ComponentId;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// What a vertex is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VertexKind {
+    /// The form is critical there, and the curve is not singular.
+    Critical,
+    /// The curve is singular, and at least four half-branches meet.
+    Node,
+    /// The curve is singular, and no real branch passes.
+    Acnode,
+    /// The curve is singular, and one branch passes.
+    Cusp,
+    /// The curve is not singular; another component passes.
+    Crossing,
+    /// Nothing happens there but that another vertex has the same value.
+    Regular,
+}
+
+/// A real point where arcs begin and end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveVertex {
+    /// What it is.
+    pub kind: VertexKind,
+    /// Values of the variables.
+    pub point: Vec<Complex64>,
+    /// Value of the form in the unknowns that are tracked.
+    pub value: f64,
+}
+
+impl CurveVertex {
+    /// Whether the curve is singular there.
+    pub fn is_singular(&self) -> bool {
+        matches!(
+            self.kind,
+            VertexKind::Node | VertexKind::Acnode | VertexKind::Cusp
+        )
+    }
+}
+
+/// An arc on which the form grows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveEdge {
+    /// The vertices with the lower and the upper value, by place; `None` where it goes to infinity.
+    pub ends: [Option<usize>; 2],
+    /// Points of the arc, by growing value of the form.
+    pub samples: Vec<Vec<Complex64>>,
+}
+
+/// The real part of one component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RealCurve {
+    /// The component.
+    pub id: ComponentId,
+    /// Its degree.
+    pub degree: u64,
+    /// Coefficients of the form, real and imaginary part for each variable.
+    pub form: Vec<[i32; 2]>,
+    /// Its vertices.
+    pub vertices: Vec<CurveVertex>,
+    /// Its arcs.
+    pub edges: Vec<CurveEdge>,
+    /// What is not clear.
+    pub doubts: Vec<String>,
+}
+
+/// What the real part of a curve consists of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CurveCounts {
+    /// Connected parts that are circles.
+    pub closed_loops: u64,
+    /// Connected parts that are lines.
+    pub unbounded_arcs: u64,
+    /// Points through which no real branch passes.
+    pub isolated_points: u64,
+    /// Real points where the curve is singular.
+    pub singular_points: u64,
+    /// All connected parts.
+    pub connected_components: u64,
+}
+
+impl RealCurve {
+    /// How many arcs end at each vertex; one that begins and ends there counts twice.
+    pub fn degrees(&self) -> Vec<u64> {
+        let mut degrees = vec![0; self.vertices.len()];
+        for end in self.edges.iter().flat_map(|edge| edge.ends).flatten() {
+            degrees[end] += 1;
+        }
+        degrees
+    }
+
+    /// Loops, arcs, isolated and singular points, connected parts.
+    pub fn counts(&self) -> CurveCounts {
+        let degrees = self.degrees();
+        let mut counts = CurveCounts {
+            singular_points: self.vertices.iter().filter(|v| v.is_singular()).count() as u64,
+            ..CurveCounts::default()
+        };
+        // Vertices first, then edges.
+        let vertices = self.vertices.len();
+        let mut part: Vec<usize> = (0..vertices + self.edges.len()).collect();
+        fn root(part: &mut [usize], mut k: usize) -> usize {
+            while part[k] != k {
+                part[k] = part[part[k]];
+                k = part[k];
+            }
+            k
+        }
+        for (e, edge) in self.edges.iter().enumerate() {
+            for end in edge.ends.into_iter().flatten() {
+                let (a, b) = (root(&mut part, vertices + e), root(&mut part, end));
+                part[a.max(b)] = a.min(b);
+            }
+        }
+        for own in 0..part.len() {
+            if root(&mut part, own) != own {
+                continue;
+            }
+            counts.connected_components += 1;
+            let members: Vec<usize> = (0..part.len())
+                .filter(|&k| root(&mut part, k) == own)
+                .collect();
+            let (points, arcs): (Vec<usize>, Vec<usize>) =
+                members.into_iter().partition(|&k| k < vertices);
+            let open: usize = arcs
+                .iter()
+                .flat_map(|&k| self.edges[k - vertices].ends)
+                .filter(Option::is_none)
+                .count();
+            let plain = points.iter().all(|&v| degrees[v] == 2);
+            match (arcs.is_empty(), plain, open) {
+                (true, _, _) => counts.isolated_points += 1,
+                (false, true, 0) => counts.closed_loops += 1,
+                (false, true, 2) => counts.unbounded_arcs += 1,
+                _ => {}
+            }
+        }
+        counts
+    }
+
+    /// What does not fit together: a vertex at which a branch is missing.
+    pub fn check(&mut self) {
+        let degrees = self.degrees();
+        for (vertex, degree) in self.vertices.iter().zip(degrees) {
+            let fits = match vertex.kind {
+                VertexKind::Critical | VertexKind::Crossing | VertexKind::Regular => degree == 2,
+                VertexKind::Cusp => degree == 2,
+                VertexKind::Node => degree >= 4 && degree % 2 == 0,
+                VertexKind::Acnode => degree == 0,
+            };
+            if !fits {
+                self.doubts.push(format!(
+                    "{degree} half-branches meet at a {} point where the form is {:.6}: a branch is missing",
+                    match vertex.is_singular() {
+                        true => "singular",
+                        false => "smooth",
+                    },
+                    vertex.value
+                ));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vertex(kind: VertexKind) -> CurveVertex {
+        CurveVertex {
+            kind,
+            point: Vec::new(),
+            value: 0.0,
+        }
+    }
+
+    fn curve(kinds: &[VertexKind], ends: &[[Option<usize>; 2]]) -> RealCurve {
+        let edge = |ends: &[Option<usize>; 2]| CurveEdge {
+            ends: *ends,
+            samples: Vec::new(),
+        };
+        RealCurve {
+            id: ComponentId {
+                dimension: 1,
+                number: 1,
+            },
+            degree: 4,
+            form: Vec::new(),
+            vertices: kinds.iter().map(|&kind| vertex(kind)).collect(),
+            edges: ends.iter().map(edge).collect(),
+            doubts: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn circles_lines_and_points_are_told_apart() {
+        use VertexKind::{Acnode, Critical, Node};
+        let circle = [[Some(0), Some(1)], [Some(0), Some(1)]];
+        let mut loops = curve(&[Critical, Critical], &circle);
+        loops.check();
+        assert!(loops.doubts.is_empty());
+        let counts = loops.counts();
+        assert_eq!((counts.closed_loops, counts.connected_components), (1, 1));
+        let line = curve(
+            &[Critical, Critical, Acnode],
+            &[[None, Some(0)], [Some(1), Some(0)], [Some(1), None]],
+        );
+        let counts = line.counts();
+        assert_eq!((counts.unbounded_arcs, counts.isolated_points), (1, 1));
+        assert_eq!(
+            (counts.connected_components, counts.singular_points),
+            (2, 1)
+        );
+        // Two loops that meet in a node are neither.
+        let eight = curve(
+            &[Critical, Node, Critical],
+            &[
+                [Some(0), Some(1)],
+                [Some(0), Some(1)],
+                [Some(1), Some(2)],
+                [Some(1), Some(2)],
+            ],
+        );
+        let counts = eight.counts();
+        assert_eq!((counts.closed_loops, counts.connected_components), (0, 1));
+    }
+
+    #[test]
+    fn a_branch_that_was_taken_away_is_found() {
+        use VertexKind::{Critical, Node};
+        let ends = [
+            [Some(0), Some(1)],
+            [Some(0), Some(1)],
+            [Some(1), Some(2)],
+            [Some(1), Some(2)],
+        ];
+        for lost in 0..ends.len() {
+            let mut left = ends.to_vec();
+            left.remove(lost);
+            let mut broken = curve(&[Critical, Node, Critical], &left);
+            broken.check();
+            assert!(!broken.doubts.is_empty(), "edge {lost}");
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Sets: components that were found before, read from a folder, from Bertini's files or from a job, and checked before
+//! anything is asked of them.
+
+pub mod arguments;
+mod bertini_folder;
+mod folder;
+pub mod points;
+#[cfg(test)]
+mod tests;
+
+use super::connection::Connection;
+use super::error::ClientError;
+use cognate_algorithms::decomposition::DecompositionOptions;
+use cognate_algorithms::questions::{OperandError, QuestionError, QuestionSolve, run_locally};
+use cognate_solutions::witness::{Answer, ComponentId, Irreducible, Question, WitnessSet};
+use cognate_systems::formats;
+use cognate_systems::system::System;
+use serde::Deserialize;
+use std::path::Path;
+
+/// Lanes of the check: points are few and moved by no path.
+const WIDTH: usize = 8;
+
+/// A component with where it stands in files.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// The component.
+    pub set: WitnessSet,
+    /// The file and the line of each point; empty where there are no files.
+    places: Vec<String>,
+}
+
+/// A decomposition that was made before.
+#[derive(Clone, Debug)]
+pub struct KnownSet {
+    /// What people call it.
+    pub name: String,
+    /// The system at the values of its parameters.
+    pub system: System,
+    /// Seed of the decomposition, which charts of homogeneous groups depend on.
+    pub seed: u64,
+    /// The file, or the job, with the components.
+    origin: String,
+    /// The components.
+    pub components: Vec<Known>,
+}
+
+/// What a decomposition is in files and messages, apart from its points.
+#[derive(Debug, Deserialize)]
+struct Described {
+    variables: Vec<String>,
+    components: Vec<WitnessSet>,
+    dimensions: Vec<DescribedDimension>,
+    seed: u64,
+    /// Where the system is not in a file of its own.
+    #[serde(default)]
+    system: Option<String>,
+}
+
+/// What is asked of a dimension: that its components are all there.
+#[derive(Debug, Deserialize)]
+struct DescribedDimension {
+    number: u32,
+    degree: u64,
+}
+
+impl KnownSet {
+    /// The components of a finished job.
+    pub async fn of_job(connection: &mut Connection, job: &str) -> Result<Self, ClientError> {
+        let value = connection.decomposition(job).await?;
+        let origin = format!("job {job}");
+        let strange = |e: serde_json::Error| wrong(&origin, &e.to_string());
+        let described: Described = serde_json::from_str(&value.to_string()).map_err(strange)?;
+        let text = described.system.as_deref().unwrap_or_default();
+        let system = formats::read(&origin, text.as_bytes())
+            .map_err(|e| ClientError::Format(e.to_string()))?
+            .system;
+        let known = Self {
+            name: job.to_owned(),
+            system,
+            seed: described.seed,
+            origin: origin.clone(),
+            components: described
+                .components
+                .iter()
+                .map(|set| Known {
+                    set: set.clone(),
+                    places: Vec::new(),
+                })
+                .collect(),
+        };
+        known.check_counts(&described)?;
+        Ok(known)
+    }
+
+    /// The components of a folder, of its `decomposition.json` or of its `witness_data`.
+    pub fn read(path: &Path) -> Result<Self, ClientError> {
+        let is = |name: &str| path.file_name().is_some_and(|n| n == name);
+        let folder = match path.is_dir() {
+            true => path,
+            false => path.parent().unwrap_or(Path::new(".")),
+        };
+        let ours = folder.join("decomposition.json");
+        if is("witness_data") || (path.is_dir() && !ours.exists()) {
+            return bertini_folder::read(folder);
+        }
+        folder::read(folder)
+    }
+
+    /// Only these components; all where none is named.
+    pub fn choose(&mut self, wanted: &[ComponentId]) -> Result<(), ClientError> {
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        for id in wanted {
+            if !self.components.iter().any(|known| known.set.id == *id) {
+                let all: Vec<String> = self
+                    .components
+                    .iter()
+                    .map(|k| k.set.id.to_string())
+                    .collect();
+                let message = format!(
+                    "no component {id} is in {}; there are {}",
+                    self.origin,
+                    all.join(", ")
+                );
+                return Err(wrong("--component", &message));
+            }
+        }
+        self.components
+            .retain(|known| wanted.contains(&known.set.id));
+        Ok(())
+    }
+
+    /// The components.
+    pub fn sets(&self) -> Vec<WitnessSet> {
+        self.components
+            .iter()
+            .map(|known| known.set.clone())
+            .collect()
+    }
+
+    /// How this set is asked: by its own seed.
+    pub fn options(&self) -> DecompositionOptions {
+        DecompositionOptions {
+            seed: self.seed,
+            ..DecompositionOptions::default()
+        }
+    }
+
+    /// Degrees that do not add up, or a component without its points.
+    fn check_counts(&self, described: &Described) -> Result<(), ClientError> {
+        if described.variables != self.system.variables {
+            let message = format!(
+                "its variables are {}, those of the system {}",
+                described.variables.join(", "),
+                self.system.variables.join(", ")
+            );
+            return Err(wrong(&self.origin, &message));
+        }
+        for dimension in &described.dimensions {
+            let own = self.components.iter().map(|known| &known.set);
+            let own = own.filter(|set| set.dimension() == dimension.number);
+            let found: u64 = own.map(|set| set.degree).sum();
+            if found != dimension.degree {
+                let message = format!(
+                    "dimension {} has degree {}, its components have degree {found} in all",
+                    dimension.number, dimension.degree
+                );
+                return Err(wrong(&self.origin, &message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether every component is whole: its points solve the equations on the slice, their second derivatives sum to 0,
+    /// and its multiplicity is that of the equations. What is wrong is named with its place.
+    pub fn check(&self) -> Result<(), ClientError> {
+        let unsettled = |known: &&Known| known.set.irreducible != Irreducible::Yes;
+        if let Some(known) = self.components.iter().find(unsettled) {
+            let message = format!(
+                "component {} is unsettled, so nothing can be asked of it; --component names others",
+                known.set.id
+            );
+            return Err(wrong(&self.origin, &message));
+        }
+        let sets = self.sets();
+        let solve = QuestionSolve::new(&self.system, &self.options(), &sets, &Question::Check)
+            .map_err(|error| self.placed(&error))?;
+        let (answer, _) =
+            run_locally(solve, WIDTH).map_err(|error| wrong(&self.origin, &error.to_string()))?;
+        let doubts = answer.doubts();
+        if let Some(doubt) = doubts.first() {
+            return Err(wrong(&self.origin, doubt));
+        }
+        let Answer::Check(checked) = &answer else {
+            return Ok(());
+        };
+        for (checked, set) in checked.iter().zip(&sets) {
+            if let (Some(found), Some(said)) = (checked.multiplicity, set.multiplicity.scheme)
+                && found != said
+            {
+                let message = format!(
+                    "component {}: multiplicity {said}, but the dual space at a witness point has dimension {found}",
+                    set.id
+                );
+                return Err(wrong(&self.origin, &message));
+            }
+        }
+        Ok(())
+    }
+
+    /// An error with the file and the line of what it is about.
+    fn placed(&self, error: &QuestionError) -> ClientError {
+        let QuestionError::Operand(operand) = error else {
+            return wrong(&self.origin, &error.to_string());
+        };
+        let place = OperandError::place(operand).and_then(|(id, point)| {
+            let known = self.components.iter().find(|known| known.set.id == id)?;
+            known.places.get(point?).cloned()
+        });
+        let origin = place.unwrap_or_else(|| self.origin.clone());
+        wrong(&origin, &operand.to_string())
+    }
+}
+
+fn wrong(origin: &str, message: &str) -> ClientError {
+    ClientError::Input {
+        origin: origin.into(),
+        message: message.into(),
+    }
+}
+
+fn read_text(path: &Path) -> Result<String, ClientError> {
+    let content = std::fs::read(path).map_err(|source| ClientError::File {
+        action: "cannot read",
+        path: path.to_path_buf(),
+        source,
+    })?;
+    String::from_utf8(content).map_err(|e| {
+        let byte = e.utf8_error().valid_up_to() + 1;
+        wrong(
+            &path.display().to_string(),
+            &format!("is no text: byte {byte} is not UTF-8"),
+        )
+    })
+}
+
+fn read_problem(path: &Path) -> Result<System, ClientError> {
+    let text = read_text(path)?;
+    let read = formats::read(&path.display().to_string(), text.as_bytes());
+    Ok(read.map_err(|e| ClientError::Format(e.to_string()))?.system)
+}
