@@ -52,6 +52,56 @@ fn chandra_6_has_32_solutions_one_of_them_far_away() {
     }
 }
 
+/// x = 3, y in {0.1, -1, -7e10}, z in {4006, 6.2}: beside a coordinate of 7e10 the others have their digits as well.
+#[test]
+fn small_coordinates_beside_a_huge_one_have_their_digits() {
+    let system = written(
+        "variable_group x, y, z; function f1, f2, f3; f1 = x - 3; \
+         f2 = y^3 + 700000000009/10*y^2 + 629999999999/10*y - 7000000000; \
+         f3 = 4*x^2 - 4*x*z + 40002/5*x + z^2 - 20001/5*z + 800;",
+    );
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        assert_eq!(sets[0].counts.real, Some(6), "seed {seed}");
+        for solution in &sets[0].solutions {
+            let values: Vec<_> = solution.variables.values().collect();
+            let near =
+                |z: num_complex::Complex64, exact: f64| ((z - exact) / exact).norm_sqr() < 1e-16;
+            assert!(near(values[0], 3.0), "seed {seed}: {values:?}");
+            let z = values[2];
+            assert!(near(z, 4006.0) || near(z, 6.2), "seed {seed}: {values:?}");
+        }
+    }
+}
+
+/// (x+y-z)^2 = -4e24, y^2 = 1.6e-15, (2x+2y-3z)^2 = -1/15625: eight solutions near 1e12, in pairs that differ by parts of
+/// 1e-14. Coefficients that range over 38 orders of magnitude let no solution count as infinite unseen.
+#[test]
+fn solutions_beyond_every_digit_are_doubted_not_dropped() {
+    let system = written(
+        "variable_group x, y, z; function f1, f2, f3; \
+         f1 = (x + y - z)^2 + 4000000000000000000000000; f2 = y^2 - 1/625000000000000; \
+         f3 = 4*x^2 + 8*x*y - 12*x*z + 4*y^2 - 12*y*z + 9*z^2 + 1/15625;",
+    );
+    for seed in SEEDS {
+        let options = PlanOptions {
+            seed,
+            ..PlanOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let right = sets[0].counts.distinct == 8;
+        assert!(
+            right || !sets[0].settled(),
+            "seed {seed}: {:?}",
+            sets[0].paths
+        );
+    }
+}
+
 /// (x-1)(x-2)...(x-12), multiplied out (Wilkinson 1959): a change of a coefficient by 2^-53 of itself
 /// moves a root by more than 1e-9.
 #[test]

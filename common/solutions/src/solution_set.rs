@@ -815,6 +815,20 @@ mod tests {
         assert!(!set.settled(), "two paths at a triple point");
     }
 
+    /// Two roots 5e-8 apart: turns in doubles take each for a singular point, with more digits the Jacobian is regular.
+    #[test]
+    fn a_singular_end_with_a_regular_jacobian_is_a_simple_root_unless_two_coincide() {
+        let near = |path, x| isolated(path, &[(0.5, 0.0), (x, 0.0)], 1, &[0], 1);
+        let set = set_of(&[near(0, 0.5), near(1, 0.50000005)], &complete());
+        assert_eq!((set.paths.finite, set.paths.singular), (2, 0));
+        assert_eq!((set.counts.distinct, set.counts.nonsingular), (2, 2));
+        assert!(set.settled());
+        let set = set_of(&[near(0, 0.5), near(1, 0.5)], &complete());
+        assert_eq!((set.paths.finite, set.paths.singular), (0, 2));
+        assert_eq!(set.counts.doubtful_multiplicity, 1);
+        assert!(!set.settled());
+    }
+
     #[test]
     fn an_unresolved_crossing_is_a_failed_path_and_said() {
         let point = [(1.0, 0.0), (0.5, 0.0)];

@@ -302,3 +302,42 @@ fn one_lane<R: Real>(lane: usize) -> R::Mask {
     only.set_lane(lane, true);
     only
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_numeric::lanes::Lanes;
+
+    #[test]
+    fn a_lane_that_stays_keeps_the_points_behind_it() {
+        type Two = Lanes<2>;
+        let mut batch = Batch::<Two>::new((), 1, 0, 1e-4);
+        let number = |value: f64| Complex::<Two>::from_f64((), value, 0.0);
+        // The second lane moves in the first, second and fourth step.
+        for (step, moves) in [true, true, false, true, false].into_iter().enumerate() {
+            let value = step as f64 + 1.0;
+            let mut moved = <Two as Real>::Mask::splat(true);
+            moved.set_lane(1, moves);
+            let mut x = vec![number(value)];
+            x[0].select(moved.not(), &batch.here()[0]);
+            let t = Complex::from_f64((), -value, 0.0);
+            batch.advance(x.clone(), x, &t, moved);
+        }
+        let behind = |lane: usize| -> Vec<f64> {
+            let ages = (0..POINTS).map(|age| batch.slot(age));
+            let counting = ages
+                .enumerate()
+                .filter(|&(age, slot)| age == 0 || batch.known[slot].lane(lane));
+            counting
+                .map(|(_, slot)| {
+                    assert!(
+                        (batch.t[slot].lane(lane).re + batch.x[slot][0].lane(lane).re).abs() < 1.5
+                    );
+                    batch.x[slot][0].lane(lane).re
+                })
+                .collect()
+        };
+        assert_eq!(behind(0), [5.0, 4.0, 3.0, 2.0]);
+        assert_eq!(behind(1), [4.0, 2.0, 1.0, 0.0]);
+    }
+}

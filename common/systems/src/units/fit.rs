@@ -325,6 +325,20 @@ mod tests {
     }
 
     #[test]
+    fn coefficients_range_over_powers_of_two() {
+        let range = |input: &str| {
+            let text = format!("CONFIG\nEND;\nINPUT\n{input}\nEND;\n");
+            let mut system = read("test", text.as_bytes()).unwrap().system;
+            system.scaling = scaling_of(&system, &[]);
+            coefficient_range(&system, &[])
+        };
+        let f = "variable_group x, y; function f, g;";
+        assert!(range(&format!("{f} f = x^2 - 1e16; g = y^2 - 3;")) < 3.0);
+        let wide = range(&format!("{f} f = (x+y)^2 + 2^80; g = (x-y)^2 - 2^-20;"));
+        assert!((97.0..104.0).contains(&wide), "{wide}");
+    }
+
+    #[test]
     fn what_has_ordinary_sizes_stays() {
         let f = "variable_group x, y; function f, g;";
         assert_eq!(of(&format!("{f} f = x^2 - 100; g = x*y - 3;")), [0i32; 0]);
