@@ -1,7 +1,7 @@
 //! What the sizes of a system's coefficients decide before it is solved: the units in which it is tracked, and how
 //! far out its solutions may lie.
 
-use crate::plan::PlanOptions;
+use cognate_continuation::tracker::settings::Settings;
 use cognate_systems::system::System;
 use cognate_systems::units::{coefficient_range, scaling_of};
 use num_complex::Complex64;
@@ -19,10 +19,8 @@ pub(crate) struct Coefficients {
 }
 
 impl Coefficients {
-    /// A family's at the start parameters and at the first target; a homotopy's own at both its ends.
-    pub fn of(system: &System, options: &PlanOptions) -> Self {
-        let ends = options.start_parameters.iter();
-        let ends = ends.chain(options.target_parameters.first());
+    /// A family's at these parameters, of its start and of its first target; a homotopy's own at both its ends.
+    pub fn of<'a>(system: &System, ends: impl Iterator<Item = &'a Vec<Complex64>>) -> Self {
         let mut parameters: Vec<Vec<Complex64>> = ends.cloned().collect();
         parameters.retain(|set| set.len() == system.parameters.len());
         if let Some(t) = system.path_variable {
@@ -52,19 +50,18 @@ impl Coefficients {
         }
     }
 
-    /// The options with the least detail of exact coefficients of a system in its units: where they differ by many
+    /// The settings with the least detail of exact coefficients of a system in its units: where they differ by many
     /// orders of magnitude, solutions so far out are found, or doubted, that count as infinite otherwise.
-    pub fn resolved(&self, system: &System, options: &PlanOptions) -> PlanOptions {
-        let mut options = options.clone();
-        let settings = &mut options.settings;
+    pub fn resolved(&self, system: &System, settings: &Settings) -> Settings {
+        let mut settings = settings.clone();
         if settings.data_accuracy > 0.0 {
-            return options;
+            return settings;
         }
         let range = coefficient_range(system, &self.parameters).min(WIDEST_RANGE);
         if range > WIDE_RANGE {
             settings.exact_data = true;
             settings.data_accuracy = f64::from_bits((1023 - range as u64) << 52);
         }
-        options
+        settings
     }
 }

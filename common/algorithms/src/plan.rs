@@ -154,10 +154,14 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
     if options.sets.is_some() && (given || options.start == StartChoice::Monodromy) {
         return Err(PlanError::SetsWithoutLinearProduct);
     }
-    let coefficients = Coefficients::of(system, options);
+    let ends = options.start_parameters.iter();
+    let coefficients = Coefficients::of(system, ends.chain(options.target_parameters.first()));
     let in_units = coefficients.in_units(system);
     let system = &*in_units;
-    let options = &coefficients.resolved(system, options);
+    let options = &PlanOptions {
+        settings: coefficients.resolved(system, &options.settings),
+        ..options.clone()
+    };
     let mut plan = match (given, options.start) {
         (_, StartChoice::Monodromy) => plan_monodromy(system, options),
         (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),

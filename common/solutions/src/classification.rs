@@ -174,12 +174,12 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     let verdict = match singular {
         _ if at_infinity => Verdict::AtInfinity,
         _ if !solves_what_is_asked(result, tolerances) => Verdict::Excess,
-        // A polynomial in one unknown, unless it is 0, has finitely many roots.
-        true if one_unknown(shape) => Verdict::Singular,
         true => match isolation(result, tolerances) {
-            Isolation::PositiveDimensional => Verdict::PositiveDimensional,
             // With its digits the Jacobian is regular: other solutions are near, that is all.
             Isolation::Isolated { multiplicity: 1 } => Verdict::Finite,
+            // A polynomial in one unknown, unless it is 0, has finitely many roots.
+            _ if one_unknown(shape) => Verdict::Singular,
+            Isolation::PositiveDimensional => Verdict::PositiveDimensional,
             Isolation::Isolated { .. } => Verdict::Singular,
             Isolation::Undecided => Verdict::Undecided,
         },
@@ -471,7 +471,8 @@ mod tests {
         let on_a_set = (Isolation::PositiveDimensional, Verdict::PositiveDimensional);
         let (met, missed) = ([1e-3, 1e-30, 1e-29], [1e-3, 1e-6, 1e-9]);
         assert_eq!(with(&[1, 2, 3, 3], &missed, 1e5), isolated(3));
-        assert_eq!(with(&[1, 1], &[], 1e5), isolated(1));
+        let simple = (Isolation::Isolated { multiplicity: 1 }, Verdict::Finite);
+        assert_eq!(with(&[1, 1], &[], 1e5), simple);
         assert_eq!(with(&[1, 3, 5], &met, 1e5), on_a_set);
         assert_eq!(
             with(&[1, 3, 5], &met, 1.5),

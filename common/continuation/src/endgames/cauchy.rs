@@ -295,14 +295,7 @@ impl Cauchy {
                 return self.not_closed(settings);
             }
             if self.turns >= most {
-                return match self.diverges() {
-                    true => Next::Diverging {
-                        winding_number: None,
-                        infinity_turns: Vec::new(),
-                        power_sum: None,
-                    },
-                    false => self.not_closed(settings),
-                };
+                return self.does_not_close(settings);
             }
             self.add(point, form, &homogenizing);
             return Next::Vertex {
@@ -469,6 +462,18 @@ impl Cauchy {
     fn powers_here(&self) -> bool {
         let groups = self.infinity.len();
         (0..groups).any(|k| power(self.valuations.iter().skip(k).step_by(groups)).is_some())
+    }
+
+    /// The path does not close within as many turns as are tried: it may diverge all the same.
+    fn does_not_close(&mut self, settings: &Settings) -> Next {
+        match self.diverges() {
+            true => Next::Diverging {
+                winding_number: None,
+                infinity_turns: Vec::new(),
+                power_sum: None,
+            },
+            false => self.not_closed(settings),
+        }
     }
 
     /// The path has closed, and goes to infinity, or so far out.

@@ -25,12 +25,14 @@ pub(super) struct Limits {
 
 impl Limits {
     /// Those of doubles, but that less is taken for noise where there are more digits. Around 0
-    /// that is all: there the endgame knows which noise it can bear. (Double-doubles have so much of it
-    /// at singular ends that a third correction decides nothing; sheets that they mix up go up a rung.)
+    /// that is all for double-doubles: there the endgame knows which noise it can bear. (They have so much of it
+    /// at singular ends that a third correction decides nothing; sheets that they mix up go up a rung, where paths
+    /// with coordinates of very different sizes are told from the points that they are near.)
     pub fn around_zero(bits: u32, settings: &Settings) -> Self {
+        let many = bits > DOUBLE_DOUBLE;
         Self {
-            decisive: if bits > DOUBLE_DOUBLE { MOST_ROUNDS } else { 2 },
-            settled: 0.1 * settings.tolerance,
+            decisive: if many { MOST_ROUNDS } else { 2 },
+            settled: 0.1 * settings.tolerance * if many { finer(bits).sqrt() } else { 1.0 },
             refined: REFINED,
             noise: 0.01 * settings.predictor_tolerance * finer(bits),
         }
@@ -44,7 +46,7 @@ impl Limits {
         let half = finer(bits).sqrt();
         Self {
             decisive: rounds(bits),
-            settled: half * limits.settled,
+            settled: half * 0.1 * settings.tolerance,
             refined: half * limits.refined,
             ..limits
         }

@@ -148,7 +148,7 @@ mod tests {
             &[(1.0, 0.0), (0.0, 0.0), (0.0, 0.0)],
             1,
             &[0],
-            1,
+            2,
         ));
         let mut set = SolutionSet::new(
             &system,

@@ -254,7 +254,7 @@ async fn a_database_of_version_1_still_opens() {
     let mut now = PgConnection::connect(&url).await.expect("the database");
     let votes = of_version("SELECT * FROM votes").fetch_all(&mut now).await;
     assert_eq!(votes.unwrap().len(), 1);
-    let versions = "SELECT * FROM ledger WHERE schema_version = 3";
+    let versions = "SELECT * FROM ledger WHERE schema_version = 4";
     let versions = of_version(versions).fetch_all(&mut now).await;
     assert_eq!(versions.unwrap().len(), 1);
 }
