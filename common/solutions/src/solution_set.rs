@@ -746,7 +746,8 @@ mod tests {
             singular(4, &[(1e-14, 0.0), (1.0, 0.0)], 1, &[1]),
         ];
         let set = set_of(&results, &complete());
-        assert_eq!((set.paths.singular, set.paths.at_infinity), (4, 1));
+        let paths = &set.paths;
+        assert_eq!((paths.finite, paths.singular, paths.at_infinity), (1, 3, 1));
         assert_eq!(set.paths.positive_dimensional, Some(0));
         assert_eq!(set.counts.positive_dimensional, None);
         assert_eq!((set.counts.distinct, set.counts.with_multiplicity), (2, 4));
