@@ -1,8 +1,8 @@
 //! A large job: millions of made-up path results through a real coordinator, whose memory is measured.
 //!
 //! `target/release/large_job [--degree 20] [--memory-mib 0]`: four equations of this degree, so degree^4
-//! paths (57: 10,556,001). Nobody tracks them: threads of this program pull chunks and report made-up
-//! ends. Two paths of a hundred go to infinity, one of 10,000 fails and one of 50,000 ends where the one
+//! paths (57: 10,556,001). Nobody tracks them: threads of this program pull chunks and report roots of
+//! unity. Two paths of a hundred go to infinity, one of 10,000 fails and one of 50,000 ends where the one
 //! before does, until they are tracked again; every count is checked at the end, and every solution and
 //! every path is asked for. With `--memory-mib` the coordinator may take no more. What it gave:
 //! `large_job/report.md`.
@@ -40,26 +40,20 @@ fn meets_at_first(path: u64) -> bool {
     path % 50_000 == 40_011
 }
 
-/// A number in 0..1 by a seed (SplitMix64).
-fn uniform(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    (z ^ (z >> 31)) as f64 / u64::MAX as f64
-}
-
-/// Somewhere, the same for the same path: homogenising coordinate first.
-fn point(path: u64) -> Vec<f64> {
-    let mut state = path.wrapping_mul(0x2545_f491_4f6c_dd1d);
-    let coordinate = |_| 2.0 * uniform(&mut state) - 1.0;
-    let mut point: Vec<f64> = (0..2 * (VARIABLES + 1)).map(coordinate).collect();
-    point[0] = 1.0;
-    point[1] = 0.0;
+/// One of the solutions of a^d = b^d = c^d = d^d = 1 by the digits of its path, homogenising coordinate first: the
+/// coordinator looks at the ends that it is told of.
+fn point(path: u64, degree: u64) -> Vec<f64> {
+    let mut point = vec![1.0, 0.0];
+    let mut digits = path;
+    for _ in 0..VARIABLES {
+        let angle = std::f64::consts::TAU * (digits % degree) as f64 / degree as f64;
+        point.extend([angle.cos(), angle.sin()]);
+        digits /= degree;
+    }
     point
 }
 
-fn result(path: u64, attempt: u32) -> v1::PathResult {
+fn result(path: u64, attempt: u32, degree: u64) -> v1::PathResult {
     let outcome = if is_at_infinity(path) {
         v1::PathOutcome::Diverging
     } else if fails_at_first(path) && attempt == 0 {
@@ -76,7 +70,7 @@ fn result(path: u64, attempt: u32) -> v1::PathResult {
         origin: path,
         attempt,
         outcome: outcome.into(),
-        endpoint: point(place),
+        endpoint: point(place, degree),
         t: Some(v1::Complex { re: 0.0, im: 0.0 }),
         residual: 1e-16,
         condition: 10.0 + (path % 97) as f64,
@@ -97,7 +91,7 @@ fn result(path: u64, attempt: u32) -> v1::PathResult {
 }
 
 /// Pulls, makes up and reports until there is nothing more to do.
-fn work(address: &str, name: &str, done: &AtomicBool) {
+fn work(address: &str, name: &str, degree: u64, done: &AtomicBool) {
     let client = Client::connect(address).expect("the coordinator answers");
     let info = |mut client: v1::client_api_client::ClientApiClient<Channel>| async move {
         client.get_server_info(v1::GetServerInfoRequest {}).await
@@ -147,7 +141,9 @@ fn work(address: &str, name: &str, done: &AtomicBool) {
                 identity: identity(),
                 chunks: vec![v1::ChunkReport {
                     lease: lease.id,
-                    results: items.map(|k| result(stage.origin(k), attempt)).collect(),
+                    results: items
+                        .map(|k| result(stage.origin(k), attempt, degree))
+                        .collect(),
                     cpu_nanoseconds: 1_000_000_000,
                     wall_nanoseconds: 1_000_000_000,
                 }],
@@ -193,7 +189,7 @@ fn main() -> ExitCode {
     });
     let mut problem = Submission::of(format!(
         "variable_group a, b, c, d; function f, g, h, k;
-         f = a^{degree} + b - 2; g = b^{degree} + c - 3; h = c^{degree} + d - 5; k = d^{degree} + a - 7;"
+         f = a^{degree} - 1; g = b^{degree} - 1; h = c^{degree} - 1; k = d^{degree} - 1;"
     ));
     problem.options.start = v1::StartKind::TotalDegree.into();
     let client = cluster.client();
@@ -216,7 +212,7 @@ fn main() -> ExitCode {
     let paths = std::thread::scope(|scope| {
         for worker in 0..WORKERS {
             let (address, done) = (cluster.address(), &done);
-            scope.spawn(move || work(&address, &format!("made-up-{worker}"), done));
+            scope.spawn(move || work(&address, &format!("made-up-{worker}"), degree, done));
         }
         let first = |p: &v1::JobProgress| p.stages.first().is_some_and(|s| s.accepted == s.total);
         let reported = client.progress_for(&job, "all is reported", PATIENCE, first);
@@ -258,7 +254,7 @@ fn main() -> ExitCode {
     let (mut answered, mut numbered) = (0, 0);
     client.each_path(&job, |path| {
         let end = path.result.unwrap_or_default();
-        good &= end.origin == answered && end.endpoint == point(answered);
+        good &= end.origin == answered && end.endpoint == point(answered, degree);
         good &= path.solution == (!is_at_infinity(answered)).then_some(numbered);
         numbered += u64::from(path.solution.is_some());
         answered += 1;
