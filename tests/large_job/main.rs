@@ -7,11 +7,13 @@
 //! every path is asked for. With `--memory-mib` the coordinator may take no more. What it gave:
 //! `large_job/report.md`.
 
+use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_protocol::v1::worker_api_client::WorkerApiClient;
 use cognate_protocol::{from_proto, v1};
 use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::client::{Client, Submission, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions};
+use num_complex::Complex64;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -42,18 +44,18 @@ fn meets_at_first(path: u64) -> bool {
 
 /// One of the solutions of a^d = b^d = c^d = d^d = 1 by the digits of its path, homogenising coordinate first: the
 /// coordinator looks at the ends that it is told of.
-fn point(path: u64, degree: u64) -> Vec<f64> {
+fn point(path: u64, roots: &[Complex64]) -> Vec<f64> {
     let mut point = vec![1.0, 0.0];
-    let mut digits = path;
+    let (mut digits, degree) = (path, roots.len() as u64);
     for _ in 0..VARIABLES {
-        let angle = std::f64::consts::TAU * (digits % degree) as f64 / degree as f64;
-        point.extend([angle.cos(), angle.sin()]);
+        let root = roots[(digits % degree) as usize];
+        point.extend([root.re, root.im]);
         digits /= degree;
     }
     point
 }
 
-fn result(path: u64, attempt: u32, degree: u64) -> v1::PathResult {
+fn result(path: u64, attempt: u32, roots: &[Complex64]) -> v1::PathResult {
     let outcome = if is_at_infinity(path) {
         v1::PathOutcome::Diverging
     } else if fails_at_first(path) && attempt == 0 {
@@ -70,7 +72,7 @@ fn result(path: u64, attempt: u32, degree: u64) -> v1::PathResult {
         origin: path,
         attempt,
         outcome: outcome.into(),
-        endpoint: point(place, degree),
+        endpoint: point(place, roots),
         t: Some(v1::Complex { re: 0.0, im: 0.0 }),
         residual: 1e-16,
         condition: 10.0 + (path % 97) as f64,
@@ -91,7 +93,7 @@ fn result(path: u64, attempt: u32, degree: u64) -> v1::PathResult {
 }
 
 /// Pulls, makes up and reports until there is nothing more to do.
-fn work(address: &str, name: &str, degree: u64, done: &AtomicBool) {
+fn work(address: &str, name: &str, roots: &[Complex64], done: &AtomicBool) {
     let client = Client::connect(address).expect("the coordinator answers");
     let info = |mut client: v1::client_api_client::ClientApiClient<Channel>| async move {
         client.get_server_info(v1::GetServerInfoRequest {}).await
@@ -142,7 +144,7 @@ fn work(address: &str, name: &str, degree: u64, done: &AtomicBool) {
                 chunks: vec![v1::ChunkReport {
                     lease: lease.id,
                     results: items
-                        .map(|k| result(stage.origin(k), attempt, degree))
+                        .map(|k| result(stage.origin(k), attempt, roots))
                         .collect(),
                     cpu_nanoseconds: 1_000_000_000,
                     wall_nanoseconds: 1_000_000_000,
@@ -183,6 +185,7 @@ fn main() -> ExitCode {
         Ok(())
     };
     or_exit(read(&mut degree, &mut memory_mib));
+    let roots = roots_of_unity(u32::try_from(degree).expect("a degree"));
     let cluster = Cluster::start(CoordinatorOptions {
         chunk_paths: Some(CHUNK),
         ..CoordinatorOptions::default()
@@ -211,8 +214,8 @@ fn main() -> ExitCode {
     let done = AtomicBool::new(false);
     let paths = std::thread::scope(|scope| {
         for worker in 0..WORKERS {
-            let (address, done) = (cluster.address(), &done);
-            scope.spawn(move || work(&address, &format!("made-up-{worker}"), degree, done));
+            let (address, roots, done) = (cluster.address(), &roots, &done);
+            scope.spawn(move || work(&address, &format!("made-up-{worker}"), roots, done));
         }
         let first = |p: &v1::JobProgress| p.stages.first().is_some_and(|s| s.accepted == s.total);
         let reported = client.progress_for(&job, "all is reported", PATIENCE, first);
@@ -254,7 +257,7 @@ fn main() -> ExitCode {
     let (mut answered, mut numbered) = (0, 0);
     client.each_path(&job, |path| {
         let end = path.result.unwrap_or_default();
-        good &= end.origin == answered && end.endpoint == point(answered, degree);
+        good &= end.origin == answered && end.endpoint == point(answered, &roots);
         good &= path.solution == (!is_at_infinity(answered)).then_some(numbered);
         numbered += u64::from(path.solution.is_some());
         answered += 1;
