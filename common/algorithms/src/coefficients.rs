@@ -3,7 +3,7 @@
 
 use cognate_continuation::tracker::settings::Settings;
 use cognate_systems::system::System;
-use cognate_systems::units::{coefficient_range, scaling_of};
+use cognate_systems::units::{Fit, fit};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
@@ -13,9 +13,9 @@ const WIDE_RANGE: f64 = 40.0;
 /// Ranges are told apart up to here: a double holds its inverse.
 const WIDEST_RANGE: f64 = 900.0;
 
-/// Values of the parameters that the coefficients are looked at for: where the paths begin and end.
+/// What was seen of the coefficients at the values of the parameters where the paths begin and end.
 pub(crate) struct Coefficients {
-    parameters: Vec<Vec<Complex64>>,
+    fit: Fit,
 }
 
 impl Coefficients {
@@ -35,33 +35,31 @@ impl Coefficients {
                 })
                 .into();
         }
-        Self { parameters }
+        Self {
+            fit: fit(system, &parameters),
+        }
     }
 
     /// The system with the units in which it is tracked.
     pub fn in_units<'a>(&self, system: &'a System) -> Cow<'a, System> {
-        let scaling = scaling_of(system, &self.parameters);
-        match scaling == system.scaling {
+        match self.fit.scaling == system.scaling {
             true => Cow::Borrowed(system),
             false => Cow::Owned(System {
-                scaling,
+                scaling: self.fit.scaling.clone(),
                 ..system.clone()
             }),
         }
     }
 
-    /// The settings with the least detail of exact coefficients of a system in its units: where they differ by many
-    /// orders of magnitude, solutions so far out are found, or doubted, that count as infinite otherwise.
-    pub fn resolved(&self, system: &System, settings: &Settings) -> Settings {
-        let mut settings = settings.clone();
-        if settings.data_accuracy > 0.0 {
-            return settings;
-        }
-        let range = coefficient_range(system, &self.parameters).min(WIDEST_RANGE);
-        if range > WIDE_RANGE {
-            settings.exact_data = true;
-            settings.data_accuracy = f64::from_bits((1023 - range as u64) << 52);
-        }
-        settings
+    /// Other settings, with the least detail of exact coefficients in the system's units, where these differ by many orders
+    /// of magnitude: solutions so far out are found, or doubted, that count as infinite otherwise.
+    pub fn resolved(&self, settings: &Settings) -> Option<Settings> {
+        let range = self.fit.coefficient_range.min(WIDEST_RANGE);
+        let wide = settings.data_accuracy == 0.0 && range > WIDE_RANGE;
+        wide.then(|| Settings {
+            exact_data: true,
+            data_accuracy: f64::from_bits((1023 - range as u64) << 52),
+            ..settings.clone()
+        })
     }
 }

@@ -158,10 +158,12 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
     let coefficients = Coefficients::of(system, ends.chain(options.target_parameters.first()));
     let in_units = coefficients.in_units(system);
     let system = &*in_units;
-    let options = &PlanOptions {
-        settings: coefficients.resolved(system, &options.settings),
+    let resolved = coefficients.resolved(&options.settings);
+    let resolved = resolved.map(|settings| PlanOptions {
+        settings,
         ..options.clone()
-    };
+    });
+    let options = resolved.as_ref().unwrap_or(options);
     let mut plan = match (given, options.start) {
         (_, StartChoice::Monodromy) => plan_monodromy(system, options),
         (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),

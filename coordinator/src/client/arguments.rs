@@ -4,7 +4,7 @@
 //! here and refused by `not_yet`, so that nothing is half there in silence.
 
 pub use super::common_arguments::{
-    Format, OutputArguments, PresetName, ProgressArguments, ProgressForm,
+    Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, ProgressForm,
 };
 use super::connection::Target;
 use super::error::ClientError;
@@ -401,18 +401,9 @@ pub struct Decompose {
     /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
     #[arg(long, help_heading = "Problem")]
     pub exact: bool,
-    /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
-    #[arg(long, value_name = "URL", help_heading = "Service")]
-    pub coordinator: Option<String>,
-    /// Token and certificates.
+    /// Who does it.
     #[command(flatten)]
-    pub credentials: CredentialFiles,
-    /// Local worker processes
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
-    pub workers: u32,
-    /// Threads of each worker [default: cores / workers]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
-    pub threads: Option<u32>,
+    pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
@@ -594,18 +585,9 @@ pub struct SynthesisArguments {
     /// Proofs that the linkages are there, that they differ, that they are real
     #[arg(long)]
     pub certify: bool,
-    /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
-    #[arg(long, value_name = "URL", help_heading = "Service")]
-    pub coordinator: Option<String>,
-    /// Token and certificates.
+    /// Who does it.
     #[command(flatten)]
-    pub credentials: CredentialFiles,
-    /// Local worker processes
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
-    pub workers: u32,
-    /// Threads of each worker [default: cores / workers]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
-    pub threads: Option<u32>,
+    pub service: OwnOrRunning,
     /// How the linkages are shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: SynthesisFormat,

@@ -1,6 +1,10 @@
 //! Arguments that many commands have: how an answer is shown, how cautiously paths are followed.
 
+use super::connection::Target;
+use super::embedded::Embedded;
+use super::error::ClientError;
 use clap::{Args, ValueEnum};
+use cognate_worker::transport::connect::CredentialFiles;
 use std::path::PathBuf;
 
 /// How results are shown.
@@ -49,6 +53,38 @@ pub struct OutputArguments {
     /// Also write summary.json, solutions.jsonl, paths.parquet and Bertini's files here
     #[arg(long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+}
+
+/// A running coordinator, or one of the command's own with local workers.
+#[derive(Clone, Debug, Args)]
+pub struct OwnOrRunning {
+    /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
+    #[arg(long, value_name = "URL", help_heading = "Service")]
+    pub coordinator: Option<String>,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
+    /// Local worker processes
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
+    pub workers: u32,
+    /// Threads of each worker [default: cores / workers]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
+    pub threads: Option<u32>,
+}
+
+impl OwnOrRunning {
+    /// Where the running coordinator is, if one was named.
+    pub fn running(&self) -> Result<Option<Target>, ClientError> {
+        let named = self.coordinator.as_deref();
+        named
+            .map(|at| Target::read(at, &self.credentials))
+            .transpose()
+    }
+
+    /// Starts one of its own.
+    pub async fn start(&self) -> Result<Embedded, ClientError> {
+        Embedded::start(self.workers, self.threads).await
+    }
 }
 
 /// What is seen while a job runs.

@@ -126,7 +126,7 @@ impl TryFrom<State> for DecompositionSolve {
 
     fn try_from(state: State) -> Result<Self, ProblemError> {
         Ok(Self {
-            problem: Arc::new(problem_of(&state.system, &state.options)?),
+            problem: Arc::new(Problem::of_options(&state.system, &state.options)?),
             deflations: Deflations::default(),
             prefixes: Prefixes::default(),
             state,
@@ -134,14 +134,10 @@ impl TryFrom<State> for DecompositionSolve {
     }
 }
 
-fn problem_of(system: &System, options: &DecompositionOptions) -> Result<Problem, ProblemError> {
-    Problem::of_options(system, options)
-}
-
 impl DecompositionSolve {
     /// The decomposition of a system that has been checked.
     pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
-        let problem = problem_of(system, options)?;
+        let problem = Problem::of_options(system, options)?;
         let method = options.method.unwrap_or(Method::Equations);
         Ok(Self {
             state: State {

@@ -38,11 +38,21 @@ struct Term {
     size: f64,
 }
 
+/// The units of a checked system, and what its coefficients are in them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The units; none where coefficients have ordinary sizes already.
+    pub scaling: Scaling,
+    /// By how many powers of two the coefficients of one equation differ at most, in these units; 0 where nothing is
+    /// known.
+    pub coefficient_range: f64,
+}
+
 /// The scaling that suits a checked system at these values of its parameters (those where its
-/// paths begin and end, one list for each); none where it has ordinary sizes already.
+/// paths begin and end, one list for each).
 ///
 /// Variables that a declared conjugation or permutation takes to each other have one unit.
-pub fn scaling_of(system: &System, parameters: &[Vec<Complex64>]) -> Scaling {
+pub fn fit(system: &System, parameters: &[Vec<Complex64>]) -> Fit {
     let (units, of_variable) = units(system);
     // Parameters that nothing is known of are of ordinary size.
     let none = vec![Complex64::new(1.0, 0.0); system.parameters.len()];
@@ -56,66 +66,54 @@ pub fn scaling_of(system: &System, parameters: &[Vec<Complex64>]) -> Scaling {
         .flatten()
         .map(|equation| terms(equation, &of_variable))
         .collect();
+    let found = serving(&equations, units);
     let largest = equations.iter().flatten().map(|term| term.size.abs());
     let beyond = largest.fold(0.0, f64::max) > LARGEST_COEFFICIENT;
-    let plain = match beyond {
+    let exponents = found.clone().unwrap_or_else(|| vec![0; units]);
+    let scaling = match found.is_some() || beyond {
         true => Scaling {
-            exponents: vec![0; system.variable_count()],
+            exponents: of_variable.iter().map(|&unit| exponents[unit]).collect(),
         },
         false => Scaling::default(),
     };
-    if units > MOST_UNITS {
-        return plain;
-    }
-    let found = exponents(&equations, units);
-    let rounded: Vec<i32> = found.iter().map(|&e| round(e)).collect();
-    let scaled: Vec<f64> = rounded.iter().map(|&e| f64::from(e)).collect();
-    let before = spread(&equations, &vec![0.0; units]);
-    let serves = rounded.iter().any(|e| e.abs() >= LEAST_EXPONENT)
-        && spread(&equations, &scaled) <= EXPLAINED * before
-        && bits(&equations, &scaled) <= MOST_BITS;
-    match serves {
-        true => Scaling {
-            exponents: of_variable.iter().map(|&unit| rounded[unit]).collect(),
-        },
-        false => plain,
+    let exponents: Vec<f64> = exponents.iter().map(|&e| f64::from(e)).collect();
+    Fit {
+        scaling,
+        coefficient_range: coefficient_range(&equations, &exponents),
     }
 }
 
-/// By how many powers of two the coefficients of one equation differ at most, in the units of the
-/// system's scaling, at these values of its parameters (one list for each set); 0 where nothing is known.
-pub fn coefficient_range(system: &System, parameters: &[Vec<Complex64>]) -> f64 {
-    let units: Vec<f64> = match system.scaling.is_none() {
-        true => vec![0.0; system.variable_count()],
-        false => system
-            .scaling
-            .exponents
-            .iter()
-            .map(|&e| f64::from(e))
-            .collect(),
-    };
-    let of_variable: Vec<usize> = (0..units.len()).collect();
-    let none = vec![Complex64::new(1.0, 0.0); system.parameters.len()];
-    let none = [none];
-    let sets = if parameters.is_empty() {
-        &none[..]
-    } else {
-        parameters
-    };
-    let equations = sets
-        .iter()
-        .flat_map(|set| magnitudes(system, set))
-        .flatten();
-    let range = |equation: Magnitudes| {
-        let terms = terms(&equation, &of_variable);
-        let sizes = terms.iter().map(|term| term.scaled(&units));
-        let (least, most) = sizes
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), size| {
-                (least.min(size), most.max(size))
-            });
+/// The scaling alone.
+pub fn scaling_of(system: &System, parameters: &[Vec<Complex64>]) -> Scaling {
+    fit(system, parameters).scaling
+}
+
+/// The exponents of the units, where there are some that explain the sizes.
+fn serving(equations: &[Vec<Term>], units: usize) -> Option<Vec<i32>> {
+    if units > MOST_UNITS {
+        return None;
+    }
+    let found = exponents(equations, units);
+    let rounded: Vec<i32> = found.iter().map(|&e| round(e)).collect();
+    let scaled: Vec<f64> = rounded.iter().map(|&e| f64::from(e)).collect();
+    let before = spread(equations, &vec![0.0; units]);
+    let serves = rounded.iter().any(|e| e.abs() >= LEAST_EXPONENT)
+        && spread(equations, &scaled) <= EXPLAINED * before
+        && bits(equations, &scaled) <= MOST_BITS;
+    serves.then_some(rounded)
+}
+
+/// By how many powers of two the coefficients of one equation differ at most.
+fn coefficient_range(equations: &[Vec<Term>], exponents: &[f64]) -> f64 {
+    let range = |terms: &Vec<Term>| {
+        let sizes = terms.iter().map(|term| term.scaled(exponents));
+        let limits = (f64::INFINITY, f64::NEG_INFINITY);
+        let (least, most) = sizes.fold(limits, |(least, most), size| {
+            (least.min(size), most.max(size))
+        });
         most - least
     };
-    equations.map(range).fold(0.0, f64::max)
+    equations.iter().map(range).fold(0.0, f64::max)
 }
 
 /// The nearest integer within bounds, from a finite number or not.
@@ -328,9 +326,8 @@ mod tests {
     fn coefficients_range_over_powers_of_two() {
         let range = |input: &str| {
             let text = format!("CONFIG\nEND;\nINPUT\n{input}\nEND;\n");
-            let mut system = read("test", text.as_bytes()).unwrap().system;
-            system.scaling = scaling_of(&system, &[]);
-            coefficient_range(&system, &[])
+            let system = read("test", text.as_bytes()).unwrap().system;
+            fit(&system, &[]).coefficient_range
         };
         let f = "variable_group x, y; function f, g;";
         assert!(range(&format!("{f} f = x^2 - 1e16; g = y^2 - 3;")) < 3.0);

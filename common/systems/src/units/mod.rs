@@ -3,4 +3,4 @@
 mod fit;
 mod magnitudes;
 
-pub use fit::{coefficient_range, scaling_of};
+pub use fit::{Fit, fit, scaling_of};

@@ -2,8 +2,7 @@
 //! before. Each is a job, of a coordinator of its own or of a running one.
 
 use crate::client::commands::solve;
-use crate::client::connection::{Connection, Target};
-use crate::client::embedded::Embedded;
+use crate::client::connection::Connection;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output::curve_svg;
 use crate::client::problem::Prepared;
@@ -116,11 +115,8 @@ async fn ask(
     a: &SetArguments,
     question: impl Fn(&KnownSet) -> Result<Question, ClientError>,
 ) -> Result<Exit, ClientError> {
-    let target = match &a.coordinator {
-        Some(coordinator) => Some(Target::read(coordinator, &a.credentials)?),
-        None => None,
-    };
-    let mut set = match &target {
+    let running = a.service.running()?;
+    let mut set = match &running {
         Some(target) if !a.set.exists() => {
             let mut connection = Connection::open(target).await?;
             KnownSet::of_job(&mut connection, &a.set.display().to_string()).await?
@@ -131,14 +127,7 @@ async fn ask(
     set.check()?;
     let prepared = prepared(a, &set, question(&set)?)?;
     let output = a.output();
-    if let Some(target) = &target {
-        return tokio::select! {
-            ended = solve::follow(&output, &a.progress, prepared, target) => ended,
-            () = crate::client::interrupted() => Err(ClientError::Interrupted),
-        };
-    }
-    let service = Embedded::start(a.workers, a.threads).await?;
-    solve::embedded(&output, &a.progress, prepared, service).await
+    solve::anywhere(&a.service, running.as_ref(), &output, &a.progress, prepared).await
 }
 
 fn prepared(a: &SetArguments, set: &KnownSet, question: Question) -> Result<Prepared, ClientError> {

@@ -1,7 +1,7 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
 use super::{results, submit, watch};
-use crate::client::arguments::{Format, OutputArguments, ProgressArguments, Solve};
+use crate::client::arguments::{Format, OutputArguments, OwnOrRunning, ProgressArguments, Solve};
 use crate::client::connection::{Connection, Target};
 use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
@@ -17,8 +17,25 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
     embedded(&a.output, &a.progress, prepared, service).await
 }
 
+/// Has a problem solved by the running coordinator that was named, or by one of the command's own.
+pub async fn anywhere(
+    service: &OwnOrRunning,
+    running: Option<&Target>,
+    output: &OutputArguments,
+    progress: &ProgressArguments,
+    prepared: Prepared,
+) -> Result<Exit, ClientError> {
+    match running {
+        Some(target) => tokio::select! {
+            ended = follow(output, progress, prepared, target) => ended,
+            () = crate::client::interrupted() => Err(ClientError::Interrupted),
+        },
+        None => embedded(output, progress, prepared, service.start().await?).await,
+    }
+}
+
 /// Has a problem solved by this service, then stops it.
-pub async fn embedded(
+async fn embedded(
     output: &OutputArguments,
     progress: &ProgressArguments,
     prepared: Prepared,

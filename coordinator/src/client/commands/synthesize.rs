@@ -2,7 +2,6 @@
 
 use crate::client::arguments::{NinePoint, SynthesisArguments, SynthesisFormat, Synthesize};
 use crate::client::connection::Target;
-use crate::client::embedded::Embedded;
 use crate::client::error::{ClientError, Exit};
 use crate::client::output;
 use crate::client::output::linkages::designs::{self, Designs};
@@ -34,14 +33,13 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
         Synthesize::PosesAndPoints(a) => sister(&a.file, position_files::read_poses_and_points)?,
     };
     let a = a.common();
-    if let Some(coordinator) = &a.coordinator {
-        let target = Target::read(coordinator, &a.credentials)?;
+    if let Some(target) = a.service.running()? {
         return tokio::select! {
             ended = perform(a, &task, &target) => ended,
             () = crate::client::interrupted() => Err(ClientError::Interrupted),
         };
     }
-    let mut service = Embedded::start(a.workers, a.threads).await?;
+    let mut service = a.service.start().await?;
     let target = Target::open_to_all(&service.address());
     let ended = tokio::select! {
         ended = perform(a, &task, &target) => ended,

@@ -1,9 +1,10 @@
 //! Arguments of the commands that ask components.
 
-use crate::client::common_arguments::{Format, OutputArguments, PresetName, ProgressArguments};
+use crate::client::common_arguments::{
+    Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments,
+};
 use clap::Args;
 use cognate_solutions::witness::ComponentId;
-use cognate_worker::transport::connect::CredentialFiles;
 use std::path::PathBuf;
 
 /// The components that are asked, by whom, and how the answer is shown.
@@ -19,18 +20,9 @@ pub struct SetArguments {
     /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t)]
     pub preset: PresetName,
-    /// A running coordinator: http://HOST:PORT or unix:PATH [default: one of its own, with local workers]
-    #[arg(long, value_name = "URL", help_heading = "Service")]
-    pub coordinator: Option<String>,
-    /// Token and certificates.
+    /// Who does it.
     #[command(flatten)]
-    pub credentials: CredentialFiles,
-    /// Local worker processes
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
-    pub workers: u32,
-    /// Threads of each worker [default: cores / workers]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
-    pub threads: Option<u32>,
+    pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
