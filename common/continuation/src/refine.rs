@@ -70,6 +70,10 @@ impl<S: Real> Job for Newton<'_, '_, '_, S> {
 pub(crate) struct Refiner<'a, S: Real> {
     homotopy: &'a Homotopy,
     context: S::Context,
+    /// A relative correction this small is rounding error.
+    finest: f64,
+    /// Newton steps at most.
+    rounds: u32,
     scratch: <Interpreter as Evaluate<S>>::Scratch,
     matrix: Matrix<S>,
     elimination: Matrix<S>,
@@ -85,6 +89,8 @@ impl<'a, S: Real> Refiner<'a, S> {
         Self {
             homotopy,
             context,
+            finest: f64::EPSILON,
+            rounds: 6,
             scratch: Evaluate::<S>::scratch(homotopy.program(), context),
             matrix: Matrix::zeros(context, n, n + 2),
             elimination: Matrix::zeros(context, n, n + 2),
@@ -94,16 +100,24 @@ impl<'a, S: Real> Refiner<'a, S> {
         }
     }
 
-    /// Newton steps at t = 0 until they no longer shrink; `point` is replaced where they converge.
-    pub(crate) fn refine(&mut self, point: &mut [Complex64], target: u64) -> Report {
-        self.newton(point, Complex64::default(), target, 6)
+    /// The same, which goes on to relative corrections of `finest`, where the arithmetic has such digits.
+    pub(crate) fn until(self, finest: f64) -> Self {
+        let rounds = 2 * self.rounds;
+        Self {
+            finest,
+            rounds,
+            ..self
+        }
     }
 
-    /// The point with the digits of this arithmetic, where Newton's method converges from it.
-    pub(crate) fn digits(&mut self, point: &[Complex64], target: u64) -> Option<Vec<Complex<S>>> {
-        let mut copy = point.to_vec();
-        let report = self.refine(&mut copy, target);
-        report.converged.then(|| self.x.clone())
+    /// Newton steps at t = 0 until they no longer shrink; `point` is replaced where they converge.
+    pub(crate) fn refine(&mut self, point: &mut [Complex64], target: u64) -> Report {
+        self.newton(point, Complex64::default(), target, self.rounds)
+    }
+
+    /// The point where the last Newton step led, with the digits of this arithmetic.
+    pub(crate) fn last(&self) -> &[Complex<S>] {
+        &self.x
     }
 
     /// The same facts without moving the point.
@@ -181,10 +195,10 @@ impl<'a, S: Real> Refiner<'a, S> {
             for i in 0..n {
                 self.x[i].sub(self.elimination.at(i, n));
             }
-            report.accuracy = correction.max(f64::EPSILON);
+            report.accuracy = correction.max(self.finest);
             report.converged = correction <= 1e-8;
             round += 1;
-            if correction > 0.5 * last || correction <= f64::EPSILON {
+            if correction > 0.5 * last || correction <= self.finest {
                 round = most; // rounding error is reached
             }
             last = correction;

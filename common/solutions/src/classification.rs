@@ -11,11 +11,13 @@ use serde::{Deserialize, Serialize};
 /// Every number that decides a verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tolerances {
-    /// A homogenising coordinate is 0 within this many times the endpoint's estimated error.
+    /// A homogenising coordinate of a singular endpoint is 0 within this many times its estimated error.
     pub infinity_factor: f64,
     /// ... or within this, whatever the estimate says: five hundred roundings of a
-    /// coordinate of size 1. Solutions of norm up to 1e12 stay solutions in doubles.
+    /// coordinate of size 1.
     pub infinity_floor: f64,
+    /// Regular endpoints far out have a homogenising coordinate with digits of its own: it is 0 within this.
+    pub regular_infinity_floor: f64,
     /// The same where the endpoint is singular and the coordinate was seen to turn around 0:
     /// errors of singular endpoints are estimated less well.
     pub singular_infinity_floor: f64,
@@ -65,6 +67,7 @@ impl Default for Tolerances {
         Self {
             infinity_factor: 10.0,
             infinity_floor: 1e-13,
+            regular_infinity_floor: 1e-22,
             singular_infinity_floor: 1e-10,
             infinity_band: 10.0,
             residual_factor: 100.0,
@@ -164,10 +167,17 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
                 // none that showed it.
                 by_precision_limit |= vanishes != (turns > 0) || (vanishes && !nothing);
             }
-            None => {
+            None if singular => {
                 at_infinity |= vanishes;
                 by_precision_limit |= coordinate > bound / tolerances.infinity_band
                     && coordinate < bound * tolerances.infinity_band;
+            }
+            None => {
+                // A regular endpoint far out has digits of its own.
+                let floor = tolerances.regular_infinity_floor;
+                at_infinity |= coordinate <= floor;
+                by_precision_limit |= coordinate > floor / tolerances.infinity_band
+                    && coordinate < floor * tolerances.infinity_band;
             }
         }
     }
@@ -346,11 +356,11 @@ mod tests {
 
     #[test]
     fn size_alone_is_not_infinity() {
-        for norm in [1.0, 1e4, 1e6, 1e8, 1e11] {
+        for norm in [1.0, 1e4, 1e6, 1e8, 1e11, 1e19] {
             let result = regular(0, &[(1.0 / norm, 0.0), (1.0, 0.0), (0.3, -0.2)]);
             assert_eq!(verdict(&result), (Verdict::Finite, false), "norm {norm}");
         }
-        let result = regular(0, &[(3e-17, 1e-17), (1.0, 0.0)]);
+        let result = regular(0, &[(3e-24, 1e-24), (1.0, 0.0)]);
         assert_eq!(verdict(&result), (Verdict::AtInfinity, false));
     }
 
@@ -366,7 +376,7 @@ mod tests {
 
     #[test]
     fn near_the_border_the_precision_decides_and_says_so() {
-        for x0 in [5e-13, 5e-14] {
+        for x0 in [5e-22, 5e-23] {
             let result = regular(0, &[(x0, 0.0), (1.0, 0.0)]);
             assert!(verdict(&result).1);
         }
@@ -440,7 +450,7 @@ mod tests {
             with(singular(0, &point, 2, &[0]), 1e-3, 0.1),
             Verdict::Excess,
         );
-        let far = [(1e-17, 0.0), (1.0, 0.0)];
+        let far = [(1e-24, 0.0), (1.0, 0.0)];
         expect(with(regular(0, &far), 0.3, 0.2), Verdict::AtInfinity);
     }
 

@@ -27,6 +27,8 @@ const BOLDEST: f64 = 1e-3;
 /// A power sum of a homogenising coordinate so many times the accuracy of the coefficients is one that other
 /// coefficients within their accuracy do not have.
 const WITHIN_DATA: f64 = 10.0;
+/// Where more digits are wanted at a smaller radius, one that is larger than this part is small enough.
+const NEARLY: f64 = 0.8;
 /// Turns after which a path that has not closed is taken further in, twice as many every second time,
 /// unless it looks as if it diverged: more often branch points lie inside the radius than the
 /// winding number is so large.
@@ -131,6 +133,8 @@ pub struct Cauchy {
     /// Values of the homogenising coordinates at all samples, sample after sample.
     homogenizing: Vec<Homogenizing>,
     previous: Option<(u32, Vec<Complex64>)>,
+    /// Where turns in fewer digits showed that those with more are needed within: this radius.
+    within: Option<f64>,
 }
 
 /// Coefficients without pattern of a linear form: different points of a generic patch have
@@ -180,6 +184,7 @@ impl Cauchy {
     /// Forgets the turns, not how many they were.
     pub fn forget(&mut self) {
         self.previous = None;
+        self.within = None;
         self.unclosed = 0;
         self.powers.clear();
     }
@@ -210,6 +215,12 @@ impl Cauchy {
     /// Where the present turns began, at t = radius.
     pub fn start(&self) -> &[Complex64] {
         &self.start
+    }
+
+    /// The mean over the samples of the present turns.
+    pub fn mean(&self) -> Vec<Complex64> {
+        let samples = f64::from(self.turns * VERTICES);
+        self.sum.iter().map(|s| s / samples).collect()
     }
 
     /// The path stands at real t = radius: the turns begin here.
@@ -246,7 +257,10 @@ impl Cauchy {
             winding.clear();
             winding.sample(z.lane(0));
         }
-        Next::Vertex { radius, vertex: 1 }
+        match self.within.take() {
+            Some(within) if within < NEARLY * radius => Next::Inward(within),
+            _ => Next::Vertex { radius, vertex: 1 },
+        }
     }
 
     /// The path stands at the vertex that was asked for, at `t`. `noise`: relative error of the point;
@@ -306,7 +320,11 @@ impl Cauchy {
         let infinity = self.at_infinity(size, settings);
         match infinity {
             Infinity::Shown => return self.diverging(None),
-            Infinity::BelowNoise if self.may_be_finer => return Next::Finer,
+            Infinity::BelowNoise { within } if self.may_be_finer => {
+                self.within = Some(self.radius * within);
+                self.previous = None;
+                return Next::Finer;
+            }
             Infinity::Apart { part, power_sum } if WITHIN * part < SHRINKAGE => {
                 // One sheet ends at a regular point, however far out: it is followed.
                 let within_data =
@@ -317,11 +335,13 @@ impl Cauchy {
                 self.previous = None;
                 return self.inward((WITHIN * part).max(BOLDEST), settings);
             }
-            Infinity::BelowNoise | Infinity::Unresolved | Infinity::Apart { .. } | Infinity::No => {
-            }
+            Infinity::BelowNoise { .. }
+            | Infinity::Unresolved
+            | Infinity::Apart { .. }
+            | Infinity::No => {}
         }
         let samples = f64::from(self.turns * VERTICES);
-        let mean: Vec<Complex64> = self.sum.iter().map(|s| s / samples).collect();
+        let mean = self.mean();
         let even: Vec<Complex64> = self.even_sum.iter().map(|s| s / (0.5 * samples)).collect();
         let size = norm(&mean);
         let unresolved = distance(&mean, &even) / size;
@@ -346,7 +366,7 @@ impl Cauchy {
             if agree && self.fine && self.turns > 1 && self.radius > DEEP {
                 return Next::Inward(DEEP.max(settings.endgame_min_radius));
             }
-            let open = matches!(infinity, Infinity::Unresolved | Infinity::BelowNoise);
+            let open = matches!(infinity, Infinity::Unresolved | Infinity::BelowNoise { .. });
             if agree && !open {
                 // The aliasing error falls with the 16th power of the radius, so the newer mean
                 // is better than the change by far; what remains is the noise of the samples.
@@ -509,8 +529,10 @@ impl Cauchy {
             let here = vanishes(&samples, self.turns, turns, self.noise, size, zero);
             match here {
                 Infinity::Shown => return Infinity::Shown,
-                Infinity::BelowNoise => found = here,
-                Infinity::Apart { .. } if found != Infinity::BelowNoise => found = here,
+                Infinity::BelowNoise { .. } => found = here,
+                Infinity::Apart { .. } if !matches!(found, Infinity::BelowNoise { .. }) => {
+                    found = here;
+                }
                 Infinity::Unresolved if found == Infinity::No => found = here,
                 Infinity::Apart { .. } | Infinity::Unresolved | Infinity::No => {}
             }

@@ -567,4 +567,20 @@ impl Homotopy {
         self.chart.normalize(&mut coordinates);
         coordinates
     }
+
+    /// The smallest homogenising coordinate of normalised homogeneous coordinates; infinity where there is none.
+    pub(crate) fn smallest_homogenizing(&self, coordinates: &[Complex64]) -> f64 {
+        let places = self.chart.homogenizing().into_iter();
+        let sizes = places.map(|place| coordinates[place].norm_sqr().sqrt());
+        sizes.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Sets homogenising coordinates to 0 that are at most `least`, in normalised homogeneous coordinates.
+    pub(crate) fn clear_homogenizing(&self, coordinates: &mut [Complex64], least: f64) {
+        for place in self.chart.homogenizing() {
+            if coordinates[place].norm_sqr() <= least * least {
+                coordinates[place] = Complex64::default();
+            }
+        }
+    }
 }

@@ -11,9 +11,9 @@ const SLOTS: usize = POINTS + 1;
 
 /// The paths of all lanes: coordinates in the chart.
 ///
-/// The points stand in a ring, with one slot for the step that is tried. In lanes that do not move, while others do,
-/// all points go on by a slot: a rejected step leaves a lane with the points that it had, since a prediction from
-/// fewer of them would fail at a shorter step too.
+/// The points stand in a ring, with one slot for the step that is tried. In lanes that do not move, while others do, the
+/// point that the ring would lose takes a free slot: a rejected step leaves a lane with the points that it had, since a
+/// prediction from fewer of them would fail at a shorter step too. So their order is not that of the path.
 pub(super) struct Batch<R: Real> {
     pub x: [Vec<Complex<R>>; SLOTS],
     pub tangent: [Vec<Complex<R>>; SLOTS],
@@ -85,11 +85,14 @@ impl<R: Real> Batch<R> {
         self.t[self.newest].lane(lane)
     }
 
-    /// The slot of the last point behind a path.
+    /// The slot of the nearest point behind a path.
     pub fn before(&self, lane: usize) -> usize {
+        let here = self.t(lane);
+        let way = |slot: usize| (self.t[slot].lane(lane) - here).norm_sqr();
         (1..POINTS)
             .map(|age| self.slot(age))
-            .find(|&slot| self.known[slot].lane(lane))
+            .filter(|&slot| self.known[slot].lane(lane))
+            .min_by(|&a, &b| way(a).total_cmp(&way(b)))
             .expect("the path has moved")
     }
 
@@ -196,16 +199,14 @@ impl<R: Real> Batch<R> {
         self.known[newest] = moved;
         let stays = moved.not();
         if stays.any() {
-            for age in 0..POINTS - 1 {
-                let (to, from) = (self.slot(age), self.slot(age + 1));
-                for points in [&mut self.x, &mut self.tangent] {
-                    select(points, to, from, stays);
-                }
-                let before = self.t[from].clone();
-                self.t[to].select(stays, &before);
-                self.known[to] = self.known[to].or(stays.and(self.known[from]));
-                self.known[from] = self.known[from].and(moved);
+            // The slot behind is free there, since a lane that stays is in the next one as well: the last point goes there.
+            let last = self.slot(POINTS - 1);
+            for points in [&mut self.x, &mut self.tangent] {
+                select(points, newest, last, stays);
             }
+            let before = self.t[last].clone();
+            self.t[newest].select(stays, &before);
+            self.known[newest] = moved.or(self.known[last]);
         }
         (self.x[next], self.tangent[next], self.t[next]) = (x, tangent, there);
         self.known[next] = R::Mask::splat(false);
@@ -323,7 +324,7 @@ mod tests {
             let t = Complex::from_f64((), -value, 0.0);
             batch.advance(x.clone(), x, &t, moved);
         }
-        let behind = |lane: usize| -> Vec<f64> {
+        let known = |lane: usize| -> Vec<f64> {
             let ages = (0..POINTS).map(|age| batch.slot(age));
             let counting = ages
                 .enumerate()
@@ -337,7 +338,11 @@ mod tests {
                 })
                 .collect()
         };
-        assert_eq!(behind(0), [5.0, 4.0, 3.0, 2.0]);
-        assert_eq!(behind(1), [4.0, 2.0, 1.0, 0.0]);
+        assert_eq!(known(0), [5.0, 4.0, 3.0, 2.0]);
+        let mut points = known(1);
+        points.sort_by(f64::total_cmp);
+        assert_eq!(points, [0.0, 1.0, 2.0, 4.0]);
+        let before = batch.before(1);
+        assert_eq!(batch.x[before][0].lane(1).re, 2.0);
     }
 }

@@ -64,6 +64,12 @@ const TAME: f64 = 1e10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
 /// next rung.
 const STARVED: u32 = 2;
+/// Relative Newton correction in double-doubles below which a point is known to so many digits.
+pub(super) const RESOLVED: f64 = 1e-26;
+/// A regular end whose homogenising coordinate is at most this part of the largest is at infinity,
+const FARTHEST: f64 = 1e-13;
+/// ... and this where it is known to that many digits, and the data has them.
+pub(super) const FARTHEST_RESOLVED: f64 = 1e-22;
 /// In robust mode a first Newton correction is at most this part of the distance to another path.
 const APART: f64 = 0.05;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
@@ -103,6 +109,8 @@ pub(super) struct Lockstep<'a, R: Real> {
     pub(super) observer: Option<&'a mut dyn Observer>,
     pub(super) point: Vec<Complex64>,
     pub(super) tangent: Vec<Complex64>,
+    /// Normalised homogeneous coordinates of the end of a path, where they are known with digits of double-doubles.
+    pub(super) far_out: Option<Vec<Complex64>>,
 }
 
 /// What one step showed in one lane.
@@ -191,6 +199,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             observer,
             point: Vec::with_capacity(n),
             tangent: Vec::with_capacity(n),
+            far_out: None,
         }
     }
 
@@ -853,12 +862,13 @@ impl<'a, R: Real> Lockstep<'a, R> {
         winding_number: Option<u32>,
         infinity_turns: Vec<i32>,
     ) {
+        let endpoint = self.endpoint(self.lanes[lane].target, outcome);
         let path = &self.lanes[lane];
         let result = PathResult {
             origin: PathIndex(path.origin),
             attempt: self.stage.attempt(),
             outcome,
-            endpoint: Coordinates::Double(self.endpoint(path.target, outcome)),
+            endpoint: Coordinates::Double(endpoint),
             t,
             residual: report.residual,
             condition: report.condition,
@@ -884,28 +894,33 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// Normalised homogeneous coordinates of where a path ends. A regular point far out is given with digits of its
-    /// own: those that doubles have there are digits of its largest coordinate.
-    fn endpoint(&self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
+    /// own: those that doubles have there are digits of its largest coordinate. Homogenising coordinates that are 0 as far
+    /// as digits tell, or data does, are 0.
+    fn endpoint(&mut self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
         let homotopy = self.room.homotopy;
-        if outcome == PathOutcome::Regular {
-            let native: Vec<_> = self
-                .point
-                .iter()
-                .map(|z| Complex { re: z.re, im: z.im })
-                .collect();
-            let near = FAR_OUT * norm(&self.point);
-            let homogenizing = homotopy.homogenizing::<f64>((), &native);
-            if homogenizing
-                .iter()
-                .any(|z| z.lane(0).norm_sqr() < near * near)
-            {
-                let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ());
-                if let Some(point) = refiner.digits(&self.point, target) {
-                    return homotopy.precise_endpoint(&point);
-                }
+        if let Some(coordinates) = self.far_out.take() {
+            return coordinates;
+        }
+        if outcome != PathOutcome::Regular {
+            return homotopy.endpoint(&self.point);
+        }
+        let mut coordinates = homotopy.endpoint(&self.point);
+        if homotopy.smallest_homogenizing(&coordinates) >= FAR_OUT {
+            return coordinates;
+        }
+        let mut least = FARTHEST;
+        let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ()).until(RESOLVED);
+        let mut point = self.point.clone();
+        let report = refiner.refine(&mut point, target);
+        if report.converged {
+            coordinates = homotopy.precise_endpoint(refiner.last());
+            let exact = self.settings.exact_data || self.settings.data_accuracy == 0.0;
+            if exact && report.accuracy <= RESOLVED {
+                least = FARTHEST_RESOLVED;
             }
         }
-        homotopy.endpoint(&self.point)
+        homotopy.clear_homogenizing(&mut coordinates, least);
+        coordinates
     }
 }
 

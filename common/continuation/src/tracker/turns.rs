@@ -5,15 +5,16 @@
 
 use super::digits::Digits;
 use super::lane::Phase;
-use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
+use super::lockstep::{ENDGAME_BITS, FARTHEST_RESOLVED, Lockstep, RESOLVED, Step};
 use super::outcome::{Failure, PathOutcome};
 use super::rooms::Door;
 use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
 use crate::endgames::circle::VERTICES;
 use crate::endgames::infinity::Homogenizing;
+use crate::refine::{Refiner, Report};
 use cognate_numeric::precision::{DOUBLE, unit_roundoff};
-use cognate_numeric::scalar::{Complex, Real};
+use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
 use num_complex::Complex64;
 
 /// The first point of turns is where they may begin again on another rung if its last Newton
@@ -176,11 +177,16 @@ impl<R: Real> Lockstep<'_, R> {
                 infinity_turns,
                 power_sum,
             } => {
+                let alone = winding_number == Some(1) && power_sum.is_none();
+                if let Some(report) = alone.then(|| self.regular_far_out(lane)).flatten() {
+                    let outcome = PathOutcome::Regular;
+                    return self.finish(lane, outcome, report, Some(1), Vec::new());
+                }
                 let path = &self.lanes[lane];
                 let t = Complex64::new(path.cauchy.radius(), 0.0);
-                let report = crate::refine::Report {
+                let report = Report {
                     accuracy: power_sum.unwrap_or(f64::INFINITY),
-                    ..crate::refine::Report::unknown()
+                    ..Report::unknown()
                 };
                 let outcome = PathOutcome::Diverging;
                 self.record(lane, outcome, t, report, winding_number, infinity_turns);
@@ -197,6 +203,26 @@ impl<R: Real> Lockstep<'_, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
+    }
+
+    /// Whether a path of one sheet that ends at infinity as far as its turns tell ends at a regular point far out, which
+    /// then stands in `self.point` and `self.far_out`: Newton's method in double-doubles tells the two apart.
+    fn regular_far_out(&mut self, lane: usize) -> Option<Report> {
+        let (homotopy, settings) = (self.room.homotopy, &self.settings);
+        let mut point = self.lanes[lane].cauchy.mean();
+        let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ()).until(RESOLVED);
+        let report = refiner.refine(&mut point, self.lanes[lane].target);
+        if !(report.converged && report.accuracy <= RESOLVED) {
+            return None;
+        }
+        let exact = settings.exact_data || settings.data_accuracy == 0.0;
+        let coordinates = homotopy.precise_endpoint(refiner.last());
+        let finite = exact && homotopy.smallest_homogenizing(&coordinates) > FARTHEST_RESOLVED;
+        finite.then(|| {
+            self.point = point;
+            self.far_out = Some(coordinates);
+            report
+        })
     }
 
     /// The endgame's generic form of how far a path is from where its turns began: on the higher
