@@ -22,7 +22,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 15;
+const VERSION: u8 = 16;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -215,7 +215,7 @@ impl AnyAlgorithm {
             .map_or(StageId(0), MonodromySolve::counted_stage)
     }
 
-    /// The solve whose plain paths need not be held (see `solutions::plain`), where it is such a one.
+    /// The solve whose streamed paths need not be held (see `solutions::streamed`), where it is such a one.
     pub fn large(&self) -> Option<&ZeroDimensionalSolve> {
         match &self.solve {
             AnySolve::ZeroDimensional(solve)

@@ -8,7 +8,7 @@ use crate::coefficient_family::coefficient_family;
 use crate::coefficients::Coefficients;
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
-pub use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
+pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::{PlanError, checked_volume};

@@ -8,8 +8,8 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::Tolerances;
-use cognate_solutions::plain::Sieve;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::streamed::PathFilter;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -73,10 +73,10 @@ impl ZeroDimensionalSolve {
         &mut self.paths
     }
 
-    /// What tells its plain paths from others.
-    pub fn sieve(&self, system: &System) -> Sieve {
+    /// What tells its streamed paths from others.
+    pub fn filter(&self, system: &System) -> PathFilter {
         let tolerances = self.paths.tolerances();
-        Sieve::new(
+        PathFilter::new(
             system,
             &self.parameters,
             tolerances,

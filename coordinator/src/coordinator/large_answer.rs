@@ -11,9 +11,9 @@ use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
-use cognate_solutions::plain::Sieve;
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::streamed::PathFilter;
 use futures::StreamExt;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -97,7 +97,7 @@ impl Coordinator {
             .ok_or_else(|| unreadable("it is of another kind".into()))?;
         let first = solve.paths().first_id();
         let mut teller = Teller {
-            sieve: solve.sieve(&system),
+            filter: solve.filter(&system),
             again: self.tracked_again(job, first).await?,
             held: Held::new(answer),
             number: 0,
@@ -206,7 +206,7 @@ impl Held {
 
 /// Tells path after path, in the order of their indices.
 struct Teller {
-    sieve: Sieve,
+    filter: PathFilter,
     again: HashMap<u64, PathResult>,
     held: Held,
     /// How many solutions were named.
@@ -222,7 +222,7 @@ impl Teller {
     fn tell(&mut self, result: PathResult) -> Answered {
         let path = result.origin.0;
         if self.held.paths.binary_search(&path).is_err() {
-            let (verdict, solution) = self.sieve.answer(&result);
+            let (verdict, solution) = self.filter.answer(&result);
             let number = solution.is_some().then(|| self.next_number());
             let path = ClassifiedPath {
                 verdict,
@@ -237,7 +237,7 @@ impl Teller {
         } else if self.held.on_sets.contains(&path) {
             Verdict::PositiveDimensional
         } else {
-            classify(&result, self.sieve.shape(), &Tolerances::default()).verdict
+            classify(&result, self.filter.shape(), &Tolerances::default()).verdict
         };
         let at = self.held.solution_of.get(&path).copied();
         let mut begun = None;

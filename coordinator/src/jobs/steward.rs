@@ -11,8 +11,8 @@ use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreErro
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use cognate_solutions::plain::{Crowd, PlainCounts, Sieve};
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::streamed::{EndpointIndex, PathFilter, StreamedCounts};
 use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
 use std::sync::Arc;
@@ -87,9 +87,9 @@ impl Steward {
         large.map_or(StageId(0), |solve| solve.paths().first_id())
     }
 
-    /// True where plain paths need not be held (see `solutions::plain`).
+    /// True where streamed paths need not be held (see `solutions::streamed`).
     pub fn can_leave_out(&self) -> bool {
-        self.algorithm.large().is_some() && Sieve::suits(&self.system)
+        self.algorithm.large().is_some() && PathFilter::suits(&self.system)
     }
 
     /// True where they are not.
@@ -102,9 +102,9 @@ impl Steward {
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn crowd(&self, paths: u64) -> Crowd {
+    pub fn index(&self, paths: u64) -> EndpointIndex {
         let solve = self.algorithm.large().expect(LARGE);
-        Crowd::new(solve.sieve(&self.system), paths)
+        EndpointIndex::new(solve.filter(&self.system), paths)
     }
 
     /// The paths that are held, ascending.
@@ -120,18 +120,18 @@ impl Steward {
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn leave_out(&mut self, plain: PlainCounts) {
+    pub fn leave_out(&mut self, streamed: StreamedCounts) {
         let solve = self.algorithm.large_mut().expect(LARGE);
-        solve.paths_mut().leave_out(plain);
+        solve.paths_mut().leave_out(streamed);
     }
 
     /// Holds these paths, too.
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn take_back(&mut self, results: Vec<PathResult>, plain: PlainCounts) {
+    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: StreamedCounts) {
         let solve = self.algorithm.large_mut().expect(LARGE);
-        solve.paths_mut().take_back(results, plain);
+        solve.paths_mut().take_back(results, streamed);
     }
 
     /// The state, from which [`Self::restore`] goes on.

@@ -21,7 +21,7 @@ pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL04");
 /// Answers of large jobs as objects.
 pub const LARGE: RecordKind = RecordKind(b"CGNLRG02");
 
-/// The answer of a job of which not all paths are held (see `solutions::plain`).
+/// The answer of a job of which not all paths are held (see `solutions::streamed`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LargeAnswer {
     /// The paths that are held, ascending. The ends of the others are read from their results.
