@@ -1,5 +1,6 @@
 //! AnyAlgorithm: a job, whatever solves it, which can be written down and read back.
 
+use crate::answer::Answer;
 use crate::closings::Closing;
 use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
@@ -17,7 +18,6 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
@@ -164,32 +164,6 @@ impl AnyAlgorithm {
         }
     }
 
-    /// The decomposition that was found, where it is one and `next` has said `Done`.
-    pub fn decomposition(&self) -> Option<&Decomposition> {
-        match &self.solve {
-            AnySolve::Decomposition(solve) => solve.decomposition(),
-            AnySolve::ZeroDimensional(_)
-            | AnySolve::Parameter(_)
-            | AnySolve::Polyhedral(_)
-            | AnySolve::Regeneration(_)
-            | AnySolve::Monodromy(_)
-            | AnySolve::Question(_) => None,
-        }
-    }
-
-    /// The question to components with what was found, where it is one.
-    pub fn question(&self) -> Option<&QuestionSolve> {
-        match &self.solve {
-            AnySolve::Question(solve) => Some(&**solve),
-            AnySolve::ZeroDimensional(_)
-            | AnySolve::Parameter(_)
-            | AnySolve::Polyhedral(_)
-            | AnySolve::Regeneration(_)
-            | AnySolve::Monodromy(_)
-            | AnySolve::Decomposition(_) => None,
-        }
-    }
-
     /// How loops have come along, in a solve by monodromy.
     pub fn loops(&self) -> Option<&LoopCounts> {
         self.monodromy().map(MonodromySolve::counts)
@@ -198,21 +172,12 @@ impl AnyAlgorithm {
     /// The last results of all paths by the numbers that people see, where a stage counts its
     /// paths by others, or not all of them.
     pub fn renumbered_results(&self) -> Option<Vec<PathResult>> {
-        match &self.solve {
-            AnySolve::Polyhedral(solve) => Some(solve.results()),
-            AnySolve::Regeneration(solve) => Some(solve.results()),
-            AnySolve::ZeroDimensional(solve) => solve.paths().results_with_images(),
-            AnySolve::Parameter(_)
-            | AnySolve::Monodromy(_)
-            | AnySolve::Decomposition(_)
-            | AnySolve::Question(_) => None,
-        }
+        self.solve.get().renumbered_results()
     }
 
     /// The stage whose paths the answer counts; stages before it only prepared it.
     pub fn counted_stage(&self) -> StageId {
-        self.monodromy()
-            .map_or(StageId(0), MonodromySolve::counted_stage)
+        self.solve.get().counted_stage()
     }
 
     /// The solve whose streamed paths need not be held (see `solutions::streamed`), where it is such a one.
@@ -304,17 +269,19 @@ impl PathAlgorithm for AnyAlgorithm {
         let closings = self.closings.iter();
         closings.fold(before, |progress, closing| closing.progress(progress))
     }
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        let mut sets = self.solve.get().solution_sets(system);
-        for closing in &self.closings {
-            closing.apply(&mut sets, system);
-        }
-        if let Some(loops) = self.loops() {
-            let known = self.completeness();
-            for set in &mut sets {
-                judge_loops(loops, known.as_ref(), set);
+    fn answer(&self, system: &System) -> Option<Answer> {
+        let mut answer = self.solve.get().answer(system)?;
+        if let Answer::Isolated(found) = &mut answer {
+            for closing in &self.closings {
+                closing.apply(&mut found.sets, system);
+            }
+            if let Some(loops) = &found.loops {
+                let known = self.completeness();
+                for set in &mut found.sets {
+                    judge_loops(&loops.counts, known.as_ref(), set);
+                }
             }
         }
-        sets
+        Some(answer)
     }
 }

@@ -1,5 +1,6 @@
 //! From solved generic parameters to the wanted ones, one solution set for each target.
 
+use crate::answer::Answer;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::Progress;
@@ -13,7 +14,6 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::path_crossing::radius;
 use cognate_solutions::point_shape::PointShape;
-use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -186,12 +186,12 @@ impl Solve for ParameterSolve {
         Some(self.paths.finite_endpoints())
     }
 
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        self.targets()
-            .iter()
-            .enumerate()
-            .map(|(k, parameters)| self.paths.solution_set(k, system, parameters, false))
-            .collect()
+    fn answer(&self, system: &System) -> Option<Answer> {
+        let targets = self.targets().iter().enumerate();
+        let set = |(k, parameters): (usize, &Vec<Complex64>)| {
+            self.paths.solution_set(k, system, parameters, false)
+        };
+        Some(Answer::from(targets.map(set).collect::<Vec<_>>()))
     }
 }
 
@@ -206,6 +206,7 @@ mod tests {
     use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
     use cognate_continuation::tracker::settings::Settings;
     use cognate_continuation::work::Work;
+    use cognate_solutions::solution_set::SolutionSet;
     use std::collections::HashMap;
 
     /// x^4 = p with x and i x alike: from p = 1 to 16 and to i.

@@ -72,10 +72,9 @@ fn code(error: &CoordinatorError) -> Code {
         CoordinatorError::UnknownStage { .. }
         | CoordinatorError::Ledger(LedgerError::UnknownJob(_))
         | CoordinatorError::Store(StoreError::Missing(_)) => Code::NotFound,
-        CoordinatorError::NoResult { .. }
-        | CoordinatorError::Decomposed(_)
-        | CoordinatorError::Answered(_)
-        | CoordinatorError::NotDecomposed(_) => Code::FailedPrecondition,
+        CoordinatorError::NoResult { .. } | CoordinatorError::OtherAnswer { .. } => {
+            Code::FailedPrecondition
+        }
         CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
         CoordinatorError::NotPlanned(_) | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => {
             Code::ResourceExhausted

@@ -1,12 +1,13 @@
 //! The answer of a large job: what is not held is read again from its results, a chunk at a time.
 
 use super::answers::ClassifiedPath;
-use super::{Coordinator, CoordinatorError, job_row};
+use super::{Coordinator, CoordinatorError};
 use crate::jobs::large_stage::{page, read};
 use crate::jobs::planning::STATE;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobRow;
-use crate::results::summary::{LARGE, LargeAnswer};
+use crate::results::answer::StoredAnswer;
+use crate::results::summary::LargeAnswer;
 use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
@@ -31,12 +32,10 @@ impl Coordinator {
         &self,
         row: &JobRow,
     ) -> Result<Option<LargeAnswer>, CoordinatorError> {
-        match row.solutions {
-            Some(digest) if self.store.is_of_kind(&LARGE, digest).await? => {
-                Ok(Some(self.store.record(&LARGE, digest).await?))
-            }
-            _ => Ok(None),
-        }
+        Ok(match row.solutions {
+            Some(digest) => StoredAnswer::large(&self.store, digest).await?,
+            None => None,
+        })
     }
 
     /// All paths of a large job by their indices, each with its solution if it is the first to end there;
@@ -158,19 +157,16 @@ impl Coordinator {
     pub(super) async fn whole(
         self: &Arc<Self>,
         job: JobId,
-    ) -> Result<Option<SolutionSet>, CoordinatorError> {
-        let row = job_row(&*self.ledger, job).await?;
-        let Some(answer) = self.large(&row).await? else {
-            return Ok(None);
-        };
+        answer: LargeAnswer,
+    ) -> Result<SolutionSet, CoordinatorError> {
         let answers = self.all_answers(job).await?.unwrap_or_default();
         let points = answers.into_iter().filter_map(|(_, s)| s);
         let (undecided, solutions) = points.partition(|point| point.undecided);
-        Ok(Some(SolutionSet {
+        Ok(SolutionSet {
             solutions,
             undecided,
             ..answer.set
-        }))
+        })
     }
 }
 

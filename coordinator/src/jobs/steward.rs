@@ -5,15 +5,11 @@
 //! state that lived through it.
 
 use crate::ledger::rows::StageRow;
-use crate::results::summary::MonodromyBlock;
-use cognate_algorithms::questions::QuestionSolve;
-use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
+use cognate_algorithms::{Answer, AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::streamed::{EndpointIndex, PathFilter, StreamedCounts};
-use cognate_solutions::witness::Decomposition;
 use cognate_systems::system::System;
 use std::sync::Arc;
 
@@ -98,7 +94,7 @@ impl Steward {
         large.is_some_and(|solve| solve.paths().leaves_out())
     }
 
-    /// Nobody yet, with room for so many paths.
+    /// An empty index of ends, with capacity for `paths` paths.
     ///
     /// # Panics
     /// Where all paths are held.
@@ -139,33 +135,9 @@ impl Steward {
         self.algorithm.snapshot()
     }
 
-    /// What was found, one set for each target.
-    pub fn solution_sets(&self) -> Vec<SolutionSet> {
-        self.algorithm.solution_sets(&self.system)
-    }
-
-    /// The components, where the job asks for them and all is done.
-    pub fn decomposition(&self) -> Option<&Decomposition> {
-        self.algorithm.decomposition()
-    }
-
-    /// The question to components with its answer, where the job is one and all is done.
-    pub fn question(&self) -> Option<&QuestionSolve> {
-        self.algorithm.question()
-    }
-
-    /// How the solutions were found, in a solve by monodromy.
-    pub fn monodromy(&self) -> Option<MonodromyBlock> {
-        let solve = self.algorithm.monodromy()?;
-        let values = match solve.targets() {
-            [one] => one.as_slice(),
-            _ => &[],
-        };
-        let names = self.system.parameters.iter().cloned();
-        Some(MonodromyBlock {
-            loops: solve.counts().clone(),
-            parameters: names.zip(values.iter().copied()).collect(),
-        })
+    /// What was found, once all is done.
+    pub fn answer(&self) -> Option<Answer> {
+        self.algorithm.answer(&self.system)
     }
 
     /// Why there is no answer, once all is done; `None` where there is one.

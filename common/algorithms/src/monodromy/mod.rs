@@ -16,6 +16,7 @@ pub(crate) mod graph;
 mod places;
 pub mod trace;
 
+use crate::answer::{Answer, FoundByLoops, IsolatedSolutions};
 use crate::completeness_claim::CompletenessClaim;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::limits::MAX_PATHS;
@@ -257,19 +258,6 @@ impl MonodromySolve {
     /// How far the loops have come.
     pub fn counts(&self) -> &LoopCounts {
         &self.counts
-    }
-
-    /// Parameters at which solutions are wanted, one set or several.
-    pub fn targets(&self) -> &[Vec<Complex64>] {
-        &self.targets
-    }
-
-    /// The stage whose paths the answer counts: the first to the wanted parameters.
-    pub fn counted_stage(&self) -> StageId {
-        match &self.phase {
-            Phase::Arrive(solve) => solve.paths().first_id(),
-            _ => StageId(0),
-        }
     }
 
     /// A stage along a path of parameters.
@@ -879,7 +867,7 @@ impl Solve for MonodromySolve {
         Self::completeness(self)
     }
 
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+    fn answer(&self, system: &System) -> Option<Answer> {
         let mut sets = match &self.phase {
             Phase::Arrive(solve) => solve.solution_sets(system),
             _ => {
@@ -897,7 +885,27 @@ impl Solve for MonodromySolve {
         for set in &mut sets {
             set.warnings.extend(self.warnings.iter().cloned());
         }
-        sets
+        let names = system.parameters.iter().cloned();
+        let parameters = match self.targets.as_slice() {
+            [one] => names.zip(one.iter().copied()).collect(),
+            _ => BTreeMap::new(),
+        };
+        Some(Answer::Isolated(IsolatedSolutions {
+            sets,
+            loops: Some(FoundByLoops {
+                counts: self.counts.clone(),
+                parameters,
+            }),
+            held: None,
+        }))
+    }
+
+    /// The first stage to the wanted parameters.
+    fn counted_stage(&self) -> StageId {
+        match &self.phase {
+            Phase::Arrive(solve) => solve.paths().first_id(),
+            _ => StageId(0),
+        }
     }
 }
 

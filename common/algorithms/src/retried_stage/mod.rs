@@ -15,7 +15,7 @@ mod tests;
 
 use crate::finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
 use crate::opening::Opening;
-use crate::progress::{self, Progress, StageProgress, VerdictCounts};
+use crate::progress::{self, Progress, StageProgress};
 use crate::solve::{Next, StageNumbers};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
