@@ -44,7 +44,7 @@ pub enum PlanError {
     /// The wrong number of values.
     #[error("{what} have {found} values, but the system has {expected} parameters")]
     ParameterCount {
-        /// Which.
+        /// Which parameters: those at the start, or at a target.
         what: &'static str,
         /// How many values there are.
         found: usize,
@@ -54,7 +54,7 @@ pub enum PlanError {
     /// Infinite or not a number.
     #[error("{what} have a value that is no finite number")]
     NotFinite {
-        /// Which.
+        /// Which parameters: those at the start, or at a target.
         what: &'static str,
     },
     /// Several targets can only be reached from solved parameters.

@@ -49,7 +49,7 @@ pub struct StartCosts {
     pub mixed_volume: Option<u64>,
     /// The cheapest that can be used; null where the system cannot be solved.
     pub choice: Option<StartKind>,
-    /// Why.
+    /// Why this start, or why none can be used.
     pub why: String,
     /// Why a number is null, by the name of its field.
     pub notes: BTreeMap<String, String>,

@@ -26,6 +26,16 @@ pub enum OptionMisfit {
     NoStartSolutions,
 }
 
+impl OptionMisfit {
+    /// The option, as `proto/problem.proto` names it.
+    pub fn field(&self) -> &'static str {
+        match self {
+            Self::OnlyWith { field, .. } | Self::NotWith { field, .. } => field,
+            Self::NoStartSolutions => "start_solutions",
+        }
+    }
+}
+
 /// Names as they are typed: "given, monodromy or auto".
 pub fn any_of(starts: &[StartKind]) -> String {
     let names: Vec<&str> = starts.iter().map(|start| start.name()).collect();

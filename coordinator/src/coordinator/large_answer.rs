@@ -52,7 +52,7 @@ impl Coordinator {
         let (sender, receiver) = mpsc::channel(AHEAD);
         let coordinator = Arc::clone(self);
         tokio::spawn(async move {
-            if let Err(error) = coordinator.tell(&row, answer, &sender).await {
+            if let Err(error) = coordinator.stream(&row, answer, &sender).await {
                 // Whoever asked may have gone.
                 let _ = sender.send(Err(error)).await;
             }
@@ -75,7 +75,7 @@ impl Coordinator {
         Ok(Some(all))
     }
 
-    async fn tell(
+    async fn stream(
         &self,
         row: &JobRow,
         answer: LargeAnswer,
@@ -95,7 +95,7 @@ impl Coordinator {
             .large()
             .ok_or_else(|| unreadable("it is of another kind".into()))?;
         let first = solve.paths().first_id();
-        let mut teller = Teller {
+        let mut answers = AnswerStream {
             filter: solve.filter(&system),
             again: self.tracked_again(job, first).await?,
             held: Held::new(answer),
@@ -111,16 +111,16 @@ impl Coordinator {
             let mut chunks = std::pin::pin!(read(&self.store, objects));
             while let Some(results) = chunks.next().await {
                 let results = results?;
-                let telling = tokio::task::spawn_blocking(move || {
-                    let told = results.into_iter().map(|r| teller.tell(r)).collect();
-                    (teller, told)
+                let answering = tokio::task::spawn_blocking(move || {
+                    let some = results.into_iter().map(|r| answers.answer(r)).collect();
+                    (answers, some)
                 });
-                let told;
-                (teller, told) = match telling.await {
+                let some;
+                (answers, some) = match answering.await {
                     Ok(done) => done,
                     Err(error) => std::panic::resume_unwind(error.into_panic()),
                 };
-                if listener.send(Ok(told)).await.is_err() {
+                if listener.send(Ok(some)).await.is_err() {
                     return Ok(());
                 }
             }
@@ -200,8 +200,8 @@ impl Held {
     }
 }
 
-/// Tells path after path, in the order of their indices.
-struct Teller {
+/// Answers path after path, in the order of their indices.
+struct AnswerStream {
     filter: PathFilter,
     again: HashMap<u64, PathResult>,
     held: Held,
@@ -209,13 +209,13 @@ struct Teller {
     number: u64,
 }
 
-impl Teller {
+impl AnswerStream {
     fn next_number(&mut self) -> u64 {
         self.number += 1;
         self.number - 1
     }
 
-    fn tell(&mut self, result: PathResult) -> Answered {
+    fn answer(&mut self, result: PathResult) -> Answered {
         let path = result.origin.0;
         if self.held.paths.binary_search(&path).is_err() {
             let (verdict, solution) = self.filter.answer(&result);

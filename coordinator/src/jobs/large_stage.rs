@@ -193,7 +193,7 @@ async fn see_all(
         while let Some(results) = chunks.next().await {
             let results = results?;
             seen += results.len() as u64;
-            index = elsewhere(move || {
+            index = blocking(move || {
                 results.iter().for_each(|result| index.see(result));
                 index
             })
@@ -202,8 +202,8 @@ async fn see_all(
     }
 }
 
-/// Work that holds nobody up.
-async fn elsewhere<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+/// Runs blocking work off the async executor.
+async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     match tokio::task::spawn_blocking(work).await {
         Ok(value) => value,
         Err(error) => std::panic::resume_unwind(error.into_panic()),
@@ -233,7 +233,7 @@ impl LargeStage {
             if seen != items {
                 return Err(LedgerError::Fenced(job).into());
             }
-            let (settled, held) = elsewhere(move || {
+            let (settled, held) = blocking(move || {
                 let held = index.settle();
                 (index, held)
             })
@@ -244,7 +244,7 @@ impl LargeStage {
             index.take_back(&held);
             let mut taken = steward.take().expect(HERE);
             let streamed = index.counts().clone();
-            let (back, wanted) = elsewhere(move || {
+            let (back, wanted) = blocking(move || {
                 taken.leave_out(streamed);
                 let wanted = taken.absorb(stage, held.into_iter().map(ItemResult::Track));
                 (taken, wanted)
@@ -277,7 +277,7 @@ impl LargeStage {
         index.take_back(&near);
         let mut taken = steward.take().expect(HERE);
         let streamed = index.counts().clone();
-        let (back, wanted) = elsewhere(move || {
+        let (back, wanted) = blocking(move || {
             taken.take_back(near, streamed);
             let wanted = taken.absorb(stage, results);
             (taken, wanted)
@@ -301,7 +301,7 @@ impl LargeStage {
         let paths = stages.iter().find(|stage| stage.stage == first);
         let index = steward.index(paths.map_or(0, |stage| stage.items));
         let (index, _) = see_all(tools, job, first, index).await?;
-        let mut index = elsewhere(move || {
+        let mut index = blocking(move || {
             let mut index = index;
             index.settle();
             index

@@ -12,7 +12,7 @@ use cognate_worker::transport::Announcement;
 use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::Bearer;
 use cognate_worker::transport::grpc::Grpc;
-use cognate_worker::transport::way::Way;
+use cognate_worker::transport::route::Route;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -102,11 +102,11 @@ impl House {
     /// A worker by shared memory, or not.
     pub async fn worker_api_by(&self, name: &str, choice: TransportChoice) -> FakeWorker {
         let address = Address::Unix(self.socket());
-        let way = Way::new(self.channel().await, Bearer::default(), address, choice);
-        way.look_for_shared_memory().await;
+        let route = Route::new(self.channel().await, Bearer::default(), address, choice);
+        route.look_for_shared_memory().await;
         FakeWorker {
-            api: WorkerApiClient::new(way.clone()),
-            way,
+            api: WorkerApiClient::new(route.clone()),
+            route,
             name: name.to_owned(),
             session: format!("{name}-session"),
             sequence: 0,
@@ -233,8 +233,8 @@ impl Client {
 
 /// A worker that says what the test wants.
 pub struct FakeWorker {
-    pub api: WorkerApiClient<Way>,
-    pub way: Way,
+    pub api: WorkerApiClient<Route>,
+    pub route: Route,
     pub name: String,
     pub session: String,
     pub sequence: u64,

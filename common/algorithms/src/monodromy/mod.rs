@@ -41,7 +41,7 @@ use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
 use counts::{LoopCounts, Mixing, Stop, Tested, moving};
 use estimate::Estimate;
-use graph::{Arrival, Fate, Graph, Known, Wanted, Way};
+use graph::{Correspondence, Direction, EdgeEnd, Graph, Known, Wanted};
 use num_complex::Complex64;
 use places::{Sizes, generic_parameters};
 use serde::{Deserialize, Serialize};
@@ -217,7 +217,7 @@ impl MonodromySolve {
         graph.add_vertex(base);
         graph.add_edge(START, BASE, edge_seed(seed, FIRST), false);
         let count = usize::try_from(start.count).expect("a plan has no more paths than its limit");
-        graph.edges[FIRST].fates[0] = vec![Fate::Open { attempt: 0 }; count];
+        graph.edges[FIRST].correspondences[0] = vec![Correspondence::Open { attempt: 0 }; count];
         Self {
             shape,
             tolerances,
@@ -289,15 +289,15 @@ impl MonodromySolve {
     fn opening(&self, wanted: &Wanted) -> Opening {
         let Wanted {
             edge,
-            way,
+            direction,
             attempt,
             ref sources,
         } = *wanted;
         let e = &self.graph.edges[edge];
-        let (from, to) = (e.source(way), e.target(way));
-        let seed = match way {
-            Way::Ahead => e.seed,
-            Way::Back => way_back(e.seed),
+        let (from, to) = (e.source(direction), e.target(direction));
+        let seed = match direction {
+            Direction::Ahead => e.seed,
+            Direction::Back => way_back(e.seed),
         };
         let (points, objects) = if edge == FIRST {
             let all = sources.len() as u64 == self.start.count;
@@ -654,9 +654,9 @@ impl MonodromySolve {
                 } else {
                     self.max_retries
                 };
-                arrivals.push(Arrival {
+                arrivals.push(EdgeEnd {
                     edge: wanted.edge,
-                    way: wanted.way,
+                    direction: wanted.direction,
                     source,
                     attempt,
                     end,
