@@ -47,6 +47,18 @@ pub fn any_of(starts: &[StartKind]) -> String {
 }
 
 impl StartKind {
+    /// Every start, in the order in which they are told.
+    pub const ALL: [Self; 8] = [
+        Self::Auto,
+        Self::TotalDegree,
+        Self::Multihomogeneous,
+        Self::LinearProduct,
+        Self::Polyhedral,
+        Self::Regeneration,
+        Self::Monodromy,
+        Self::Given,
+    ];
+
     /// Its name as it is typed.
     pub fn name(self) -> &'static str {
         match self {
