@@ -183,6 +183,14 @@ impl Client {
         Ok(self.0.submit(request).await?.into_inner().job)
     }
 
+    /// Why a worker gets no chunks; empty where it does.
+    pub async fn refusal(&mut self, worker: &str) -> String {
+        let request = v1::ListWorkersRequest {};
+        let workers = self.0.list_workers(request).await.unwrap().into_inner();
+        let mut known = workers.workers.into_iter();
+        known.find(|w| w.worker == worker).unwrap().refused
+    }
+
     /// Watches until the job ends; everything that was told.
     pub async fn watch(&mut self, job: &str) -> Vec<v1::JobProgress> {
         let request = v1::WatchRequest {
