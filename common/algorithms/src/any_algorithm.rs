@@ -11,6 +11,7 @@ use crate::polyhedral_solve::PolyhedralSolve;
 use crate::progress::Progress;
 use crate::questions::QuestionSolve;
 use crate::regeneration_solve::RegenerationSolve;
+use crate::retried_stage::RetriedStage;
 use crate::solve::{Next, PathAlgorithm, Solve, StageNumbers};
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::item_result::ItemResult;
@@ -18,6 +19,7 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::streamed::PathFilter;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
@@ -180,28 +182,52 @@ impl AnyAlgorithm {
         self.solve.get().counted_stage()
     }
 
-    /// The solve whose streamed paths need not be held (see `solutions::streamed`), where it is such a one.
-    pub fn large(&self) -> Option<&ZeroDimensionalSolve> {
+    /// The paths of a solve that need not all be held (see `solutions::streamed`), where it is such a one.
+    pub fn large(&self) -> Option<&RetriedStage> {
         match &self.solve {
-            AnySolve::ZeroDimensional(solve)
-                if self.closings.is_empty() && solve.paths().can_leave_out() =>
-            {
-                Some(solve)
-            }
+            AnySolve::ZeroDimensional(solve) if self.can_leave_out() => Some(solve.paths()),
+            AnySolve::Parameter(solve) if self.can_leave_out() => Some(solve.paths()),
             _ => None,
         }
     }
 
     /// The same, to tell it about them.
-    pub fn large_mut(&mut self) -> Option<&mut ZeroDimensionalSolve> {
+    pub fn large_mut(&mut self) -> Option<&mut RetriedStage> {
+        let large = self.can_leave_out();
         match &mut self.solve {
-            AnySolve::ZeroDimensional(solve)
-                if self.closings.is_empty() && solve.paths().can_leave_out() =>
-            {
-                Some(solve)
-            }
+            AnySolve::ZeroDimensional(solve) if large => Some(solve.paths_mut()),
+            AnySolve::Parameter(solve) if large => Some(solve.paths_mut()),
             _ => None,
         }
+    }
+
+    /// What tells the paths of such a solve that need not be held from others, target by target; none of any
+    /// other.
+    pub fn filters(&self, system: &System) -> Vec<PathFilter> {
+        match &self.solve {
+            AnySolve::ZeroDimensional(solve) => solve.filters(system),
+            AnySolve::Parameter(solve) => solve.filters(system),
+            AnySolve::Polyhedral(_)
+            | AnySolve::Regeneration(_)
+            | AnySolve::Monodromy(_)
+            | AnySolve::Decomposition(_)
+            | AnySolve::Question(_) => Vec::new(),
+        }
+    }
+
+    /// Whether endpoints are compared with each other alone. Closings take all of them; what is tracked on from
+    /// all of them, as from mixed cells, does so too.
+    fn can_leave_out(&self) -> bool {
+        self.closings.is_empty()
+            && match &self.solve {
+                AnySolve::ZeroDimensional(solve) => solve.paths().can_leave_out(),
+                AnySolve::Parameter(solve) => solve.can_leave_out(),
+                AnySolve::Polyhedral(_)
+                | AnySolve::Regeneration(_)
+                | AnySolve::Monodromy(_)
+                | AnySolve::Decomposition(_)
+                | AnySolve::Question(_) => false,
+            }
     }
 
     /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts

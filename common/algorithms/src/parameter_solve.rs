@@ -1,6 +1,6 @@
 //! From solved generic parameters to the wanted ones, one solution set for each target.
 
-use crate::answer::Answer;
+use crate::answer::{Answer, IsolatedSolutions};
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::Progress;
@@ -14,6 +14,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::path_crossing::radius;
 use cognate_solutions::point_shape::PointShape;
+use cognate_solutions::streamed::PathFilter;
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -86,6 +87,24 @@ impl ParameterSolve {
     /// The paths and what is known about them.
     pub fn paths(&self) -> &RetriedStage {
         &self.paths
+    }
+
+    /// The same, to say which are not held.
+    pub fn paths_mut(&mut self) -> &mut RetriedStage {
+        &mut self.paths
+    }
+
+    /// False where the ends of paths are compared with more than each other, so that all are held.
+    pub fn can_leave_out(&self) -> bool {
+        self.group.is_trivial() && self.paths.can_leave_out()
+    }
+
+    /// What tells streamed paths from others, target by target.
+    pub fn filters(&self, system: &System) -> Vec<PathFilter> {
+        let (tolerances, seed) = (self.paths.tolerances(), self.paths.first().seed);
+        let filter =
+            |parameters: &Vec<Complex64>| PathFilter::new(system, parameters, tolerances, seed);
+        self.targets().iter().map(filter).collect()
     }
 }
 
@@ -191,7 +210,11 @@ impl Solve for ParameterSolve {
         let set = |(k, parameters): (usize, &Vec<Complex64>)| {
             self.paths.solution_set(k, system, parameters, false)
         };
-        Some(Answer::from(targets.map(set).collect::<Vec<_>>()))
+        Some(Answer::Isolated(IsolatedSolutions {
+            sets: targets.map(set).collect(),
+            loops: None,
+            held: self.paths.held(),
+        }))
     }
 }
 

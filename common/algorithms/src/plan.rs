@@ -31,6 +31,7 @@ use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
+use cognate_solutions::streamed::PathFilter;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -455,7 +456,12 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
         HomotopyKind::Parameter { targets, .. } => targets.len() as u64,
         _ => 1,
     });
-    if number.is_none_or(|number| number > MAX_PATHS) {
+    // Orbits and named sets need all results.
+    let limit = match PathFilter::suits(system) {
+        true => MAX_STREAMED_PATHS,
+        false => MAX_PATHS,
+    };
+    if number.is_none_or(|number| number > limit) {
         return Err(PlanError::TooManyPaths {
             start: StartKind::Given,
             number,

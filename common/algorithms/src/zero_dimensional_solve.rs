@@ -74,15 +74,11 @@ impl ZeroDimensionalSolve {
         &mut self.paths
     }
 
-    /// What tells its streamed paths from others.
-    pub fn filter(&self, system: &System) -> PathFilter {
+    /// What tells its streamed paths from others: one filter, for the one target.
+    pub fn filters(&self, system: &System) -> Vec<PathFilter> {
         let tolerances = self.paths.tolerances();
-        PathFilter::new(
-            system,
-            &self.parameters,
-            tolerances,
-            self.paths.first().seed,
-        )
+        let seed = self.paths.first().seed;
+        vec![PathFilter::new(system, &self.parameters, tolerances, seed)]
     }
 }
 
@@ -106,11 +102,10 @@ impl Solve for ZeroDimensionalSolve {
     fn answer(&self, system: &System) -> Option<Answer> {
         let (parameters, complete) = (&self.parameters, self.complete_start);
         let set = self.paths.solution_set(0, system, parameters, complete);
-        let held = self.paths.results().iter().map(|result| result.origin.0);
         Some(Answer::Isolated(IsolatedSolutions {
             sets: vec![set],
             loops: None,
-            held: self.paths.leaves_out().then(|| held.collect()),
+            held: self.paths.held(),
         }))
     }
 

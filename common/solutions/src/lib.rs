@@ -24,6 +24,7 @@ pub mod sharpened;
 pub mod solution;
 pub mod solution_set;
 pub mod streamed;
+pub mod streamed_targets;
 pub mod summary;
 pub mod symmetry;
 pub mod unique_points;

@@ -317,9 +317,9 @@ impl ClientApi for ClientService {
         let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
-            let message = |(_, solution): Answered| {
-                let solution = solution?;
-                Some(Ok(to_proto::solution::solution(&solution, 0)))
+            let message = |answered: Answered| {
+                let (target, solution) = answered.solution?;
+                Some(Ok(to_proto::solution::solution(&solution, target)))
             };
             return Ok(Response::new(turn.hold(flattened(answers, message))));
         }
@@ -348,7 +348,7 @@ impl ClientApi for ClientService {
         let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
-            let message = |(path, _): Answered| Some(Ok(classified(&path)));
+            let message = |answered: Answered| Some(Ok(classified(&answered.path)));
             return Ok(Response::new(turn.hold(flattened(answers, message))));
         }
         let coordinator = self.context.coordinator.clone();

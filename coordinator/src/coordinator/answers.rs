@@ -169,7 +169,7 @@ impl Coordinator {
                 self.solutions.keep(digest, Arc::clone(&sets));
                 Ok(sets)
             }
-            StoredAnswer::Large(answer) => Ok(Arc::new(vec![self.whole(job, answer).await?])),
+            StoredAnswer::Large(answer) => Ok(Arc::new(self.whole(job, answer).await?)),
             other => Err(CoordinatorError::OtherAnswer {
                 job,
                 is: other.describe(),
@@ -194,7 +194,7 @@ impl Coordinator {
     ) -> Result<Vec<ClassifiedPath>, CoordinatorError> {
         let row = self.solved(job).await?;
         if let Some(answers) = self.all_answers(job).await? {
-            return Ok(answers.into_iter().map(|(path, _)| path).collect());
+            return Ok(answers.into_iter().map(|answered| answered.path).collect());
         }
         let sets = self.solutions(job).await?;
         let system = self.problem(row.asked.problem).await?;

@@ -20,8 +20,13 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// A path, and the solution that is named for it: that of which it is the first path.
-pub type Answered = (ClassifiedPath, Option<Solution>);
+/// A path, and what is named for it.
+pub struct Answered {
+    /// The path with its class.
+    pub path: ClassifiedPath,
+    /// The solution of which it is the first path, and the target that has it.
+    pub solution: Option<(u32, Solution)>,
+}
 
 /// Chunks of answers that wait for a client.
 const AHEAD: usize = 1;
@@ -91,12 +96,15 @@ impl Coordinator {
             .ok_or_else(|| unreadable("there is none".into()))?;
         let state: Vec<u8> = self.store.record(&STATE, state).await?;
         let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
-        let solve = algorithm
+        let large = algorithm
             .large()
             .ok_or_else(|| unreadable("it is of another kind".into()))?;
-        let first = solve.paths().first_id();
+        let first = large.first_id();
+        let filters = algorithm.filters(&system);
+        let items = large.first().items().unwrap_or_default();
         let mut answers = AnswerStream {
-            filter: solve.filter(&system),
+            paths_per_target: (items / filters.len() as u64).max(1),
+            filters,
             again: self.tracked_again(job, first).await?,
             held: Held::new(answer),
             number: 0,
@@ -153,20 +161,27 @@ impl Coordinator {
         Ok(again)
     }
 
-    /// The solution set of a large job with all its solutions.
+    /// The solution sets of a large job with all their solutions.
     pub(super) async fn whole(
         self: &Arc<Self>,
         job: JobId,
-        answer: LargeAnswer,
-    ) -> Result<SolutionSet, CoordinatorError> {
+        mut answer: LargeAnswer,
+    ) -> Result<Vec<SolutionSet>, CoordinatorError> {
+        for set in &mut answer.sets {
+            set.solutions.clear();
+            set.undecided.clear();
+        }
         let answers = self.all_answers(job).await?.unwrap_or_default();
-        let points = answers.into_iter().filter_map(|(_, s)| s);
-        let (undecided, solutions) = points.partition(|point| point.undecided);
-        Ok(SolutionSet {
-            solutions,
-            undecided,
-            ..answer.set
-        })
+        for (target, point) in answers.into_iter().filter_map(|answered| answered.solution) {
+            let Some(set) = answer.sets.get_mut(target as usize) else {
+                continue; // a target for each set
+            };
+            match point.undecided {
+                true => set.undecided.push(point),
+                false => set.solutions.push(point),
+            }
+        }
+        Ok(answer.sets)
     }
 }
 
@@ -185,24 +200,32 @@ struct Held {
 
 impl Held {
     fn new(answer: LargeAnswer) -> Self {
-        let set = answer.set;
+        let mut solutions = Vec::new();
+        let (mut failed, mut on_sets) = (HashSet::new(), HashSet::new());
+        for set in answer.sets {
+            failed.extend(set.failed.iter().map(|f| f.path));
+            on_sets.extend(set.on_positive_dimensional_sets.iter().copied());
+            solutions.extend(set.solutions.into_iter().chain(set.undecided));
+        }
         let ends = |(k, solution): (usize, &Solution)| -> Vec<(u64, usize)> {
             solution.paths.iter().map(|&path| (path, k)).collect()
         };
         Self {
             paths: answer.held,
-            solution_of: set.points().enumerate().flat_map(ends).collect(),
-            numbers: vec![None; set.points().count()],
-            failed: set.failed.iter().map(|f| f.path).collect(),
-            on_sets: set.on_positive_dimensional_sets.iter().copied().collect(),
-            solutions: set.solutions.into_iter().chain(set.undecided).collect(),
+            solution_of: solutions.iter().enumerate().flat_map(ends).collect(),
+            numbers: vec![None; solutions.len()],
+            failed,
+            on_sets,
+            solutions,
         }
     }
 }
 
 /// Answers path after path, in the order of their indices.
 struct AnswerStream {
-    filter: PathFilter,
+    paths_per_target: u64,
+    /// One for each target.
+    filters: Vec<PathFilter>,
     again: HashMap<u64, PathResult>,
     held: Held,
     /// How many solutions were named.
@@ -217,15 +240,21 @@ impl AnswerStream {
 
     fn answer(&mut self, result: PathResult) -> Answered {
         let path = result.origin.0;
+        let target = path / self.paths_per_target;
+        let named = |solution| (u32::try_from(target).unwrap_or(u32::MAX), solution);
+        let filter = &self.filters[target as usize];
         if self.held.paths.binary_search(&path).is_err() {
-            let (verdict, solution) = self.filter.answer(&result);
+            let (verdict, solution) = filter.answer(&result);
             let number = solution.is_some().then(|| self.next_number());
             let path = ClassifiedPath {
                 verdict,
                 solution: number,
                 result,
             };
-            return (path, solution);
+            return Answered {
+                path,
+                solution: solution.map(named),
+            };
         }
         let result = self.again.remove(&path).unwrap_or(result);
         let verdict = if self.held.failed.contains(&path) {
@@ -233,7 +262,7 @@ impl AnswerStream {
         } else if self.held.on_sets.contains(&path) {
             Verdict::PositiveDimensional
         } else {
-            classify(&result, self.filter.shape(), &Tolerances::default()).verdict
+            classify(&result, filter.shape(), &Tolerances::default()).verdict
         };
         let at = self.held.solution_of.get(&path).copied();
         let mut begun = None;
@@ -248,6 +277,9 @@ impl AnswerStream {
             solution: at.and_then(|at| self.held.numbers[at]),
             result,
         };
-        (path, begun)
+        Answered {
+            path,
+            solution: begun.map(named),
+        }
     }
 }

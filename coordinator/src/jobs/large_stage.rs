@@ -13,7 +13,7 @@ use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{StageId, Work};
-use cognate_solutions::streamed::EndpointIndex;
+use cognate_solutions::streamed_targets::StreamedTargets;
 use futures::{Stream, StreamExt};
 
 /// Result objects that are read at once.
@@ -180,8 +180,8 @@ async fn see_all(
     tools: &Tools<'_>,
     job: JobId,
     stage: StageId,
-    mut index: EndpointIndex,
-) -> Result<(EndpointIndex, u64), DriveError> {
+    mut index: StreamedTargets,
+) -> Result<(StreamedTargets, u64), DriveError> {
     let (mut from, mut seen) = (0, 0);
     loop {
         let objects = page(tools.ledger, job, stage, from).await?;
@@ -213,7 +213,7 @@ async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) 
 /// What is remembered of a large first stage from one absorption to the next.
 #[derive(Default)]
 pub struct LargeStage {
-    index: Option<EndpointIndex>,
+    index: Option<StreamedTargets>,
 }
 
 impl LargeStage {
@@ -243,7 +243,7 @@ impl LargeStage {
             tracing::info!(%job, paths = items, held = held.len(), "most paths need not be held");
             index.take_back(&held);
             let mut taken = steward.take().expect(HERE);
-            let streamed = index.counts().clone();
+            let streamed = index.counts();
             let (back, wanted) = blocking(move || {
                 taken.leave_out(streamed);
                 let wanted = taken.absorb(stage, held.into_iter().map(ItemResult::Track));
@@ -276,7 +276,7 @@ impl LargeStage {
         let near = fetch(tools, job, first, &near).await?;
         index.take_back(&near);
         let mut taken = steward.take().expect(HERE);
-        let streamed = index.counts().clone();
+        let streamed = index.counts();
         let (back, wanted) = blocking(move || {
             taken.take_back(near, streamed);
             let wanted = taken.absorb(stage, results);
@@ -294,7 +294,7 @@ impl LargeStage {
         tools: &Tools<'_>,
         job: JobId,
         steward: &Steward,
-    ) -> Result<EndpointIndex, DriveError> {
+    ) -> Result<StreamedTargets, DriveError> {
         let first = steward.first_stage();
         let held = steward.held_paths();
         let stages = tools.ledger.stages(job).await?;

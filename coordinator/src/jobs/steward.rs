@@ -5,11 +5,13 @@
 //! state that lived through it.
 
 use crate::ledger::rows::StageRow;
+use cognate_algorithms::retried_stage::RetriedStage;
 use cognate_algorithms::{Answer, AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use cognate_solutions::streamed::{EndpointIndex, PathFilter, StreamedCounts};
+use cognate_solutions::streamed::{PathFilter, StreamedCounts};
+use cognate_solutions::streamed_targets::StreamedTargets;
 use cognate_systems::system::System;
 use std::sync::Arc;
 
@@ -80,7 +82,7 @@ impl Steward {
     /// The stage whose paths are those of the job, where they need not all be held.
     pub fn first_stage(&self) -> StageId {
         let large = self.algorithm.large();
-        large.map_or(StageId(0), |solve| solve.paths().first_id())
+        large.map_or(StageId(0), RetriedStage::first_id)
     }
 
     /// True where streamed paths need not be held (see `solutions::streamed`).
@@ -91,16 +93,15 @@ impl Steward {
     /// True where they are not.
     pub fn leaves_out(&self) -> bool {
         let large = self.algorithm.large();
-        large.is_some_and(|solve| solve.paths().leaves_out())
+        large.is_some_and(RetriedStage::leaves_out)
     }
 
     /// An empty index of ends, with capacity for `paths` paths.
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn index(&self, paths: u64) -> EndpointIndex {
-        let solve = self.algorithm.large().expect(LARGE);
-        EndpointIndex::new(solve.filter(&self.system), paths)
+    pub fn index(&self, paths: u64) -> StreamedTargets {
+        StreamedTargets::new(self.algorithm.filters(&self.system), paths)
     }
 
     /// The paths that are held, ascending.
@@ -108,26 +109,26 @@ impl Steward {
     /// # Panics
     /// Where all paths are held.
     pub fn held_paths(&self) -> Vec<u64> {
-        let solve = self.algorithm.large().expect(LARGE);
-        solve.paths().results().iter().map(|r| r.origin.0).collect()
+        let large = self.algorithm.large().expect(LARGE);
+        large.results().iter().map(|r| r.origin.0).collect()
     }
 
     /// Says which paths of the first stage are not held, before the others are absorbed.
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn leave_out(&mut self, streamed: StreamedCounts) {
-        let solve = self.algorithm.large_mut().expect(LARGE);
-        solve.paths_mut().leave_out(streamed);
+    pub fn leave_out(&mut self, streamed: Vec<StreamedCounts>) {
+        let large = self.algorithm.large_mut().expect(LARGE);
+        large.leave_out(streamed);
     }
 
     /// Holds these paths, too.
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: StreamedCounts) {
-        let solve = self.algorithm.large_mut().expect(LARGE);
-        solve.paths_mut().take_back(results, streamed);
+    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: Vec<StreamedCounts>) {
+        let large = self.algorithm.large_mut().expect(LARGE);
+        large.take_back(results, streamed);
     }
 
     /// The state, from which [`Self::restore`] goes on.

@@ -5,6 +5,7 @@ use super::question::ANSWER;
 use super::store::{Store, StoreError};
 use super::summary::{LARGE, LargeAnswer, SOLUTIONS};
 use cognate_algorithms::Answer;
+use cognate_algorithms::answer::IsolatedSolutions;
 use cognate_continuation::start_points::Digest;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::{self, Decomposition};
@@ -26,14 +27,9 @@ impl StoredAnswer {
     /// Keeps an answer.
     pub async fn put(answer: Answer, store: &Store) -> Result<Digest, StoreError> {
         match answer {
-            Answer::Isolated(mut found) => match (found.held, found.sets.pop()) {
-                (Some(held), Some(set)) => {
-                    store.put_record(&LARGE, LargeAnswer { held, set }).await
-                }
-                (_, last) => {
-                    found.sets.extend(last);
-                    store.put_record(&SOLUTIONS, found.sets).await
-                }
+            Answer::Isolated(IsolatedSolutions { sets, held, .. }) => match held {
+                Some(held) => store.put_record(&LARGE, LargeAnswer { held, sets }).await,
+                None => store.put_record(&SOLUTIONS, sets).await,
             },
             Answer::Decomposition(found) => store.put_record(&DECOMPOSITION, found).await,
             Answer::Question(asked) => store.put_record(&ANSWER, asked.answer).await,

@@ -20,15 +20,15 @@ use std::collections::BTreeMap;
 pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL04");
 
 /// Answers of large jobs as objects.
-pub const LARGE: RecordKind = RecordKind(b"CGNLRG02");
+pub const LARGE: RecordKind = RecordKind(b"CGNLRG03");
 
 /// The answer of a job of which not all paths are held (see `solutions::streamed`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LargeAnswer {
     /// The paths that are held, ascending. The ends of the others are read from their results.
     pub held: Vec<u64>,
-    /// The counts of all paths, and the solutions of those that are held.
-    pub set: SolutionSet,
+    /// For each target the counts of all paths, and the solutions of those that are held.
+    pub sets: Vec<SolutionSet>,
 }
 
 /// What is known of a job that has ended, besides its answer.

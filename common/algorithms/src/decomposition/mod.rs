@@ -634,7 +634,7 @@ mod tests {
                 Next::Done => break,
             }
         }
-        assert_eq!(solve.answer(system), Some(Answer::Decomposition(lived)));
+        assert_eq!(solve.answer(&system), Some(Answer::Decomposition(lived)));
         assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
     }
 }

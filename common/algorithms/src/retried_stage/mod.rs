@@ -109,7 +109,7 @@ impl RetriedStage {
             max_retries: MAX_RETRIES,
             ends_only: false,
             phase: Phase::Begins(first.objects),
-            paths: PathStore::new(paths_per_target),
+            paths: PathStore::new(paths_per_target, targets),
             targets: vec![TargetRecord::default(); targets as usize],
             stages: Vec::new(),
             singular_points: SingularPoints::default(),
@@ -139,7 +139,7 @@ impl RetriedStage {
                 paths_per_target,
                 ..self.criteria.clone()
             },
-            paths: PathStore::new(paths_per_target),
+            paths: PathStore::new(paths_per_target, 1),
             ..self.clone()
         }
     }
@@ -176,33 +176,39 @@ impl RetriedStage {
 
     /// False where the ends of paths are compared with more than each other, so that all are held.
     pub fn can_leave_out(&self) -> bool {
-        self.targets.len() == 1
-            && self.criteria.lost == 0
+        self.criteria.lost == 0
             && self.criteria.first.work == Work::Track
             && self.criteria.exchange().is_none()
             && self.criteria.declared.names().next().is_none()
     }
 
-    /// These paths are not held (see `solutions::streamed`); said before the first stage is absorbed, with the
-    /// results of all others, and again whenever some are taken back.
+    /// These paths are not held (see `solutions::streamed`), counted for each target; said before the first stage is
+    /// absorbed, with the results of all others, and again whenever some are taken back.
     ///
     /// # Panics
     /// Where ends are compared with more than each other.
-    pub fn leave_out(&mut self, streamed: StreamedCounts) {
+    pub fn leave_out(&mut self, streamed: Vec<StreamedCounts>) {
         assert!(self.can_leave_out(), "here every end is held");
         self.paths.leave_out(streamed);
     }
 
     /// True where not all paths are held.
     pub fn leaves_out(&self) -> bool {
-        self.paths.streamed().is_some()
+        self.paths.leaves_out()
+    }
+
+    /// The paths that are held, ascending, where these are not all.
+    pub fn held(&self) -> Option<Vec<u64>> {
+        let results = self.paths.results().iter();
+        self.leaves_out()
+            .then(|| results.map(|result| result.origin.0).collect())
     }
 
     /// Holds these paths, too, which were only counted: another may end where they do.
     ///
     /// # Panics
     /// Where ends are compared with more than each other.
-    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: StreamedCounts) {
+    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: Vec<StreamedCounts>) {
         assert!(self.can_leave_out(), "here every end is held");
         self.paths.take_back(results, streamed);
     }
@@ -379,8 +385,9 @@ impl RetriedStage {
     /// Brings all verdicts up to date; returns the paths to track again, ascending.
     fn judge(&mut self) -> Vec<u64> {
         let mut suspects = Vec::new();
-        for (tracked, record) in self.paths.by_target().zip(&mut self.targets) {
-            suspects.extend(record.judge(tracked, self.paths.streamed(), &self.criteria));
+        for (target, record) in self.targets.iter_mut().enumerate() {
+            let (tracked, streamed) = (self.paths.of_target(target), self.paths.streamed(target));
+            suspects.extend(record.judge(tracked, streamed, &self.criteria));
         }
         suspects.sort_unstable();
         suspects.dedup();
@@ -456,7 +463,7 @@ impl RetriedStage {
         let history = self.history(target, complete_start);
         let results = self.criteria.with_images(self.paths.of_target(target));
         let held = self.set_of(system, parameters, &results, &history);
-        match self.paths.streamed() {
+        match self.paths.streamed(target) {
             Some(streamed) => held.with_streamed(streamed),
             None => held,
         }

@@ -10,17 +10,19 @@ use serde::{Deserialize, Serialize};
 pub(super) struct PathStore {
     /// The targets' paths follow each other.
     paths_per_target: u64,
+    targets: usize,
     /// By index of the path, ascending; a path's place is its index where all are held.
     results: Vec<PathResult>,
-    /// The paths that are not held; `None` where all are.
-    streamed: Option<StreamedCounts>,
+    /// The paths that are not held, target by target; `None` where all are.
+    streamed: Option<Vec<StreamedCounts>>,
 }
 
 impl PathStore {
     /// Of paths that are still to be tracked.
-    pub fn new(paths_per_target: u64) -> Self {
+    pub fn new(paths_per_target: u64, targets: u64) -> Self {
         Self {
             paths_per_target,
+            targets: targets as usize,
             results: Vec::new(),
             streamed: None,
         }
@@ -33,36 +35,44 @@ impl PathStore {
 
     /// The results that are held, target by target.
     pub fn by_target(&self) -> impl Iterator<Item = &[PathResult]> {
-        let size = self.paths_per_target.max(1) as usize;
-        let one = self.streamed.is_some().then_some(&self.results[..]);
-        let each = self.results.chunks(size).filter(move |_| one.is_none());
-        one.into_iter().chain(each)
+        (0..self.targets).map(|target| self.of_target(target))
     }
 
     /// The results of one target's paths that are held; none before they are tracked.
     pub fn of_target(&self, target: usize) -> &[PathResult] {
-        self.by_target().nth(target).unwrap_or_default()
+        let first = target as u64 * self.paths_per_target;
+        let place = |path: u64| match self.streamed {
+            Some(_) => self.results.partition_point(|r| r.origin.0 < path),
+            None => self.results.len().min(path as usize),
+        };
+        &self.results[place(first)..place(first + self.paths_per_target)]
     }
 
-    /// The paths that are not held, counted; `None` where all are held.
-    pub fn streamed(&self) -> Option<&StreamedCounts> {
-        self.streamed.as_ref()
+    /// True where not all paths are held.
+    pub fn leaves_out(&self) -> bool {
+        self.streamed.is_some()
+    }
+
+    /// The paths to a target that are not held, counted; `None` where all are held.
+    pub fn streamed(&self, target: usize) -> Option<&StreamedCounts> {
+        self.streamed.as_ref().map(|streamed| &streamed[target])
     }
 
     /// Paths with a result, held or not.
     pub fn known(&self) -> u64 {
-        let streamed = self.streamed.as_ref().map_or(0, StreamedCounts::total);
-        self.results.len() as u64 + streamed
+        let streamed = self.streamed.iter().flatten().map(StreamedCounts::total);
+        self.results.len() as u64 + streamed.sum::<u64>()
     }
 
-    /// These paths are not held.
-    pub fn leave_out(&mut self, streamed: StreamedCounts) {
+    /// These paths are not held: counts for each target.
+    pub fn leave_out(&mut self, streamed: Vec<StreamedCounts>) {
+        assert_eq!(streamed.len(), self.targets, "counts for each target");
         self.streamed = Some(streamed);
     }
 
     /// Holds these paths, too; `streamed` are left.
-    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: StreamedCounts) {
-        self.streamed = Some(streamed);
+    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: Vec<StreamedCounts>) {
+        self.leave_out(streamed);
         self.results.extend(results);
         self.results.sort_by_key(|result| result.origin);
     }
