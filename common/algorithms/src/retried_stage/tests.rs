@@ -8,7 +8,7 @@ use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Next, PathAlgorithm};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::StartPoints;
-use cognate_continuation::work::Stage;
+use cognate_continuation::work::{Stage, Work};
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::solution_set::SolutionSet;
 use num_complex::Complex64;
@@ -104,6 +104,26 @@ fn a_turn_that_is_no_permutation_is_made_again() {
     });
     let named = |warning: &String| warning.contains("winding numbers do not fit");
     assert!(sets[0].warnings.iter().any(named), "{:?}", sets[0].warnings);
+}
+
+#[test]
+fn a_point_that_is_known_stays_where_another_is_asked_again() {
+    // Three paths to one point, as many as it has functionals; one to another, which is tracked again.
+    let mut algorithm = solve();
+    let (stages, _) = run(&mut algorithm, |path, _| match path {
+        3 => Fate::Turns(0.9, 1),
+        _ => Fate::Turns(0.5, 3),
+    });
+    let work: Vec<(Work, Option<u64>)> = stages.iter().map(|s| (s.work, s.items())).collect();
+    let (track, look) = (Work::Track, Work::LocalDimension);
+    let expected = [(track, 4), (look, 2), (track, 1), (look, 1)];
+    assert_eq!(work, expected.map(|(work, items)| (work, Some(items))));
+    let AnySolve::ZeroDimensional(solve) = algorithm.solve() else {
+        unreachable!("it was made so");
+    };
+    let singular = solve.paths().finite_endpoints().singular;
+    let known = singular.iter().filter(|end| end.values[0].re == 0.5);
+    assert_eq!(known.count(), 1, "{singular:?}");
 }
 
 #[test]
