@@ -151,20 +151,21 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
             "precision of {bits} bits; paths are tracked with {MOST_BITS} at most"
         )));
     }
-    let fits = options.check();
-    fits.map_err(|misfit| ApiError::Problem(misfit.to_string()))
+    Ok(options.check()?)
 }
 
 /// Start solutions have a coordinate for each variable.
 pub fn check_points(points: &StoredPoints, system: &System) -> Result<(), ApiError> {
+    let wrong = |what: String| ApiError::Field {
+        field: "options.start_solutions",
+        what,
+    };
     if points.is_empty() {
-        return Err(ApiError::Problem(
-            "options.start_solutions: there is no point".to_owned(),
-        ));
+        return Err(wrong("there is no point".to_owned()));
     }
     if points.dimension != system.variables.len() {
-        return Err(ApiError::Problem(format!(
-            "options.start_solutions: points of {} coordinates for {} variables",
+        return Err(wrong(format!(
+            "points of {} coordinates for {} variables",
             points.dimension,
             system.variables.len()
         )));

@@ -124,14 +124,8 @@ async fn a_black_hole_condemns_no_path_and_is_put_aside() {
     assert_eq!(lost, 0, "paths were given up");
     println!("{failed} chunks were given back");
     if failed >= 3 {
-        let workers = client
-            .0
-            .list_workers(v1::ListWorkersRequest {})
-            .await
-            .unwrap();
-        let workers = workers.into_inner().workers;
-        let hole = workers.iter().find(|w| w.worker == "hole").unwrap();
-        assert!(hole.refused.contains("in a row"), "{:?}", hole.refused);
+        let refusal = client.refusal("hole").await;
+        assert!(refusal.contains("in a row"), "{refusal:?}");
     }
     honest.stop().await;
 }
@@ -294,14 +288,8 @@ async fn ends_that_solve_no_equation_are_done_again() {
         let g = power(y, 8) - x * y + 1.0;
         assert!(f.norm_sqr() + g.norm_sqr() < 1e-12, "{solution:?}");
     }
-    let workers = client
-        .0
-        .list_workers(v1::ListWorkersRequest {})
-        .await
-        .unwrap();
-    let workers = workers.into_inner().workers;
-    let liar = workers.iter().find(|w| w.worker == "liar").unwrap();
-    assert!(liar.refused.contains("does not hold"), "{:?}", liar.refused);
+    let refusal = client.refusal("liar").await;
+    assert!(refusal.contains("does not hold"), "{refusal:?}");
     honest.stop().await;
 }
 

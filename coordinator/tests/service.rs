@@ -10,6 +10,7 @@ use cognate_protocol::v1;
 use std::time::{Duration, Instant};
 use support::{FOUR_POINTS, FakeWorker, House, MANY_PATHS, text};
 use tonic::Code;
+use tonic_types::StatusExt;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_text_becomes_solutions() {
@@ -153,6 +154,24 @@ async fn bad_input_is_named_and_the_service_stays_up() {
             .message()
             .starts_with("problem.system.nodes[0].negate is 5")
     );
+    // Programs find the field by itself.
+    let field = |error: &tonic::Status| -> Vec<String> {
+        let details = error.get_details_bad_request();
+        let violations = details.into_iter().flat_map(|bad| bad.field_violations);
+        violations.map(|violation| violation.field).collect()
+    };
+    assert_eq!(field(&error), ["problem.system.nodes[0].negate"]);
+    let error = client.submit("", text(FOUR_POINTS)).await.unwrap_err();
+    assert_eq!(field(&error), ["request_id"]);
+    let error = client.submit("bad", text("")).await.unwrap_err();
+    assert_eq!(field(&error), ["problem.text"]);
+    let mut misfit = text(FOUR_POINTS);
+    misfit.options = Some(v1::Options {
+        idle_loops: Some(3),
+        ..v1::Options::default()
+    });
+    let error = client.submit("bad", misfit).await.unwrap_err();
+    assert_eq!(field(&error), ["problem.options.idle_loops"]);
     for job in ["", "x", "0123456789abcdef"] {
         let request = v1::WatchRequest {
             job: job.to_owned(),

@@ -32,7 +32,7 @@ async fn house() -> House {
 async fn worker(house: &House, name: &str, choice: TransportChoice) -> FakeWorker {
     let worker = house.worker_api_by(name, choice).await;
     let wanted = choice == TransportChoice::SharedMemory;
-    assert_eq!(worker.way.by_shared_memory(), wanted, "{choice:?}");
+    assert_eq!(worker.route.by_shared_memory(), wanted, "{choice:?}");
     worker
 }
 
@@ -210,7 +210,10 @@ async fn messages_of_any_size_go_through() {
         let report = large_report(&worker, bytes);
         let answer = worker.api.report(report).await.unwrap().into_inner();
         assert_eq!(answer.verdicts[0].verdict(), Verdict::Invalid, "{bytes}");
-        assert!(worker.way.by_shared_memory(), "a call declined is no break");
+        assert!(
+            worker.route.by_shared_memory(),
+            "a call declined is no break"
+        );
     }
     house.server.shutdown().await;
 }
@@ -237,7 +240,7 @@ async fn many_calls_at_once_are_all_answered() {
         stages.push(call.await.unwrap());
     }
     assert!(stages.iter().all(|stage| *stage == stages[0]));
-    assert!(one.way.by_shared_memory() && two.way.by_shared_memory());
+    assert!(one.route.by_shared_memory() && two.route.by_shared_memory());
     house.server.shutdown().await;
 }
 
@@ -248,7 +251,7 @@ async fn where_shared_memory_ends_calls_go_on_by_grpc() {
     // The listener in shared memory closes; the others stay open.
     house.server.close_shared_memory();
     let begin = Instant::now();
-    while worker.way.by_shared_memory() {
+    while worker.route.by_shared_memory() {
         assert!(begin.elapsed() < Duration::from_secs(10), "it is noticed");
         tokio::time::sleep(Duration::from_millis(20)).await;
     }

@@ -12,7 +12,7 @@ fn problem() -> Submission {
     let file = format!("{folder}/nid_illustrative/system.bertini");
     let mut submission =
         Submission::of(std::fs::read_to_string(file).expect("the system is there"));
-    submission.options.decompose = Some(v1::Decompose::default());
+    submission.options.method = Some(v1::options::Method::Decompose(v1::Decompose::default()));
     submission
 }
 

@@ -1,5 +1,6 @@
 //! AnyAlgorithm: a job, whatever solves it, which can be written down and read back.
 
+use crate::answer::Answer;
 use crate::closings::Closing;
 use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
@@ -10,6 +11,7 @@ use crate::polyhedral_solve::PolyhedralSolve;
 use crate::progress::Progress;
 use crate::questions::QuestionSolve;
 use crate::regeneration_solve::RegenerationSolve;
+use crate::retried_stage::RetriedStage;
 use crate::solve::{Next, PathAlgorithm, Solve, StageNumbers};
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::item_result::ItemResult;
@@ -17,12 +19,12 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_solutions::witness::Decomposition;
+use cognate_solutions::streamed::PathFilter;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 15;
+const VERSION: u8 = 16;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -164,32 +166,6 @@ impl AnyAlgorithm {
         }
     }
 
-    /// The decomposition that was found, where it is one and `next` has said `Done`.
-    pub fn decomposition(&self) -> Option<&Decomposition> {
-        match &self.solve {
-            AnySolve::Decomposition(solve) => solve.decomposition(),
-            AnySolve::ZeroDimensional(_)
-            | AnySolve::Parameter(_)
-            | AnySolve::Polyhedral(_)
-            | AnySolve::Regeneration(_)
-            | AnySolve::Monodromy(_)
-            | AnySolve::Question(_) => None,
-        }
-    }
-
-    /// The question to components with what was found, where it is one.
-    pub fn question(&self) -> Option<&QuestionSolve> {
-        match &self.solve {
-            AnySolve::Question(solve) => Some(&**solve),
-            AnySolve::ZeroDimensional(_)
-            | AnySolve::Parameter(_)
-            | AnySolve::Polyhedral(_)
-            | AnySolve::Regeneration(_)
-            | AnySolve::Monodromy(_)
-            | AnySolve::Decomposition(_) => None,
-        }
-    }
-
     /// How loops have come along, in a solve by monodromy.
     pub fn loops(&self) -> Option<&LoopCounts> {
         self.monodromy().map(MonodromySolve::counts)
@@ -198,45 +174,60 @@ impl AnyAlgorithm {
     /// The last results of all paths by the numbers that people see, where a stage counts its
     /// paths by others, or not all of them.
     pub fn renumbered_results(&self) -> Option<Vec<PathResult>> {
-        match &self.solve {
-            AnySolve::Polyhedral(solve) => Some(solve.results()),
-            AnySolve::Regeneration(solve) => Some(solve.results()),
-            AnySolve::ZeroDimensional(solve) => solve.paths().results_with_images(),
-            AnySolve::Parameter(_)
-            | AnySolve::Monodromy(_)
-            | AnySolve::Decomposition(_)
-            | AnySolve::Question(_) => None,
-        }
+        self.solve.get().renumbered_results()
     }
 
     /// The stage whose paths the answer counts; stages before it only prepared it.
     pub fn counted_stage(&self) -> StageId {
-        self.monodromy()
-            .map_or(StageId(0), MonodromySolve::counted_stage)
+        self.solve.get().counted_stage()
     }
 
-    /// The solve whose plain paths need not be held (see `solutions::plain`), where it is such a one.
-    pub fn large(&self) -> Option<&ZeroDimensionalSolve> {
+    /// The paths of a solve that need not all be held (see `solutions::streamed`), where it is such a one.
+    pub fn large(&self) -> Option<&RetriedStage> {
         match &self.solve {
-            AnySolve::ZeroDimensional(solve)
-                if self.closings.is_empty() && solve.paths().can_leave_out() =>
-            {
-                Some(solve)
-            }
+            AnySolve::ZeroDimensional(solve) if self.can_leave_out() => Some(solve.paths()),
+            AnySolve::Parameter(solve) if self.can_leave_out() => Some(solve.paths()),
             _ => None,
         }
     }
 
     /// The same, to tell it about them.
-    pub fn large_mut(&mut self) -> Option<&mut ZeroDimensionalSolve> {
+    pub fn large_mut(&mut self) -> Option<&mut RetriedStage> {
+        let large = self.can_leave_out();
         match &mut self.solve {
-            AnySolve::ZeroDimensional(solve)
-                if self.closings.is_empty() && solve.paths().can_leave_out() =>
-            {
-                Some(solve)
-            }
+            AnySolve::ZeroDimensional(solve) if large => Some(solve.paths_mut()),
+            AnySolve::Parameter(solve) if large => Some(solve.paths_mut()),
             _ => None,
         }
+    }
+
+    /// What tells the paths of such a solve that need not be held from others, target by target; none of any
+    /// other.
+    pub fn filters(&self, system: &System) -> Vec<PathFilter> {
+        match &self.solve {
+            AnySolve::ZeroDimensional(solve) => solve.filters(system),
+            AnySolve::Parameter(solve) => solve.filters(system),
+            AnySolve::Polyhedral(_)
+            | AnySolve::Regeneration(_)
+            | AnySolve::Monodromy(_)
+            | AnySolve::Decomposition(_)
+            | AnySolve::Question(_) => Vec::new(),
+        }
+    }
+
+    /// Whether endpoints are compared with each other alone. Closings take all of them; what is tracked on from
+    /// all of them, as from mixed cells, does so too.
+    fn can_leave_out(&self) -> bool {
+        self.closings.is_empty()
+            && match &self.solve {
+                AnySolve::ZeroDimensional(solve) => solve.paths().can_leave_out(),
+                AnySolve::Parameter(solve) => solve.can_leave_out(),
+                AnySolve::Polyhedral(_)
+                | AnySolve::Regeneration(_)
+                | AnySolve::Monodromy(_)
+                | AnySolve::Decomposition(_)
+                | AnySolve::Question(_) => false,
+            }
     }
 
     /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
@@ -304,17 +295,19 @@ impl PathAlgorithm for AnyAlgorithm {
         let closings = self.closings.iter();
         closings.fold(before, |progress, closing| closing.progress(progress))
     }
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        let mut sets = self.solve.get().solution_sets(system);
-        for closing in &self.closings {
-            closing.apply(&mut sets, system);
-        }
-        if let Some(loops) = self.loops() {
-            let known = self.completeness();
-            for set in &mut sets {
-                judge_loops(loops, known.as_ref(), set);
+    fn answer(&self, system: &System) -> Option<Answer> {
+        let mut answer = self.solve.get().answer(system)?;
+        if let Answer::Isolated(found) = &mut answer {
+            for closing in &self.closings {
+                closing.apply(&mut found.sets, system);
+            }
+            if let Some(loops) = &found.loops {
+                let known = self.completeness();
+                for set in &mut found.sets {
+                    judge_loops(&loops.counts, known.as_ref(), set);
+                }
             }
         }
-        sets
+        Some(answer)
     }
 }

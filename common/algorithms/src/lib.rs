@@ -28,6 +28,7 @@
 //! slices have a sum that moves on a line, and a part of them has not.
 #![forbid(unsafe_code)]
 
+pub mod answer;
 pub mod any_algorithm;
 pub mod closings;
 mod coefficient_family;
@@ -56,6 +57,7 @@ pub mod start_kind;
 pub mod start_pair;
 pub mod zero_dimensional_solve;
 
+pub use answer::Answer;
 pub use any_algorithm::{AnyAlgorithm, AnySolve, RestoreError};
 pub use completeness_claim::CompletenessClaim;
 pub use finite_endpoints::{FiniteEndpoint, FiniteEndpoints};

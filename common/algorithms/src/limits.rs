@@ -1,6 +1,11 @@
-//! How many paths a solve may have.
+//! How many paths a solve may have, and which solves may have fewer.
 
-/// Most paths of one solve where all results are held in memory, about 300 bytes a path.
+/// Most paths of one solve where all results are held in memory, about 300 bytes a path. So it is
+/// - with certificates or more digits: one stage gets all endpoints as one object;
+/// - with mixed cells, and equation by equation: all ends of one stage are the start points of the next;
+/// - by loops: every new point is compared with all that are known;
+/// - with an exchange of groups, symmetries or named sets: ends are compared with images of others.
 pub const MAX_PATHS: u64 = 4_000_000;
-/// ... and where those of plain paths need not be (see `solutions::plain`), of which 24 bytes are.
-pub const MAX_PLAIN_PATHS: u64 = 40_000_000;
+/// ... and where those of streamed paths need not be (see `solutions::streamed`), of which 24 bytes are: by
+/// degrees, and from given solutions to one target or several.
+pub const MAX_STREAMED_PATHS: u64 = 40_000_000;

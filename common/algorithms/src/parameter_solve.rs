@@ -1,5 +1,6 @@
 //! From solved generic parameters to the wanted ones, one solution set for each target.
 
+use crate::answer::{Answer, IsolatedSolutions};
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::Progress;
@@ -13,7 +14,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::path_crossing::radius;
 use cognate_solutions::point_shape::PointShape;
-use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::streamed::PathFilter;
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -86,6 +87,24 @@ impl ParameterSolve {
     /// The paths and what is known about them.
     pub fn paths(&self) -> &RetriedStage {
         &self.paths
+    }
+
+    /// The same, to say which are not held.
+    pub fn paths_mut(&mut self) -> &mut RetriedStage {
+        &mut self.paths
+    }
+
+    /// False where the ends of paths are compared with more than each other, so that all are held.
+    pub fn can_leave_out(&self) -> bool {
+        self.group.is_trivial() && self.paths.can_leave_out()
+    }
+
+    /// What tells streamed paths from others, target by target.
+    pub fn filters(&self, system: &System) -> Vec<PathFilter> {
+        let (tolerances, seed) = (self.paths.tolerances(), self.paths.first().seed);
+        let filter =
+            |parameters: &Vec<Complex64>| PathFilter::new(system, parameters, tolerances, seed);
+        self.targets().iter().map(filter).collect()
     }
 }
 
@@ -186,12 +205,16 @@ impl Solve for ParameterSolve {
         Some(self.paths.finite_endpoints())
     }
 
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        self.targets()
-            .iter()
-            .enumerate()
-            .map(|(k, parameters)| self.paths.solution_set(k, system, parameters, false))
-            .collect()
+    fn answer(&self, system: &System) -> Option<Answer> {
+        let targets = self.targets().iter().enumerate();
+        let set = |(k, parameters): (usize, &Vec<Complex64>)| {
+            self.paths.solution_set(k, system, parameters, false)
+        };
+        Some(Answer::Isolated(IsolatedSolutions {
+            sets: targets.map(set).collect(),
+            loops: None,
+            held: self.paths.held(),
+        }))
     }
 }
 
@@ -206,6 +229,7 @@ mod tests {
     use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
     use cognate_continuation::tracker::settings::Settings;
     use cognate_continuation::work::Work;
+    use cognate_solutions::solution_set::SolutionSet;
     use std::collections::HashMap;
 
     /// x^4 = p with x and i x alike: from p = 1 to 16 and to i.

@@ -8,7 +8,7 @@ use crate::coefficient_family::coefficient_family;
 use crate::coefficients::Coefficients;
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
-pub use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
+pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::{PlanError, checked_volume};
@@ -31,6 +31,7 @@ use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
+use cognate_solutions::streamed::PathFilter;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -171,18 +172,20 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         (true, _) => Err(PlanError::NothingToDeform),
         (false, choice) => plan_start_system(system, choice, options),
     }?;
-    if options.digits > DIGITS_OF_DOUBLES || options.deflate {
+    let more_digits = options.digits > DIGITS_OF_DOUBLES || options.deflate;
+    if (more_digits || options.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
+        // What closes a solve takes all endpoints at once.
+        return Err(PlanError::TooManyPaths {
+            start: plan.start,
+            number: plan.paths,
+            instead: String::new(),
+        });
+    }
+    if more_digits {
         let digits = Digits::new(options.digits, options.deflate);
         plan.algorithm.close_with(Closing::Digits(digits));
     }
     if options.certify {
-        if plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
-            return Err(PlanError::TooManyPaths {
-                start: plan.start,
-                number: plan.paths,
-                instead: String::new(),
-            });
-        }
         let certificates = Certificates::default();
         plan.algorithm
             .close_with(Closing::Certificates(certificates));
@@ -453,7 +456,12 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
         HomotopyKind::Parameter { targets, .. } => targets.len() as u64,
         _ => 1,
     });
-    if number.is_none_or(|number| number > MAX_PATHS) {
+    // Orbits and named sets need all results.
+    let limit = match PathFilter::suits(system) {
+        true => MAX_STREAMED_PATHS,
+        false => MAX_PATHS,
+    };
+    if number.is_none_or(|number| number > limit) {
         return Err(PlanError::TooManyPaths {
             start: StartKind::Given,
             number,
@@ -939,5 +947,44 @@ mod tests {
         assert_eq!((chosen.start, chosen.paths), (StartKind::Given, Some(3)));
         options.start = StartChoice::TotalDegree;
         assert!(plan(&system, &options).is_err());
+    }
+
+    #[test]
+    fn what_needs_every_endpoint_has_a_lower_limit() {
+        // 2^23 paths: more than are held, fewer than are streamed.
+        let names: Vec<String> = (0..23).map(|i| format!("x{i}")).collect();
+        let squares: Vec<String> = (0..23)
+            .map(|i| format!("f{i} = x{i}^2 - {};", i + 2))
+            .collect();
+        let functions: Vec<String> = (0..23).map(|i| format!("f{i}")).collect();
+        let system = bertini(&format!(
+            "variable_group {};\nfunction {};\n{}",
+            names.join(", "),
+            functions.join(", "),
+            squares.join("\n")
+        ));
+        let alone = with_start(StartChoice::TotalDegree);
+        assert_eq!(plan(&system, &alone).unwrap().paths, Some(1 << 23));
+        let closings = [
+            PlanOptions {
+                certify: true,
+                ..alone.clone()
+            },
+            PlanOptions {
+                digits: 50,
+                ..alone.clone()
+            },
+            PlanOptions {
+                deflate: true,
+                ..alone
+            },
+        ];
+        for options in closings {
+            let refused = refusal(&system, &options);
+            assert!(
+                matches!(refused, PlanError::TooManyPaths { .. }),
+                "{refused}"
+            );
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! PlanError: why there is no plan, in words for the person who gave the system.
 
-use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
+use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monodromy::trace::NoTraceTest;
 use crate::start_kind::StartKind;
 use crate::start_pair::StartPairError;
@@ -44,7 +44,7 @@ pub enum PlanError {
     /// The wrong number of values.
     #[error("{what} have {found} values, but the system has {expected} parameters")]
     ParameterCount {
-        /// Which.
+        /// Which parameters: those at the start, or at a target.
         what: &'static str,
         /// How many values there are.
         found: usize,
@@ -54,7 +54,7 @@ pub enum PlanError {
     /// Infinite or not a number.
     #[error("{what} have a value that is no finite number")]
     NotFinite {
-        /// Which.
+        /// Which parameters: those at the start, or at a target.
         what: &'static str,
     },
     /// Several targets can only be reached from solved parameters.
@@ -119,7 +119,7 @@ pub enum PlanError {
     /// Too large.
     #[error(
         "not in this version: the {start} start has {} paths, more than the limit of {MAX_PATHS} \
-         paths of one solve ({MAX_PLAIN_PATHS} by degrees where nothing needs all of them in memory){instead}",
+         paths of one solve ({MAX_STREAMED_PATHS} by degrees where nothing needs all of them in memory){instead}",
         .number.map_or("2^64 or more".to_string(), |n| n.to_string())
     )]
     TooManyPaths {

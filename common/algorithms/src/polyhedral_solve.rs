@@ -7,6 +7,7 @@
 //! does not arrive in the first is named as failed in the end, so that the
 //! counts add up to the mixed volume.
 
+use crate::answer::Answer;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::plan_error::{PlanError, checked_volume};
@@ -24,7 +25,6 @@ use cognate_continuation::start_systems::polyhedral::mixed_cells::{
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict};
-use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -348,7 +348,7 @@ impl Solve for PolyhedralSolve {
         Some(finite_endpoints)
     }
 
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+    fn answer(&self, system: &System) -> Option<Answer> {
         let results = self.results();
         let last = self.target.as_ref().unwrap_or(&self.generic);
         let mut history = last.history(0, true);
@@ -359,7 +359,12 @@ impl Solve for PolyhedralSolve {
             history.crossings_found += first.crossings_found;
             history.crossings_resolved += first.crossings_resolved;
         }
-        vec![last.set_of(system, &self.parameters, &results, &history)]
+        let set = last.set_of(system, &self.parameters, &results, &history);
+        Some(Answer::from(vec![set]))
+    }
+
+    fn renumbered_results(&self) -> Option<Vec<PathResult>> {
+        Some(self.results())
     }
 }
 
@@ -374,6 +379,7 @@ mod tests {
     use cognate_continuation::item_result::PointResult;
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CountedCells};
+    use cognate_solutions::solution_set::SolutionSet;
     use cognate_systems::named::cyclic;
     use std::collections::HashMap;
 

@@ -1,7 +1,9 @@
 //! Progress: how far a solve is, for people and for clients.
 
 use cognate_continuation::work::{StageId, Work};
+use cognate_solutions::classification::Verdict;
 use serde::{Deserialize, Serialize};
+use std::iter::Sum;
 
 /// One stage of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,6 +39,37 @@ pub struct VerdictCounts {
     pub excess: u64,
     /// Failed.
     pub failed: u64,
+}
+
+impl VerdictCounts {
+    /// One more path with this verdict.
+    pub fn count(&mut self, verdict: Verdict) {
+        *match verdict {
+            Verdict::Finite => &mut self.finite,
+            Verdict::Singular => &mut self.singular,
+            Verdict::Undecided => &mut self.undecided,
+            Verdict::WithinDataAccuracy => &mut self.within_data_accuracy,
+            Verdict::AtInfinity => &mut self.at_infinity,
+            Verdict::PositiveDimensional => &mut self.positive_dimensional,
+            Verdict::Excess => &mut self.excess,
+            Verdict::Failed => &mut self.failed,
+        } += 1;
+    }
+}
+
+impl Sum for VerdictCounts {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, one| Self {
+            finite: sum.finite + one.finite,
+            singular: sum.singular + one.singular,
+            undecided: sum.undecided + one.undecided,
+            within_data_accuracy: sum.within_data_accuracy + one.within_data_accuracy,
+            positive_dimensional: sum.positive_dimensional + one.positive_dimensional,
+            at_infinity: sum.at_infinity + one.at_infinity,
+            excess: sum.excess + one.excess,
+            failed: sum.failed + one.failed,
+        })
+    }
 }
 
 /// How far a solve is.

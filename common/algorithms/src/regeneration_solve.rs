@@ -7,6 +7,7 @@
 //! beginning of a regular solution and is left behind; what fails is named as
 //! failed in the end. (Hauenstein, Sommese, Wampler 2011.)
 
+use crate::answer::Answer;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
@@ -20,7 +21,7 @@ use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict};
-use cognate_solutions::solution_set::{History, SolutionSet};
+use cognate_solutions::solution_set::History;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -295,7 +296,7 @@ impl Solve for RegenerationSolve {
         Some(finite_endpoints)
     }
 
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+    fn answer(&self, system: &System) -> Option<Answer> {
         let results = self.results();
         let mut history = History {
             retracked: self.repeated[0],
@@ -314,6 +315,10 @@ impl Solve for RegenerationSolve {
         let parameters = &self.levels.parameters;
         let mut set = self.stage.set_of(system, parameters, &results, &history);
         set.warnings.extend(self.may_miss());
-        vec![set]
+        Some(Answer::from(vec![set]))
+    }
+
+    fn renumbered_results(&self) -> Option<Vec<PathResult>> {
+        Some(self.results())
     }
 }

@@ -137,8 +137,8 @@ mod tests {
         fn failure(&self) -> Option<String> {
             None
         }
-        fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
-            Vec::new()
+        fn answer(&self, _: &System) -> Option<crate::Answer> {
+            None
         }
     }
 

@@ -1,11 +1,13 @@
 //! Solve: a plan that asks for stages and learns from their results. Solves stand inside others, and one of
 //! them inside whatever drives it, which numbers the stages.
 
+use crate::answer::Answer;
 use crate::completeness_claim::CompletenessClaim;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::{Progress, StageProgress};
 use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -65,9 +67,24 @@ pub trait Solve: Send {
     }
     /// How far it is.
     fn progress(&self) -> Progress;
-    /// What was found, one set for each target; meant for when `next` has said `Done`.
+    /// What was found when `next` has said `Done`; `None` where nothing can be said before.
     /// `system` is the one that was planned for.
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
+    fn answer(&self, system: &System) -> Option<Answer>;
+    /// The isolated solutions that were found, one set for each target; none where something else was asked for.
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+        self.answer(system)
+            .map(Answer::into_sets)
+            .unwrap_or_default()
+    }
+    /// The last results of all paths by the numbers that people see, where a stage counts its
+    /// paths by others, or not all of them.
+    fn renumbered_results(&self) -> Option<Vec<PathResult>> {
+        None
+    }
+    /// The stage whose paths the answer counts; stages before it only prepared it.
+    fn counted_stage(&self) -> StageId {
+        StageId(0)
+    }
     /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
     /// say all that is known of that.
     fn completeness(&self) -> Option<CompletenessClaim> {
@@ -89,9 +106,15 @@ pub trait PathAlgorithm: Send {
     fn failure(&self) -> Option<String>;
     /// How far it is.
     fn progress(&self) -> Progress;
-    /// What was found, one set for each target; meant for when `next` has said `Done`.
+    /// What was found when `next` has said `Done`; `None` where nothing can be said before.
     /// `system` is the one that was planned for.
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet>;
+    fn answer(&self, system: &System) -> Option<Answer>;
+    /// The isolated solutions that were found, one set for each target; none where something else was asked for.
+    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+        self.answer(system)
+            .map(Answer::into_sets)
+            .unwrap_or_default()
+    }
 }
 
 /// One solve alone, for examples, tests and tools; a job also has closings and can be written down (see
@@ -124,7 +147,7 @@ impl<S: Solve> PathAlgorithm for Root<S> {
     fn progress(&self) -> Progress {
         self.solve.progress()
     }
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        self.solve.solution_sets(system)
+    fn answer(&self, system: &System) -> Option<Answer> {
+        self.solve.answer(system)
     }
 }

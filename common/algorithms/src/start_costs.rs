@@ -1,6 +1,6 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
-use crate::limits::{MAX_PATHS, MAX_PLAIN_PATHS};
+use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monomials::not_multiplied_out;
 use crate::plan_error::PlanError;
 use crate::set_structures::{given, guessed, set_names};
@@ -11,7 +11,7 @@ use cognate_continuation::start_systems::grouping::best_grouping;
 use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
-use cognate_solutions::plain::Sieve;
+use cognate_solutions::streamed::PathFilter;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
 use cognate_systems::transform::clear_denominators::nonzero_variables;
@@ -49,7 +49,7 @@ pub struct StartCosts {
     pub mixed_volume: Option<u64>,
     /// The cheapest that can be used; null where the system cannot be solved.
     pub choice: Option<StartKind>,
-    /// Why.
+    /// Why this start, or why none can be used.
     pub why: String,
     /// Why a number is null, by the name of its field.
     pub notes: BTreeMap<String, String>,
@@ -582,8 +582,12 @@ fn multihomogeneous(system: &System, degrees: &Degrees) -> Result<(StartPoints, 
 
 fn counted(system: &System, start: &StartPoints, kind: StartKind) -> Result<u64, PlanError> {
     // Images, orbits and named sets need all results.
-    let plain = Sieve::suits(system) && start.exchange().is_none();
-    let limit = if plain { MAX_PLAIN_PATHS } else { MAX_PATHS };
+    let streamed = PathFilter::suits(system) && start.exchange().is_none();
+    let limit = if streamed {
+        MAX_STREAMED_PATHS
+    } else {
+        MAX_PATHS
+    };
     match start.count() {
         Some(0) => Err(PlanError::NoPaths),
         Some(number) if number <= limit => Ok(number),

@@ -1,15 +1,16 @@
 //! All isolated solutions of one system, from a start system, or by a homotopy of the user's own.
 
+use crate::answer::{Answer, IsolatedSolutions};
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::progress::Progress;
 use crate::retried_stage::RetriedStage;
 use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::Tolerances;
-use cognate_solutions::plain::Sieve;
-use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::streamed::PathFilter;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -73,15 +74,11 @@ impl ZeroDimensionalSolve {
         &mut self.paths
     }
 
-    /// What tells its plain paths from others.
-    pub fn sieve(&self, system: &System) -> Sieve {
+    /// What tells its streamed paths from others: one filter, for the one target.
+    pub fn filters(&self, system: &System) -> Vec<PathFilter> {
         let tolerances = self.paths.tolerances();
-        Sieve::new(
-            system,
-            &self.parameters,
-            tolerances,
-            self.paths.first().seed,
-        )
+        let seed = self.paths.first().seed;
+        vec![PathFilter::new(system, &self.parameters, tolerances, seed)]
     }
 }
 
@@ -102,11 +99,18 @@ impl Solve for ZeroDimensionalSolve {
         Some(self.paths.finite_endpoints())
     }
 
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
-        vec![
-            self.paths
-                .solution_set(0, system, &self.parameters, self.complete_start),
-        ]
+    fn answer(&self, system: &System) -> Option<Answer> {
+        let (parameters, complete) = (&self.parameters, self.complete_start);
+        let set = self.paths.solution_set(0, system, parameters, complete);
+        Some(Answer::Isolated(IsolatedSolutions {
+            sets: vec![set],
+            loops: None,
+            held: self.paths.held(),
+        }))
+    }
+
+    fn renumbered_results(&self) -> Option<Vec<PathResult>> {
+        self.paths.results_with_images()
     }
 }
 

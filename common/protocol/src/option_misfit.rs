@@ -26,6 +26,16 @@ pub enum OptionMisfit {
     NoStartSolutions,
 }
 
+impl OptionMisfit {
+    /// The option, as `proto/problem.proto` names it.
+    pub fn field(&self) -> &'static str {
+        match self {
+            Self::OnlyWith { field, .. } | Self::NotWith { field, .. } => field,
+            Self::NoStartSolutions => "start_solutions",
+        }
+    }
+}
+
 /// Names as they are typed: "given, monodromy or auto".
 pub fn any_of(starts: &[StartKind]) -> String {
     let names: Vec<&str> = starts.iter().map(|start| start.name()).collect();
@@ -37,6 +47,18 @@ pub fn any_of(starts: &[StartKind]) -> String {
 }
 
 impl StartKind {
+    /// Every start, in the order in which they are told.
+    pub const ALL: [Self; 8] = [
+        Self::Auto,
+        Self::TotalDegree,
+        Self::Multihomogeneous,
+        Self::LinearProduct,
+        Self::Polyhedral,
+        Self::Regeneration,
+        Self::Monodromy,
+        Self::Given,
+    ];
+
     /// Its name as it is typed.
     pub fn name(self) -> &'static str {
         match self {

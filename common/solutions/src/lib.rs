@@ -5,7 +5,7 @@
 //! [`unique_points`] finds the endpoints that are one point; [`path_crossing`]
 //! names the paths that must be tracked again; [`completeness`] says whether there are no more; [`real`] decides whether a
 //! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
-//! that add up; [`plain`] does the same without holding every end; [`sharpened`] gives solutions more
+//! that add up; [`streamed`] does the same without holding every end; [`sharpened`] gives solutions more
 //! digits, [`certificates`] adds what was proved; [`witness`] is for sets of solutions. Nothing here tracks a path: everything can be decided again
 //! from stored results, with other tolerances.
 #![forbid(unsafe_code)]
@@ -18,12 +18,13 @@ pub mod field;
 pub mod images;
 pub mod involution;
 pub mod path_crossing;
-pub mod plain;
 pub mod point_shape;
 pub mod real;
 pub mod sharpened;
 pub mod solution;
 pub mod solution_set;
+pub mod streamed;
+pub mod streamed_targets;
 pub mod summary;
 pub mod symmetry;
 pub mod unique_points;

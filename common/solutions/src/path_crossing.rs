@@ -3,7 +3,7 @@
 //! To a regular solution leads exactly one path, finite or at infinity; where
 //! many paths end, at a singular point or at infinity, each comes from elsewhere
 //! at the boundary of the endgame ([`BoundaryKey`]). All paths that meet are
-//! tracked again, with the same gamma and tighter settings. [`CrossingBook`]
+//! tracked again, with the same gamma and tighter settings. [`CrossingRecord`]
 //! remembers which meetings were seen and whether they came apart.
 
 use crate::classification::{Decision, Tolerances, Verdict, error_bound};
@@ -121,12 +121,12 @@ pub fn broken_cycles(results: &[PathResult], members: &[usize]) -> Vec<usize> {
 
 /// Which crossings were seen in a solve, and which are left.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CrossingBook {
+pub struct CrossingRecord {
     seen: Vec<Vec<u64>>,
     left: Vec<Vec<u64>>,
 }
 
-impl CrossingBook {
+impl CrossingRecord {
     /// Takes all crossings that there are now, by path indices, ascending in each.
     pub fn update(&mut self, now: Vec<Vec<u64>>) {
         for crossing in &now {
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn a_crossing_counts_once_and_is_resolved_when_its_paths_part() {
-        let mut book = CrossingBook::default();
+        let mut book = CrossingRecord::default();
         book.update(vec![vec![1, 2], vec![5, 6, 7]]);
         assert_eq!((book.found(), book.resolved()), (2, 0));
         book.update(vec![vec![6, 7]]);

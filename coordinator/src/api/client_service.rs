@@ -9,6 +9,7 @@ use crate::jobs::progress::JobProgress;
 use crate::ledger::LedgerError;
 use crate::ledger::identity::{JobId, RequestId, Tenant};
 use crate::ledger::rows::{JobRow, JobState, StageRow, WorkerRow};
+use crate::results::AnySummary;
 use bytes::{Bytes, BytesMut};
 use cognate_numeric::NUMERICS_REVISION;
 use cognate_protocol::error::{ProtocolError, within_limit};
@@ -140,6 +141,27 @@ fn classified(path: &ClassifiedPath) -> v1::ClassifiedPath {
     }
 }
 
+/// An answer of whatever kind, counted.
+fn counted(summary: &AnySummary) -> v1::summary::Answer {
+    use v1::summary::Answer;
+    match summary {
+        AnySummary::Solve(summary) => {
+            let counts = to_proto::solution::counts(&summary.paths, &summary.solutions);
+            Answer::Isolated(counts)
+        }
+        AnySummary::Decomposition(summary) => Answer::Decomposition(v1::DecompositionCounts {
+            components: (summary.decomposition.components.iter())
+                .map(|block| block.count)
+                .sum(),
+            settled: summary.settled,
+        }),
+        AnySummary::Question(summary) => Answer::Question(v1::QuestionCounts {
+            question: summary.question.clone(),
+            settled: summary.settled,
+        }),
+    }
+}
+
 fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::WorkerOverview {
     // What the ledger remembers, whichever coordinator saw it.
     let evicted = row
@@ -253,10 +275,16 @@ impl ClientApi for ClientService {
         let job = job(&request.into_inner().job)?;
         let summary = self.context.coordinator.summary(job).await;
         let (summary, json) = summary.map_err(ApiError::from)?;
-        let counts = summary
-            .solve()
-            .map(|summary| to_proto::solution::counts(&summary.paths, &summary.solutions));
-        Ok(Response::new(v1::Summary { json, counts }))
+        let answer = counted(&summary);
+        let counts = match &answer {
+            v1::summary::Answer::Isolated(counts) => Some(*counts),
+            _ => None,
+        };
+        Ok(Response::new(v1::Summary {
+            json,
+            counts,
+            answer: Some(answer),
+        }))
     }
 
     type GetDecompositionStream = Answers<v1::ObjectPiece>;
@@ -289,9 +317,9 @@ impl ClientApi for ClientService {
         let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
-            let message = |(_, solution): Answered| {
-                let solution = solution?;
-                Some(Ok(to_proto::solution::solution(&solution, 0)))
+            let message = |answered: Answered| {
+                let (target, solution) = answered.solution?;
+                Some(Ok(to_proto::solution::solution(&solution, target)))
             };
             return Ok(Response::new(turn.hold(flattened(answers, message))));
         }
@@ -320,7 +348,7 @@ impl ClientApi for ClientService {
         let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
-            let message = |(path, _): Answered| Some(Ok(classified(&path)));
+            let message = |answered: Answered| Some(Ok(classified(&answered.path)));
             return Ok(Response::new(turn.hold(flattened(answers, message))));
         }
         let coordinator = self.context.coordinator.clone();

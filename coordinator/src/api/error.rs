@@ -10,8 +10,10 @@ use crate::ledger::identity::IdentityError;
 use crate::results::store::StoreError;
 use cognate_algorithms::plan_error::PlanError;
 use cognate_protocol::error::ProtocolError;
+use cognate_protocol::option_misfit::OptionMisfit;
 use cognate_systems::formats::FormatError;
 use tonic::{Code, Status};
+use tonic_types::{ErrorDetails, StatusExt};
 
 /// Why a call was not answered.
 #[derive(Debug, thiserror::Error)]
@@ -25,9 +27,17 @@ pub enum ApiError {
     /// A name is none.
     #[error(transparent)]
     Identity(#[from] IdentityError),
-    /// The problem cannot be solved as asked.
-    #[error("{0}")]
-    Problem(String),
+    /// Options do not go with each other.
+    #[error(transparent)]
+    Options(#[from] OptionMisfit),
+    /// What a field holds does not go with the rest of the problem.
+    #[error("{field}: {what}")]
+    Field {
+        /// The field, as a path from the problem.
+        field: &'static str,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A later version will.
     #[error("not in this version: {0}")]
     NotInThisVersion(String),
@@ -47,13 +57,32 @@ impl ApiError {
     pub fn code(&self) -> Code {
         match self {
             Self::Message(ProtocolError::Limit { .. }) => Code::ResourceExhausted,
-            Self::Message(_) | Self::File(_) | Self::Identity(_) | Self::Problem(_) => {
-                Code::InvalidArgument
-            }
+            Self::Message(_)
+            | Self::File(_)
+            | Self::Identity(_)
+            | Self::Options(_)
+            | Self::Field { .. } => Code::InvalidArgument,
             Self::NotInThisVersion(_) => Code::Unimplemented,
             Self::Coordinator(error) => code(error),
             Self::Stopping => Code::Unavailable,
             Self::Panic(_) => Code::Internal,
+        }
+    }
+}
+
+impl ApiError {
+    /// The field of the request that is at fault, as a path from the outermost message; `None` where it is not
+    /// one field.
+    fn field(&self) -> Option<String> {
+        match self {
+            Self::Message(error) => Some(error.field().to_owned()),
+            Self::File(_) => Some("problem.text".to_owned()),
+            Self::Identity(error) => error.field().map(str::to_owned),
+            Self::Options(misfit) => Some(format!("problem.options.{}", misfit.field())),
+            Self::Field { field, .. } => Some(format!("problem.{field}")),
+            Self::NotInThisVersion(_) | Self::Coordinator(_) | Self::Stopping | Self::Panic(_) => {
+                None
+            }
         }
     }
 }
@@ -72,10 +101,9 @@ fn code(error: &CoordinatorError) -> Code {
         CoordinatorError::UnknownStage { .. }
         | CoordinatorError::Ledger(LedgerError::UnknownJob(_))
         | CoordinatorError::Store(StoreError::Missing(_)) => Code::NotFound,
-        CoordinatorError::NoResult { .. }
-        | CoordinatorError::Decomposed(_)
-        | CoordinatorError::Answered(_)
-        | CoordinatorError::NotDecomposed(_) => Code::FailedPrecondition,
+        CoordinatorError::NoResult { .. } | CoordinatorError::OtherAnswer { .. } => {
+            Code::FailedPrecondition
+        }
         CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
         CoordinatorError::NotPlanned(_) | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => {
             Code::ResourceExhausted
@@ -103,6 +131,14 @@ impl From<ApiError> for Status {
             Code::Unavailable => tracing::warn!(%error, "a call failed"),
             _ => tracing::debug!(%error, "a call was refused"),
         }
-        Status::new(code, error.to_string())
+        let message = error.to_string();
+        match error.field() {
+            // For programs: the field by itself, as a detail.
+            Some(field) => {
+                let details = ErrorDetails::with_bad_request_violation(field, message.clone());
+                Status::with_error_details(code, message, details)
+            }
+            None => Status::new(code, message),
+        }
     }
 }

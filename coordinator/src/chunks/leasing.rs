@@ -32,7 +32,7 @@ pub struct Policy {
     /// each costs the work of all of them that much again.
     pub audit_percent: u32,
     /// Of a stage of more paths than these only the ends are held in memory that matter to others (see
-    /// `solutions::plain`). Default 100,000, which take about 100 MB.
+    /// `solutions::streamed`). Default 100,000, which take about 100 MB.
     pub held_paths: u64,
     /// Planning a polyhedral start counts mixed cells in at most so many operations, about one for each
     /// multiplication; what takes more is counted by workers. Default 2,000,000,000: a few seconds.

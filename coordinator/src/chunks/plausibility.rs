@@ -9,6 +9,7 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::work::{Stage, Work};
+use cognate_solutions::point_shape::modulus;
 use cognate_systems::evaluation;
 use cognate_systems::expression::{Dependence, Node, NodeId};
 use cognate_systems::system::System;
@@ -169,10 +170,6 @@ impl EndCheck {
             .filter(|(_, ratio)| ratio.is_finite())
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
-}
-
-fn modulus(z: Complex64) -> f64 {
-    z.norm_sqr().sqrt()
 }
 
 /// What is done at one node of the expressions, by the places of its operands.

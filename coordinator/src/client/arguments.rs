@@ -1,7 +1,6 @@
 //! What people type: every command and option of `cognate`, with its help.
 //!
-//! Options that belong to the command line but not to this version are parsed
-//! here and refused by `not_yet`, so that nothing is half there in silence.
+//! What is not in this version is refused here by name, so that nothing is half there in silence.
 
 pub use super::common_arguments::{
     Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, ProgressForm,
@@ -11,10 +10,12 @@ use super::error::ClientError;
 use super::mechanism::arguments::MechanismCommand;
 use super::sets::arguments as sets;
 use crate::config::DEFAULT_ADDRESS;
+use crate::intake::MOST_BITS;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cognate_continuation::sharpening::MOST_DIGITS;
+use cognate_protocol::option_misfit::any_of;
 use cognate_protocol::submission::{PrecisionChoice, StartKind};
 use cognate_solutions::witness::Method;
 use cognate_worker::transport::connect::CredentialFiles;
@@ -106,42 +107,13 @@ pub enum Command {
     Fleet(Fleet),
 }
 
-/// Where the paths begin, as typed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Start {
-    /// The cheapest of total degree, multihomogeneous, linear product and polyhedral; given where
-    /// start solutions are
-    #[default]
-    Auto,
-    /// As many paths as the product of the degrees
-    TotalDegree,
-    /// Fewer paths, by the file's variable groups (or --groups), or by the best ones
-    Multihomogeneous,
-    /// From known solutions: --start-solutions
-    Given,
-    /// Fewer paths, by products of linear forms in sets of variables that are found, or --sets
-    LinearProduct,
-    /// As many paths as the mixed volume of the equations' monomials
-    Polyhedral,
-    /// Equation by equation, on slices: all regular solutions
-    Regeneration,
-    /// All solutions of a family with parameters from one of them, by loops
-    Monodromy,
-}
-
-impl From<Start> for StartKind {
-    fn from(start: Start) -> Self {
-        match start {
-            Start::Auto => Self::Auto,
-            Start::TotalDegree => Self::TotalDegree,
-            Start::Multihomogeneous => Self::Multihomogeneous,
-            Start::Given => Self::Given,
-            Start::LinearProduct => Self::LinearProduct,
-            Start::Polyhedral => Self::Polyhedral,
-            Start::Regeneration => Self::Regeneration,
-            Start::Monodromy => Self::Monodromy,
-        }
-    }
+/// A start, as typed.
+fn start(text: &str) -> Result<StartKind, String> {
+    let known = StartKind::ALL.into_iter();
+    let mut found = known.filter(|start| start.name() == text);
+    found
+        .next()
+        .ok_or_else(|| format!("expected {}", any_of(&StartKind::ALL)))
 }
 
 /// A probability that is neither 0 nor 1.
@@ -158,6 +130,9 @@ fn precision(text: &str) -> Result<PrecisionChoice, String> {
         "adaptive" => Ok(PrecisionChoice::Adaptive),
         "double" => Ok(PrecisionChoice::Double),
         bits => match bits.parse::<u32>() {
+            Ok(bits) if bits > MOST_BITS => {
+                Err(format!("not in this version: at most {MOST_BITS} bits"))
+            }
             Ok(bits) if bits > 0 => Ok(PrecisionChoice::Bits(bits)),
             _ => Err("expected adaptive, double or a number of bits".into()),
         },
@@ -173,12 +148,11 @@ pub struct ProblemArguments {
     /// Where the paths begin
     #[arg(
         long,
-        value_enum,
-        default_value_t,
-        hide_possible_values = true,
+        value_parser = start,
+        default_value = StartKind::Auto.name(),
         value_name = "auto|total-degree|multihomogeneous|linear-product|polyhedral|regeneration|monodromy|given"
     )]
-    pub start: Start,
+    pub start: StartKind,
     /// Known solutions to start from: our solutions.jsonl, Bertini's start format or PHCpack's list
     #[arg(long, value_name = "FILE")]
     pub start_solutions: Option<PathBuf>,

@@ -1,7 +1,6 @@
 //! The command-line client: arguments, one connection, commands, output.
 //!
-//! `main` parses, refuses what is not in this version, runs one command, and
-//! turns what came of it into an exit code.
+//! `main` parses, runs one command, and turns what came of it into an exit code.
 
 pub mod arguments;
 pub mod commands;
@@ -12,7 +11,6 @@ pub mod embedded;
 pub mod error;
 pub mod fleet;
 pub mod mechanism;
-pub mod not_yet;
 pub mod output;
 pub mod problem;
 pub mod sets;
@@ -21,23 +19,68 @@ pub mod synthesis;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use error::{ClientError, Exit};
+use futures::future::LocalBoxFuture;
 use std::process::ExitCode;
 use tokio::signal::unix::{SignalKind, signal};
 
+/// A command that was started.
+enum Started {
+    /// The command has ended; a worker has a runtime and exit codes of its own.
+    Ended(ExitCode),
+    /// The same, with what came of it.
+    Done(Result<Exit, ClientError>),
+    /// It talks to a service, or is one, and stops in an orderly way of its own.
+    Orderly(LocalBoxFuture<'static, Result<Exit, ClientError>>),
+    /// It talks to a service, and may be dropped at any moment.
+    Droppable(LocalBoxFuture<'static, Result<Exit, ClientError>>),
+}
+
+/// Every command, and how it runs.
+fn start(command: Command) -> Started {
+    use Started::{Done, Droppable, Ended, Orderly};
+    use commands::*;
+    match command {
+        Command::Worker(a) => Ended(worker::run(a)),
+        Command::Info(a) => Done(info::run(&a)),
+        Command::Convert(a) => Done(convert::run(&a)),
+        Command::Path(a) => Done(path::run(&a)),
+        Command::Mechanism(a) => Done(mechanism::run(&a)),
+        Command::Coordinator(a) => Orderly(Box::pin(async move { coordinator::run(&a).await })),
+        Command::Solve(a) => Orderly(Box::pin(async move { solve::run(&a).await })),
+        Command::Decompose(a) => Orderly(Box::pin(async move { decompose::run(&a).await })),
+        Command::Synthesize(a) => Orderly(Box::pin(async move { synthesize::run(&a).await })),
+        Command::Member(a) => Orderly(Box::pin(async move { question::member(&a).await })),
+        Command::Sample(a) => Orderly(Box::pin(async move { question::sample(&a).await })),
+        Command::Project(a) => Orderly(Box::pin(async move { question::project(&a).await })),
+        Command::Multidegree(a) => {
+            Orderly(Box::pin(async move { question::multidegree(&a).await }))
+        }
+        Command::Mobility(a) => Orderly(Box::pin(async move { question::mobility(&a).await })),
+        Command::Certify(a) => Orderly(Box::pin(async move { question::certify(&a).await })),
+        Command::RealCurve(a) => Orderly(Box::pin(async move { question::real_curve(&a).await })),
+        Command::Submit(a) => Droppable(Box::pin(async move { submit::run(&a).await })),
+        Command::Watch(a) => Droppable(Box::pin(async move { watch::run(&a).await })),
+        Command::Results(a) => Droppable(Box::pin(async move { results::run(&a).await })),
+        Command::Explain(a) => Droppable(Box::pin(async move { explain::run(&a).await })),
+        Command::Cancel(a) => Droppable(Box::pin(async move { cancel::run(&a).await })),
+        Command::Jobs(a) => Droppable(Box::pin(async move { jobs::run(&a).await })),
+        Command::Workers(a) => Droppable(Box::pin(async move { workers::run(&a).await })),
+        Command::Fleet(a) => Droppable(Box::pin(async move { fleet::run(&a).await })),
+    }
+}
+
 /// The `cognate` command.
 pub fn main() -> ExitCode {
-    let command = Arguments::parse().command;
-    let ended = match not_yet::refuse(&command) {
-        Err(e) => Err(e),
-        // A worker has a runtime and an exit code of its own.
-        Ok(()) => match command {
-            Command::Worker(a) => return commands::worker::run(a),
-            Command::Info(a) => commands::info::run(&a),
-            Command::Convert(a) => commands::convert::run(&a),
-            Command::Path(a) => commands::path::run(&a),
-            Command::Mechanism(a) => commands::mechanism::run(&a),
-            other => in_runtime(other),
-        },
+    let ended = match start(Arguments::parse().command) {
+        Started::Ended(code) => return code,
+        Started::Done(ended) => ended,
+        Started::Orderly(running) => in_runtime(running),
+        Started::Droppable(running) => in_runtime(async {
+            tokio::select! {
+                ended = running => ended,
+                () = interrupted() => Err(ClientError::Interrupted),
+            }
+        }),
     };
     let exit = match &ended {
         Ok(exit) => *exit,
@@ -50,63 +93,15 @@ pub fn main() -> ExitCode {
 }
 
 /// Runs a command that talks to a service, or is one.
-fn in_runtime(command: Command) -> Result<Exit, ClientError> {
+fn in_runtime(
+    running: impl Future<Output = Result<Exit, ClientError>>,
+) -> Result<Exit, ClientError> {
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)
         .enable_all()
         .build()
         .map_err(|e| ClientError::Local(format!("the runtime could not be started: {e}")))?;
-    runtime.block_on(async {
-        match command {
-            // These stop in an orderly way of their own.
-            Command::Coordinator(a) => commands::coordinator::run(&a).await,
-            Command::Solve(a) => commands::solve::run(&a).await,
-            Command::Decompose(a) => commands::decompose::run(&a).await,
-            Command::Synthesize(a) => commands::synthesize::run(&a).await,
-            Command::Member(a) => commands::question::member(&a).await,
-            Command::Sample(a) => commands::question::sample(&a).await,
-            Command::Project(a) => commands::question::project(&a).await,
-            Command::Multidegree(a) => commands::question::multidegree(&a).await,
-            Command::Mobility(a) => commands::question::mobility(&a).await,
-            Command::Certify(a) => commands::question::certify(&a).await,
-            Command::RealCurve(a) => commands::question::real_curve(&a).await,
-            other => tokio::select! {
-                ended = one_shot(other) => ended,
-                () = interrupted() => Err(ClientError::Interrupted),
-            },
-        }
-    })
-}
-
-/// A command that may be dropped at any moment.
-async fn one_shot(command: Command) -> Result<Exit, ClientError> {
-    use commands::{cancel, explain, fleet, jobs, results, submit, watch, workers};
-    match command {
-        Command::Submit(a) => submit::run(&a).await,
-        Command::Watch(a) => watch::run(&a).await,
-        Command::Results(a) => results::run(&a).await,
-        Command::Explain(a) => explain::run(&a).await,
-        Command::Cancel(a) => cancel::run(&a).await,
-        Command::Jobs(a) => jobs::run(&a).await,
-        Command::Workers(a) => workers::run(&a).await,
-        Command::Fleet(a) => fleet::run(&a).await,
-        Command::Solve(_)
-        | Command::Info(_)
-        | Command::Convert(_)
-        | Command::Path(_)
-        | Command::Mechanism(_)
-        | Command::Decompose(_)
-        | Command::Member(_)
-        | Command::Sample(_)
-        | Command::Project(_)
-        | Command::Multidegree(_)
-        | Command::Mobility(_)
-        | Command::RealCurve(_)
-        | Command::Certify(_)
-        | Command::Coordinator(_)
-        | Command::Worker(_)
-        | Command::Synthesize(_) => unreachable!("these were run before"),
-    }
+    runtime.block_on(running)
 }
 
 /// Returns when somebody wants this process to end.

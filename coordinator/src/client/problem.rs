@@ -1,6 +1,6 @@
 //! From arguments to a submission: files read and checked here, so that mistakes are named before anything starts.
 
-use super::arguments::{ComponentArguments, PresetName, ProblemArguments, Start};
+use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
 use super::error::ClientError;
 use crate::intake;
 use cognate_continuation::start_points::StoredPoints;
@@ -103,8 +103,8 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         Some(path) => Some(start_points(path, &system)?),
     };
     let start = match (a.start, &start_solutions) {
-        (Start::Auto, Some(_)) => StartKind::Given,
-        (start, _) => start.into(),
+        (StartKind::Auto, Some(_)) => StartKind::Given,
+        (start, _) => start,
     };
     let mut start_parameters = parameters(a.start_parameters.as_deref(), &system)?;
     if start_parameters.len() > 1 {

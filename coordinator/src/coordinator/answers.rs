@@ -1,25 +1,19 @@
 //! What clients ask: progress, results, lists, explanations.
 
 use super::{Coordinator, CoordinatorError, job_row};
-use crate::jobs::large_stage;
 use crate::jobs::planning::{Planned, STATE};
 use crate::jobs::progress::JobProgress;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
 use crate::results::AnySummary;
-use crate::results::decomposition::DECOMPOSITION;
-use crate::results::question::ANSWER;
-use crate::results::summary::SOLUTIONS;
-use cognate_algorithms::{AnyAlgorithm, AnySolve};
-use cognate_continuation::item_result::ItemResult;
+use crate::results::answer::StoredAnswer;
+use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
+use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_solutions::witness::Decomposition;
-use cognate_systems::formats;
 use serde_json::json;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -52,17 +46,6 @@ pub struct Explanation {
     pub json: String,
 }
 
-/// The mixed cells of a branch, where they were counted.
-fn cells_of(result: &ItemResult) -> u64 {
-    match result {
-        ItemResult::CountMixedCells(branch) => match branch.fact() {
-            Some(BranchCount::Counted(counted)) => counted.cells,
-            Some(BranchCount::Tie | BranchCount::TooLarge) | None => 0,
-        },
-        _ => 0,
-    }
-}
-
 impl Coordinator {
     /// How far a job is.
     pub async fn progress(&self, job: JobId) -> Result<JobProgress, CoordinatorError> {
@@ -81,33 +64,6 @@ impl Coordinator {
         Ok(JobProgress::new(&row, &stages, now, |stage: &StageRow| {
             purposes.get(&stage.stage).cloned().unwrap_or_default()
         }))
-    }
-
-    /// The mixed cells that were found in the finished chunks of a stage that counts them.
-    async fn cells_so_far(&self, job: JobId, stage: StageId) -> Result<u64, CoordinatorError> {
-        let known = self.cells.get(&(job, stage)).unwrap_or_default();
-        let mut counts = HashMap::clone(&known);
-        let mut from = 0;
-        loop {
-            let objects = large_stage::page(&*self.ledger, job, stage, from).await?;
-            let Some(last) = objects.last() else { break };
-            from = last.items.last;
-            for object in objects {
-                if counts.contains_key(&object.items.first) {
-                    continue;
-                }
-                let results = self.store.results(&object, Work::CountMixedCells).await?;
-                let cells = results.iter().map(cells_of);
-                counts.insert(object.items.first, cells.sum());
-            }
-        }
-        let sum = counts
-            .values()
-            .fold(0, |sum: u64, n| sum.saturating_add(*n));
-        if counts.len() > known.len() {
-            self.cells.keep((job, stage), Arc::new(counts));
-        }
-        Ok(sum)
     }
 
     /// A job's progress: at once, then after every change; the last is the end.
@@ -203,55 +159,32 @@ impl Coordinator {
         self: &Arc<Self>,
         job: JobId,
     ) -> Result<Arc<Vec<SolutionSet>>, CoordinatorError> {
-        let row = self.solved(job).await?;
-        if let Some(set) = self.whole(job).await? {
-            return Ok(Arc::new(vec![set]));
-        }
-        let digest = row.solutions.ok_or(CoordinatorError::NoResult {
-            job,
-            state: row.state,
-            reason: Some("its solutions were not written".into()),
-        })?;
+        let digest = self.answer_of(job).await?;
         if let Some(sets) = self.solutions.get(&digest) {
             return Ok(sets);
         }
-        if self.store.is_of_kind(&DECOMPOSITION, digest).await? {
-            return Err(CoordinatorError::Decomposed(job));
-        }
-        if self.store.is_of_kind(&ANSWER, digest).await? {
-            return Err(CoordinatorError::Answered(job));
-        }
-        let sets: Arc<Vec<SolutionSet>> = Arc::new(self.store.record(&SOLUTIONS, digest).await?);
-        self.solutions.keep(digest, Arc::clone(&sets));
-        Ok(sets)
-    }
-
-    /// The components that a solved job found.
-    pub async fn decomposition(&self, job: JobId) -> Result<Decomposition, CoordinatorError> {
-        let row = self.solved(job).await?;
-        match row.solutions {
-            Some(digest) if self.store.is_of_kind(&DECOMPOSITION, digest).await? => {
-                Ok(self.store.record(&DECOMPOSITION, digest).await?)
+        match StoredAnswer::get(&self.store, digest).await? {
+            StoredAnswer::Isolated(sets) => {
+                let sets = Arc::new(sets);
+                self.solutions.keep(digest, Arc::clone(&sets));
+                Ok(sets)
             }
-            _ => Err(CoordinatorError::NotDecomposed(job)),
+            StoredAnswer::Large(answer) => Ok(Arc::new(self.whole(job, answer).await?)),
+            other => Err(CoordinatorError::OtherAnswer {
+                job,
+                is: other.describe(),
+            }),
         }
     }
 
-    /// What was decomposed, as JSON that is read as a problem, and the seed.
-    pub async fn decomposed(&self, job: JobId) -> Result<(String, u64), CoordinatorError> {
+    /// The object with the answer of a solved job.
+    pub(super) async fn answer_of(&self, job: JobId) -> Result<Digest, CoordinatorError> {
         let row = self.solved(job).await?;
-        let planned = Planned::from_bytes(&row.asked.options)?;
-        let state: Vec<u8> = self.store.record(&STATE, planned.first_state).await?;
-        let unreadable = |error: String| {
-            CoordinatorError::Problem(format!("the system of job {job} cannot be read: {error}"))
-        };
-        let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
-        let AnySolve::Decomposition(solve) = algorithm.solve() else {
-            return Err(CoordinatorError::NotDecomposed(job));
-        };
-        let system = solve.system().map_err(|e| unreadable(e.to_string()))?;
-        let text = formats::json::write(&system).map_err(|e| unreadable(e.to_string()))?;
-        Ok((text, solve.seed()))
+        row.solutions.ok_or(CoordinatorError::NoResult {
+            job,
+            state: row.state,
+            reason: Some("its solutions were not written".into()),
+        })
     }
 
     /// All paths of a solved job, by their indices.
@@ -261,7 +194,7 @@ impl Coordinator {
     ) -> Result<Vec<ClassifiedPath>, CoordinatorError> {
         let row = self.solved(job).await?;
         if let Some(answers) = self.all_answers(job).await? {
-            return Ok(answers.into_iter().map(|(path, _)| path).collect());
+            return Ok(answers.into_iter().map(|answered| answered.path).collect());
         }
         let sets = self.solutions(job).await?;
         let system = self.problem(row.asked.problem).await?;

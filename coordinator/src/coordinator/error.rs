@@ -38,15 +38,14 @@ pub enum CoordinatorError {
         /// Why it failed or was cancelled.
         reason: Option<String>,
     },
-    /// The job has components, not solutions.
-    #[error("job {0} is a decomposition: it has witness points, and no list of solutions or paths")]
-    Decomposed(JobId),
-    /// The job has an answer of components, not solutions.
-    #[error("job {0} is a question to components: its answer is its summary")]
-    Answered(JobId),
-    /// The job has solutions, not components.
-    #[error("job {0} is no decomposition: it has no witness points")]
-    NotDecomposed(JobId),
+    /// The job has an answer of another kind than the one that was asked for.
+    #[error("job {job} is {is}")]
+    OtherAnswer {
+        /// The job.
+        job: JobId,
+        /// What it is, and has instead.
+        is: &'static str,
+    },
     /// A worker's report is no result of its chunk.
     #[error("the report of lease {lease} is no result of its chunk: {what}")]
     Report {

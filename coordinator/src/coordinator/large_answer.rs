@@ -1,26 +1,32 @@
 //! The answer of a large job: what is not held is read again from its results, a chunk at a time.
 
 use super::answers::ClassifiedPath;
-use super::{Coordinator, CoordinatorError, job_row};
+use super::{Coordinator, CoordinatorError};
 use crate::jobs::large_stage::{page, read};
 use crate::jobs::planning::STATE;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobRow;
-use crate::results::summary::{LARGE, LargeAnswer};
+use crate::results::answer::StoredAnswer;
+use crate::results::summary::LargeAnswer;
 use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
-use cognate_solutions::plain::Sieve;
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::streamed::PathFilter;
 use futures::StreamExt;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// A path, and the solution that is named for it: that of which it is the first path.
-pub type Answered = (ClassifiedPath, Option<Solution>);
+/// A path, and what is named for it.
+pub struct Answered {
+    /// The path with its class.
+    pub path: ClassifiedPath,
+    /// The solution of which it is the first path, and the target that has it.
+    pub solution: Option<(u32, Solution)>,
+}
 
 /// Chunks of answers that wait for a client.
 const AHEAD: usize = 1;
@@ -31,12 +37,10 @@ impl Coordinator {
         &self,
         row: &JobRow,
     ) -> Result<Option<LargeAnswer>, CoordinatorError> {
-        match row.solutions {
-            Some(digest) if self.store.is_of_kind(&LARGE, digest).await? => {
-                Ok(Some(self.store.record(&LARGE, digest).await?))
-            }
-            _ => Ok(None),
-        }
+        Ok(match row.solutions {
+            Some(digest) => StoredAnswer::large(&self.store, digest).await?,
+            None => None,
+        })
     }
 
     /// All paths of a large job by their indices, each with its solution if it is the first to end there;
@@ -53,7 +57,7 @@ impl Coordinator {
         let (sender, receiver) = mpsc::channel(AHEAD);
         let coordinator = Arc::clone(self);
         tokio::spawn(async move {
-            if let Err(error) = coordinator.tell(&row, answer, &sender).await {
+            if let Err(error) = coordinator.stream(&row, answer, &sender).await {
                 // Whoever asked may have gone.
                 let _ = sender.send(Err(error)).await;
             }
@@ -76,7 +80,7 @@ impl Coordinator {
         Ok(Some(all))
     }
 
-    async fn tell(
+    async fn stream(
         &self,
         row: &JobRow,
         answer: LargeAnswer,
@@ -92,12 +96,15 @@ impl Coordinator {
             .ok_or_else(|| unreadable("there is none".into()))?;
         let state: Vec<u8> = self.store.record(&STATE, state).await?;
         let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
-        let solve = algorithm
+        let large = algorithm
             .large()
             .ok_or_else(|| unreadable("it is of another kind".into()))?;
-        let first = solve.paths().first_id();
-        let mut teller = Teller {
-            sieve: solve.sieve(&system),
+        let first = large.first_id();
+        let filters = algorithm.filters(&system);
+        let items = large.first().items().unwrap_or_default();
+        let mut answers = AnswerStream {
+            paths_per_target: (items / filters.len() as u64).max(1),
+            filters,
             again: self.tracked_again(job, first).await?,
             held: Held::new(answer),
             number: 0,
@@ -112,16 +119,16 @@ impl Coordinator {
             let mut chunks = std::pin::pin!(read(&self.store, objects));
             while let Some(results) = chunks.next().await {
                 let results = results?;
-                let telling = tokio::task::spawn_blocking(move || {
-                    let told = results.into_iter().map(|r| teller.tell(r)).collect();
-                    (teller, told)
+                let answering = tokio::task::spawn_blocking(move || {
+                    let some = results.into_iter().map(|r| answers.answer(r)).collect();
+                    (answers, some)
                 });
-                let told;
-                (teller, told) = match telling.await {
+                let some;
+                (answers, some) = match answering.await {
                     Ok(done) => done,
                     Err(error) => std::panic::resume_unwind(error.into_panic()),
                 };
-                if listener.send(Ok(told)).await.is_err() {
+                if listener.send(Ok(some)).await.is_err() {
                     return Ok(());
                 }
             }
@@ -154,23 +161,27 @@ impl Coordinator {
         Ok(again)
     }
 
-    /// The solution set of a large job with all its solutions.
+    /// The solution sets of a large job with all their solutions.
     pub(super) async fn whole(
         self: &Arc<Self>,
         job: JobId,
-    ) -> Result<Option<SolutionSet>, CoordinatorError> {
-        let row = job_row(&*self.ledger, job).await?;
-        let Some(answer) = self.large(&row).await? else {
-            return Ok(None);
-        };
+        mut answer: LargeAnswer,
+    ) -> Result<Vec<SolutionSet>, CoordinatorError> {
+        for set in &mut answer.sets {
+            set.solutions.clear();
+            set.undecided.clear();
+        }
         let answers = self.all_answers(job).await?.unwrap_or_default();
-        let points = answers.into_iter().filter_map(|(_, s)| s);
-        let (undecided, solutions) = points.partition(|point| point.undecided);
-        Ok(Some(SolutionSet {
-            solutions,
-            undecided,
-            ..answer.set
-        }))
+        for (target, point) in answers.into_iter().filter_map(|answered| answered.solution) {
+            let Some(set) = answer.sets.get_mut(target as usize) else {
+                continue; // a target for each set
+            };
+            match point.undecided {
+                true => set.undecided.push(point),
+                false => set.solutions.push(point),
+            }
+        }
+        Ok(answer.sets)
     }
 }
 
@@ -189,47 +200,61 @@ struct Held {
 
 impl Held {
     fn new(answer: LargeAnswer) -> Self {
-        let set = answer.set;
+        let mut solutions = Vec::new();
+        let (mut failed, mut on_sets) = (HashSet::new(), HashSet::new());
+        for set in answer.sets {
+            failed.extend(set.failed.iter().map(|f| f.path));
+            on_sets.extend(set.on_positive_dimensional_sets.iter().copied());
+            solutions.extend(set.solutions.into_iter().chain(set.undecided));
+        }
         let ends = |(k, solution): (usize, &Solution)| -> Vec<(u64, usize)> {
             solution.paths.iter().map(|&path| (path, k)).collect()
         };
         Self {
             paths: answer.held,
-            solution_of: set.points().enumerate().flat_map(ends).collect(),
-            numbers: vec![None; set.points().count()],
-            failed: set.failed.iter().map(|f| f.path).collect(),
-            on_sets: set.on_positive_dimensional_sets.iter().copied().collect(),
-            solutions: set.solutions.into_iter().chain(set.undecided).collect(),
+            solution_of: solutions.iter().enumerate().flat_map(ends).collect(),
+            numbers: vec![None; solutions.len()],
+            failed,
+            on_sets,
+            solutions,
         }
     }
 }
 
-/// Tells path after path, in the order of their indices.
-struct Teller {
-    sieve: Sieve,
+/// Answers path after path, in the order of their indices.
+struct AnswerStream {
+    paths_per_target: u64,
+    /// One for each target.
+    filters: Vec<PathFilter>,
     again: HashMap<u64, PathResult>,
     held: Held,
     /// How many solutions were named.
     number: u64,
 }
 
-impl Teller {
+impl AnswerStream {
     fn next_number(&mut self) -> u64 {
         self.number += 1;
         self.number - 1
     }
 
-    fn tell(&mut self, result: PathResult) -> Answered {
+    fn answer(&mut self, result: PathResult) -> Answered {
         let path = result.origin.0;
+        let target = path / self.paths_per_target;
+        let named = |solution| (u32::try_from(target).unwrap_or(u32::MAX), solution);
+        let filter = &self.filters[target as usize];
         if self.held.paths.binary_search(&path).is_err() {
-            let (verdict, solution) = self.sieve.answer(&result);
+            let (verdict, solution) = filter.answer(&result);
             let number = solution.is_some().then(|| self.next_number());
             let path = ClassifiedPath {
                 verdict,
                 solution: number,
                 result,
             };
-            return (path, solution);
+            return Answered {
+                path,
+                solution: solution.map(named),
+            };
         }
         let result = self.again.remove(&path).unwrap_or(result);
         let verdict = if self.held.failed.contains(&path) {
@@ -237,7 +262,7 @@ impl Teller {
         } else if self.held.on_sets.contains(&path) {
             Verdict::PositiveDimensional
         } else {
-            classify(&result, self.sieve.shape(), &Tolerances::default()).verdict
+            classify(&result, filter.shape(), &Tolerances::default()).verdict
         };
         let at = self.held.solution_of.get(&path).copied();
         let mut begun = None;
@@ -252,6 +277,9 @@ impl Teller {
             solution: at.and_then(|at| self.held.numbers[at]),
             result,
         };
-        (path, begun)
+        Answered {
+            path,
+            solution: begun.map(named),
+        }
     }
 }

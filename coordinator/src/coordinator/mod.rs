@@ -5,9 +5,11 @@
 
 mod answers;
 mod changes;
+mod components;
 pub mod conduct;
 mod error;
 mod large_answer;
+mod mixed_cells;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;

@@ -8,7 +8,10 @@ use crate::ledger::conformance::seen;
 use crate::ledger::faulty::FaultyLedger;
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::{JobState, Lease, Renewal};
+use cognate_continuation::start_points::StoredPoints;
+use cognate_protocol::submission::{StartKind, StartSolutions};
 use cognate_solutions::summary::{PathCounts, SolutionCounts};
+use num_complex::Complex64;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 
@@ -80,6 +83,28 @@ async fn run(problem: &NewProblem, seed: u64, held_paths: u64, faults: bool) -> 
     }
 }
 
+/// From four solutions of a family to four members; at one of them they are double.
+fn family(max_steps: Option<u32>) -> NewProblem {
+    let text = "variable_group x, y; parameter p, q; function f, g; f = x^2 - p; g = y^2 - q*x^2;";
+    let real = |values: &[f64]| -> Vec<Complex64> {
+        values.iter().map(|&re| Complex64::new(re, 0.0)).collect()
+    };
+    let mut problem = problem_of(text, max_steps);
+    let points = StoredPoints {
+        dimension: 2,
+        coordinates: real(&[1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0, -1.0]),
+    };
+    problem.options.start = StartKind::Given;
+    problem.options.start_parameters = real(&[1.0, 1.0]);
+    problem.options.target_parameters = [[4.0, 9.0], [-2.0, 3.0], [5.0, 0.0], [0.25, -7.0]]
+        .iter()
+        .map(|values| real(values))
+        .collect();
+    problem.options.start_solutions = Some(StartSolutions::Object(points.digest()));
+    problem.start_solutions = Some(points.to_bytes().into());
+    problem
+}
+
 #[tokio::test]
 async fn a_job_that_is_not_held_in_memory_has_the_same_answer() {
     let quartics = "variable_group x, y; function f, g;
@@ -93,6 +118,8 @@ async fn a_job_that_is_not_held_in_memory_has_the_same_answer() {
         (problem_of(quartics, Some(33)), "some tracked again"),
         (problem_of(double, None), "singular"),
         (problem_of(double, Some(40)), "singular, tracked again"),
+        (family(None), "several targets"),
+        (family(Some(30)), "several targets, tracked again"),
     ];
     for (problem, what) in &problems {
         let expected = run(problem, 3, 1000, false).await;
@@ -104,6 +131,10 @@ async fn a_job_that_is_not_held_in_memory_has_the_same_answer() {
             assert!(found.paths == expected.paths, "{what}, seed {seed}");
             assert_eq!(found.counts, expected.counts, "{what}, seed {seed}");
             assert!(*what != "plain" || held < 4, "{held} of 16 are held");
+            assert!(
+                *what != "several targets" || held < 6,
+                "{held} of 16 are held"
+            );
         }
     }
 }

@@ -13,10 +13,10 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{ChunkId, Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
-use crate::results::decomposition::{DECOMPOSITION, DecompositionSummary};
-use crate::results::question::{ANSWER, QuestionSummary};
+use crate::results::AnySummary;
+use crate::results::answer::StoredAnswer;
 use crate::results::store::Store;
-use crate::results::summary::{self, LargeAnswer, Summary};
+use crate::results::summary::Finished;
 use cognate_algorithms::Opening;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, StageId};
@@ -323,42 +323,17 @@ impl Drive {
         let stages = ledger.stages(self.job).await?;
         let workers = ledger.contributions(self.job).await?;
         let now = ledger.now().await?;
-        if let Some(found) = self.steward().decomposition().cloned() {
-            let summary =
-                DecompositionSummary::new(&row, &self.planned, &found, &stages, &workers, now);
-            let solutions = store.put_record(&DECOMPOSITION, found).await?;
-            let summary = store.put(summary.to_json().into()).await?;
-            let end = JobEnd::Solved { solutions, summary };
-            ledger.finish(self.job, self.epoch, end).await?;
-            tracing::info!(job = %self.job, "the job is decomposed");
-            return Ok(());
-        }
-        if let Some(asked) = self.steward().question()
-            && let Some(answer) = asked.answer()
-        {
-            let summary = QuestionSummary::new(&row, &self.planned, asked, &stages, &workers, now);
-            let solutions = store.put_record(&ANSWER, answer.clone()).await?;
-            let summary = store.put(summary.to_json().into()).await?;
-            let end = JobEnd::Solved { solutions, summary };
-            ledger.finish(self.job, self.epoch, end).await?;
-            tracing::info!(job = %self.job, "the question is answered");
-            return Ok(());
-        }
-        let mut sets = self.at_work(|steward| steward.solution_sets()).await;
-        let mut summary = Summary::new(&row, &self.planned, &sets, &stages, &workers, now);
-        summary.monodromy = self.steward().monodromy();
-        let solutions = match sets.pop() {
-            Some(set) if self.steward().leaves_out() => {
-                let held = self.steward().held_paths();
-                store
-                    .put_record(&summary::LARGE, LargeAnswer { held, set })
-                    .await?
-            }
-            last => {
-                sets.extend(last);
-                store.put_record(&summary::SOLUTIONS, sets).await?
-            }
+        let answer = self.at_work(|steward| steward.answer()).await;
+        let answer = answer.ok_or_else(|| DriveError::State("it has no answer".into()))?;
+        let about = Finished {
+            job: &row,
+            planned: &self.planned,
+            stages: &stages,
+            workers: &workers,
+            now,
         };
+        let summary = AnySummary::new(&answer, &about);
+        let solutions = StoredAnswer::put(answer, store).await?;
         let summary = store.put(summary.to_json().into()).await?;
         let end = JobEnd::Solved { solutions, summary };
         ledger.finish(self.job, self.epoch, end).await?;

@@ -1,8 +1,8 @@
 //! LargeStage: a stage of more paths than are held in memory, absorbed from the objects of its results.
 //!
-//! Twice all results are read, a chunk at a time: once to tell plain paths from others (see
-//! `solutions::plain`), once to fetch the others, which the algorithm gets. When it tracks some again, the
-//! plain paths that may end where those do now are fetched, too.
+//! Twice all results are read, a chunk at a time: once to tell streamed paths from others (see
+//! `solutions::streamed`), once to fetch the others, which the algorithm gets. When it tracks some again, the
+//! streamed paths that may end where those do now are fetched, too.
 
 use super::steward::{Steward, Wanted};
 use super::tools::{DriveError, Tools};
@@ -13,7 +13,7 @@ use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{StageId, Work};
-use cognate_solutions::plain::Crowd;
+use cognate_solutions::streamed_targets::StreamedTargets;
 use futures::{Stream, StreamExt};
 
 /// Result objects that are read at once.
@@ -180,30 +180,30 @@ async fn see_all(
     tools: &Tools<'_>,
     job: JobId,
     stage: StageId,
-    mut crowd: Crowd,
-) -> Result<(Crowd, u64), DriveError> {
+    mut index: StreamedTargets,
+) -> Result<(StreamedTargets, u64), DriveError> {
     let (mut from, mut seen) = (0, 0);
     loop {
         let objects = page(tools.ledger, job, stage, from).await?;
         let Some(last) = objects.last() else {
-            return Ok((crowd, seen));
+            return Ok((index, seen));
         };
         from = last.items.last;
         let mut chunks = std::pin::pin!(read_driven(tools, job, stage, objects));
         while let Some(results) = chunks.next().await {
             let results = results?;
             seen += results.len() as u64;
-            crowd = elsewhere(move || {
-                results.iter().for_each(|result| crowd.see(result));
-                crowd
+            index = blocking(move || {
+                results.iter().for_each(|result| index.see(result));
+                index
             })
             .await;
         }
     }
 }
 
-/// Work that holds nobody up.
-async fn elsewhere<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+/// Runs blocking work off the async executor.
+async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     match tokio::task::spawn_blocking(work).await {
         Ok(value) => value,
         Err(error) => std::panic::resume_unwind(error.into_panic()),
@@ -213,7 +213,7 @@ async fn elsewhere<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static)
 /// What is remembered of a large first stage from one absorption to the next.
 #[derive(Default)]
 pub struct LargeStage {
-    crowd: Option<Crowd>,
+    index: Option<StreamedTargets>,
 }
 
 impl LargeStage {
@@ -228,38 +228,38 @@ impl LargeStage {
         const HERE: &str = "the steward is back before the step ends";
         let first = steward.as_ref().expect(HERE).first_stage();
         if stage == first {
-            let crowd = steward.as_ref().expect(HERE).crowd(items);
-            let (mut crowd, seen) = see_all(tools, job, stage, crowd).await?;
+            let index = steward.as_ref().expect(HERE).index(items);
+            let (mut index, seen) = see_all(tools, job, stage, index).await?;
             if seen != items {
                 return Err(LedgerError::Fenced(job).into());
             }
-            let (settled, held) = elsewhere(move || {
-                let held = crowd.settle();
-                (crowd, held)
+            let (settled, held) = blocking(move || {
+                let held = index.settle();
+                (index, held)
             })
             .await;
-            crowd = settled;
+            index = settled;
             let held = fetch(tools, job, stage, &held).await?;
             tracing::info!(%job, paths = items, held = held.len(), "most paths need not be held");
-            crowd.take_back(&held);
+            index.take_back(&held);
             let mut taken = steward.take().expect(HERE);
-            let plain = crowd.counts().clone();
-            let (back, wanted) = elsewhere(move || {
-                taken.leave_out(plain);
+            let streamed = index.counts();
+            let (back, wanted) = blocking(move || {
+                taken.leave_out(streamed);
                 let wanted = taken.absorb(stage, held.into_iter().map(ItemResult::Track));
                 (taken, wanted)
             })
             .await;
             *steward = Some(back);
-            self.crowd = Some(crowd);
+            self.index = Some(index);
             return Ok(wanted);
         }
         let results = all(tools, job, stage, work).await?;
         if results.len() as u64 != items {
             return Err(LedgerError::Fenced(job).into());
         }
-        let mut crowd = match self.crowd.take() {
-            Some(crowd) => crowd,
+        let mut index = match self.index.take() {
+            Some(index) => index,
             // Another coordinator began: what it remembered is in the objects.
             None => {
                 self.recall(tools, job, steward.as_ref().expect(HERE))
@@ -272,43 +272,43 @@ impl LargeStage {
             .filter_map(ItemResult::path)
             .cloned()
             .collect();
-        let near = crowd.near(&paths);
+        let near = index.near(&paths);
         let near = fetch(tools, job, first, &near).await?;
-        crowd.take_back(&near);
+        index.take_back(&near);
         let mut taken = steward.take().expect(HERE);
-        let plain = crowd.counts().clone();
-        let (back, wanted) = elsewhere(move || {
-            taken.take_back(near, plain);
+        let streamed = index.counts();
+        let (back, wanted) = blocking(move || {
+            taken.take_back(near, streamed);
             let wanted = taken.absorb(stage, results);
             (taken, wanted)
         })
         .await;
         *steward = Some(back);
-        self.crowd = Some(crowd);
+        self.index = Some(index);
         Ok(wanted)
     }
 
-    /// The crowd as it was when the algorithm's state was kept.
+    /// The index as it was when the algorithm's state was kept.
     async fn recall(
         &self,
         tools: &Tools<'_>,
         job: JobId,
         steward: &Steward,
-    ) -> Result<Crowd, DriveError> {
+    ) -> Result<StreamedTargets, DriveError> {
         let first = steward.first_stage();
         let held = steward.held_paths();
         let stages = tools.ledger.stages(job).await?;
         let paths = stages.iter().find(|stage| stage.stage == first);
-        let crowd = steward.crowd(paths.map_or(0, |stage| stage.items));
-        let (crowd, _) = see_all(tools, job, first, crowd).await?;
-        let mut crowd = elsewhere(move || {
-            let mut crowd = crowd;
-            crowd.settle();
-            crowd
+        let index = steward.index(paths.map_or(0, |stage| stage.items));
+        let (index, _) = see_all(tools, job, first, index).await?;
+        let mut index = blocking(move || {
+            let mut index = index;
+            index.settle();
+            index
         })
         .await;
         let results = fetch(tools, job, first, &held).await?;
-        crowd.take_back(&results);
-        Ok(crowd)
+        index.take_back(&results);
+        Ok(index)
     }
 }

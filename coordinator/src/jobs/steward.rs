@@ -5,15 +5,13 @@
 //! state that lived through it.
 
 use crate::ledger::rows::StageRow;
-use crate::results::summary::MonodromyBlock;
-use cognate_algorithms::questions::QuestionSolve;
-use cognate_algorithms::{AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
+use cognate_algorithms::retried_stage::RetriedStage;
+use cognate_algorithms::{Answer, AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use cognate_solutions::plain::{Crowd, PlainCounts, Sieve};
-use cognate_solutions::solution_set::SolutionSet;
-use cognate_solutions::witness::Decomposition;
+use cognate_solutions::streamed::{PathFilter, StreamedCounts};
+use cognate_solutions::streamed_targets::StreamedTargets;
 use cognate_systems::system::System;
 use std::sync::Arc;
 
@@ -84,27 +82,26 @@ impl Steward {
     /// The stage whose paths are those of the job, where they need not all be held.
     pub fn first_stage(&self) -> StageId {
         let large = self.algorithm.large();
-        large.map_or(StageId(0), |solve| solve.paths().first_id())
+        large.map_or(StageId(0), RetriedStage::first_id)
     }
 
-    /// True where plain paths need not be held (see `solutions::plain`).
+    /// True where streamed paths need not be held (see `solutions::streamed`).
     pub fn can_leave_out(&self) -> bool {
-        self.algorithm.large().is_some() && Sieve::suits(&self.system)
+        self.algorithm.large().is_some() && PathFilter::suits(&self.system)
     }
 
     /// True where they are not.
     pub fn leaves_out(&self) -> bool {
         let large = self.algorithm.large();
-        large.is_some_and(|solve| solve.paths().leaves_out())
+        large.is_some_and(RetriedStage::leaves_out)
     }
 
-    /// Nobody yet, with room for so many paths.
+    /// An empty index of ends, with capacity for `paths` paths.
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn crowd(&self, paths: u64) -> Crowd {
-        let solve = self.algorithm.large().expect(LARGE);
-        Crowd::new(solve.sieve(&self.system), paths)
+    pub fn index(&self, paths: u64) -> StreamedTargets {
+        StreamedTargets::new(self.algorithm.filters(&self.system), paths)
     }
 
     /// The paths that are held, ascending.
@@ -112,26 +109,26 @@ impl Steward {
     /// # Panics
     /// Where all paths are held.
     pub fn held_paths(&self) -> Vec<u64> {
-        let solve = self.algorithm.large().expect(LARGE);
-        solve.paths().results().iter().map(|r| r.origin.0).collect()
+        let large = self.algorithm.large().expect(LARGE);
+        large.results().iter().map(|r| r.origin.0).collect()
     }
 
     /// Says which paths of the first stage are not held, before the others are absorbed.
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn leave_out(&mut self, plain: PlainCounts) {
-        let solve = self.algorithm.large_mut().expect(LARGE);
-        solve.paths_mut().leave_out(plain);
+    pub fn leave_out(&mut self, streamed: Vec<StreamedCounts>) {
+        let large = self.algorithm.large_mut().expect(LARGE);
+        large.leave_out(streamed);
     }
 
     /// Holds these paths, too.
     ///
     /// # Panics
     /// Where all paths are held.
-    pub fn take_back(&mut self, results: Vec<PathResult>, plain: PlainCounts) {
-        let solve = self.algorithm.large_mut().expect(LARGE);
-        solve.paths_mut().take_back(results, plain);
+    pub fn take_back(&mut self, results: Vec<PathResult>, streamed: Vec<StreamedCounts>) {
+        let large = self.algorithm.large_mut().expect(LARGE);
+        large.take_back(results, streamed);
     }
 
     /// The state, from which [`Self::restore`] goes on.
@@ -139,33 +136,9 @@ impl Steward {
         self.algorithm.snapshot()
     }
 
-    /// What was found, one set for each target.
-    pub fn solution_sets(&self) -> Vec<SolutionSet> {
-        self.algorithm.solution_sets(&self.system)
-    }
-
-    /// The components, where the job asks for them and all is done.
-    pub fn decomposition(&self) -> Option<&Decomposition> {
-        self.algorithm.decomposition()
-    }
-
-    /// The question to components with its answer, where the job is one and all is done.
-    pub fn question(&self) -> Option<&QuestionSolve> {
-        self.algorithm.question()
-    }
-
-    /// How the solutions were found, in a solve by monodromy.
-    pub fn monodromy(&self) -> Option<MonodromyBlock> {
-        let solve = self.algorithm.monodromy()?;
-        let values = match solve.targets() {
-            [one] => one.as_slice(),
-            _ => &[],
-        };
-        let names = self.system.parameters.iter().cloned();
-        Some(MonodromyBlock {
-            loops: solve.counts().clone(),
-            parameters: names.zip(values.iter().copied()).collect(),
-        })
+    /// What was found, once all is done.
+    pub fn answer(&self) -> Option<Answer> {
+        self.algorithm.answer(&self.system)
     }
 
     /// Why there is no answer, once all is done; `None` where there is one.

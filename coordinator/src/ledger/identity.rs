@@ -14,6 +14,8 @@ pub enum IdentityError {
     Name {
         /// What the name was to be of: a worker, a tenant.
         what: &'static str,
+        /// The field of a request that has such a name.
+        field: &'static str,
     },
     /// A job's id has 16 hexadecimal digits.
     #[error("`{0}` is no job id: it must have 16 hexadecimal digits")]
@@ -23,8 +25,19 @@ pub enum IdentityError {
     Digest(String),
 }
 
+impl IdentityError {
+    /// The field of a request that has such a name.
+    pub fn field(&self) -> Option<&'static str> {
+        match self {
+            Self::Name { field, .. } => Some(field),
+            Self::Job(_) => Some("job"),
+            Self::Digest(_) => None,
+        }
+    }
+}
+
 macro_rules! name {
-    ($(#[$doc:meta])* $type:ident, $what:literal) => {
+    ($(#[$doc:meta])* $type:ident, $what:literal, $field:literal) => {
         $(#[$doc])*
         #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         pub struct $type(String);
@@ -36,7 +49,10 @@ macro_rules! name {
                 if (1..=128).contains(&name.len()) && name.bytes().all(|b| b.is_ascii_graphic()) {
                     Ok(Self(name))
                 } else {
-                    Err(IdentityError::Name { what: $what })
+                    Err(IdentityError::Name {
+                        what: $what,
+                        field: $field,
+                    })
                 }
             }
 
@@ -57,22 +73,26 @@ macro_rules! name {
 name!(
     /// Chosen by whoever asks, so that asking twice is asking once.
     RequestId,
-    "a request id"
+    "a request id",
+    "request_id"
 );
 name!(
     /// One worker process.
     WorkerId,
-    "a worker's id"
+    "a worker's id",
+    "identity.worker"
 );
 name!(
     /// One coordinator process.
     CoordinatorId,
-    "a coordinator's id"
+    "a coordinator's id",
+    "coordinator"
 );
 name!(
     /// On whose behalf jobs run; tenants share the workers fairly.
     Tenant,
-    "a tenant's name"
+    "a tenant's name",
+    "tenant"
 );
 
 impl RequestId {

@@ -4,10 +4,10 @@
 
 mod accusations;
 mod audit;
-mod books;
 mod speculation;
+mod tables;
 
-use self::books::{Books, Job, Stage, Worker};
+use self::tables::{Job, Stage, Tables, Worker};
 use super::clock::{Clock, LedgerTime};
 use super::identity::*;
 use super::rows::*;
@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 /// A ledger that lives as long as its process.
 pub struct MemoryLedger {
     clock: Arc<dyn Clock>,
-    books: Mutex<Books>,
+    tables: Mutex<Tables>,
 }
 
 impl MemoryLedger {
@@ -29,14 +29,14 @@ impl MemoryLedger {
     pub fn new(clock: Arc<dyn Clock>) -> Self {
         Self {
             clock,
-            books: Mutex::default(),
+            tables: Mutex::default(),
         }
     }
 
-    fn books(&self) -> MutexGuard<'_, Books> {
-        self.books
+    fn tables(&self) -> MutexGuard<'_, Tables> {
+        self.tables
             .lock()
-            .expect("no call panics while it holds the books")
+            .expect("no call panics while it holds the tables")
     }
 }
 
@@ -48,38 +48,38 @@ impl Ledger for MemoryLedger {
 
     async fn submit(&self, id: RequestId, asked: NewJob) -> Result<Submitted, LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
+        let mut tables = self.tables();
         let job = JobId::of_request(&id);
-        if let Some(before) = books.jobs.get(&job) {
-            if before.row.asked != asked || books.requests.get(&id) != Some(&job) {
+        if let Some(before) = tables.jobs.get(&job) {
+            if before.row.asked != asked || tables.requests.get(&id) != Some(&job) {
                 return Err(LedgerError::RequestReused(id));
             }
             return Ok(Submitted { job, is_new: false });
         }
         // Nobody saves up virtual time while he has no jobs.
-        let active = |books: &Books| -> Vec<(Tenant, i64)> {
-            let unfinished = books.jobs.values().filter(|j| !j.row.state.has_ended());
+        let active = |tables: &Tables| -> Vec<(Tenant, i64)> {
+            let unfinished = tables.jobs.values().filter(|j| !j.row.state.has_ended());
             unfinished
                 .map(|j| (j.row.asked.tenant.clone(), j.virtual_time))
                 .collect()
         };
-        let active = active(&books);
+        let active = active(&tables);
         let floor = active
             .iter()
-            .filter_map(|(t, _)| books.tenants.get(t))
+            .filter_map(|(t, _)| tables.tenants.get(t))
             .min();
-        let own = books.tenants.get(&asked.tenant).copied().unwrap_or(0);
+        let own = tables.tenants.get(&asked.tenant).copied().unwrap_or(0);
         let tenant_time = floor.map_or(own, |&floor| own.max(floor));
-        books.tenants.insert(asked.tenant.clone(), tenant_time);
+        tables.tenants.insert(asked.tenant.clone(), tenant_time);
         let same_tenant = active.iter().filter(|(t, _)| *t == asked.tenant);
         let least = same_tenant.map(|&(_, v)| v).min();
-        let same_tenant = books.jobs.values().filter(|j| {
+        let same_tenant = tables.jobs.values().filter(|j| {
             let row = &j.row;
             row.asked.tenant == asked.tenant && !row.state.has_ended() && row.started.is_none()
         });
         let waiting = same_tenant.map(|j| j.virtual_time).max();
         let virtual_time = first_virtual_time(least, waiting);
-        let number = books.jobs.len() as u64 + 1;
+        let number = tables.jobs.len() as u64 + 1;
         let row = JobRow {
             job,
             number,
@@ -96,8 +96,8 @@ impl Ledger for MemoryLedger {
             solutions: None,
             summary: None,
         };
-        books.requests.insert(id, job);
-        books.jobs.insert(
+        tables.requests.insert(id, job);
+        tables.jobs.insert(
             job,
             Job {
                 row,
@@ -110,32 +110,32 @@ impl Ledger for MemoryLedger {
 
     async fn cancel(&self, job: JobId, reason: &str) -> Result<Cancelled, LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
-        let row = &mut books.job(job)?.row;
+        let mut tables = self.tables();
+        let row = &mut tables.job(job)?.row;
         if row.state.has_ended() {
             return Ok(Cancelled::HadEnded(row.state));
         }
         row.state = JobState::Cancelled;
         row.reason = Some(reason.to_owned());
         row.ended = Some(now);
-        books.release_all(job);
+        tables.release_all(job);
         Ok(Cancelled::Now)
     }
 
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
-        Ok(self.books().jobs.get(&job).map(|j| j.row.clone()))
+        Ok(self.tables().jobs.get(&job).map(|j| j.row.clone()))
     }
 
     async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError> {
-        let books = self.books();
-        let mut rows: Vec<JobRow> = books.jobs.values().map(|j| j.row.clone()).collect();
+        let tables = self.tables();
+        let mut rows: Vec<JobRow> = tables.jobs.values().map(|j| j.row.clone()).collect();
         rows.sort_by_key(|row| row.number);
         Ok(rows.split_off(rows.len().saturating_sub(limit as usize)))
     }
 
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
-        let mut books = self.books();
-        let stages = &books.job(job)?.stages;
+        let mut tables = self.tables();
+        let stages = &tables.job(job)?.stages;
         Ok(stages.values().map(|stage| stage.row.clone()).collect())
     }
 
@@ -146,8 +146,8 @@ impl Ledger for MemoryLedger {
         duration_ms: u64,
     ) -> Result<Option<Epoch>, LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
-        let row = &mut books.job(job)?.row;
+        let mut tables = self.tables();
+        let row = &mut tables.job(job)?.row;
         let held = row.steward_until > now;
         let mine = row.steward.as_ref() == Some(who);
         if row.state.has_ended() || (held && !mine) {
@@ -167,8 +167,8 @@ impl Ledger for MemoryLedger {
         duration_ms: u64,
     ) -> Result<(), LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
-        let rows = books.jobs.values_mut().map(|job| &mut job.row);
+        let mut tables = self.tables();
+        let rows = tables.jobs.values_mut().map(|job| &mut job.row);
         for row in rows.filter(|row| row.steward.as_ref() == Some(who)) {
             if !row.state.has_ended() && row.steward_until > now {
                 row.steward_until = now.after_ms(duration_ms);
@@ -183,7 +183,7 @@ impl Ledger for MemoryLedger {
         suspicions: u32,
     ) -> Result<Vec<JobId>, LedgerError> {
         let now = self.clock.now();
-        let books = self.books();
+        let tables = self.tables();
         let stirs = |job: &Job| {
             let mut open = job.stages.values().filter(|stage| !stage.row.closed);
             let suspected = |stage: &Stage| {
@@ -197,7 +197,7 @@ impl Ledger for MemoryLedger {
                 || open.any(|stage| stage.row.is_complete())
                 || job.stages.values().any(suspected)
         };
-        let mut found: Vec<(u64, JobId)> = books
+        let mut found: Vec<(u64, JobId)> = tables
             .jobs
             .values()
             .filter(|job| !job.row.state.has_ended())
@@ -212,8 +212,8 @@ impl Ledger for MemoryLedger {
     }
 
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
-        let books = self.books();
-        let mut rows: Vec<(u64, JobId)> = books
+        let tables = self.tables();
+        let mut rows: Vec<(u64, JobId)> = tables
             .jobs
             .values()
             .filter(|j| !j.row.state.has_ended())
@@ -224,8 +224,8 @@ impl Ledger for MemoryLedger {
     }
 
     async fn advance(&self, job: JobId, epoch: Epoch, step: Advance) -> Result<(), LedgerError> {
-        let mut books = self.books();
-        let found = books.fenced(job, epoch)?;
+        let mut tables = self.tables();
+        let found = tables.fenced(job, epoch)?;
         for &id in &step.close {
             let stage = found.stages.get(&id);
             if !stage.is_some_and(|s| !s.row.closed && s.row.is_complete()) {
@@ -298,8 +298,8 @@ impl Ledger for MemoryLedger {
         epoch: Epoch,
         pieces: &[Piece],
     ) -> Result<(), LedgerError> {
-        let mut books = self.books();
-        let job = books.fenced(chunk.job, epoch)?;
+        let mut tables = self.tables();
+        let job = tables.fenced(chunk.job, epoch)?;
         let refused = || LedgerError::NotAPartition(chunk.job);
         let stage = job.stages.get_mut(&chunk.stage).ok_or_else(refused)?;
         let whole = stage.chunks.get(&chunk.first).map(|c| c.row.clone());
@@ -317,7 +317,7 @@ impl Ledger for MemoryLedger {
             row.alone = piece.alone;
             stage.insert(row);
         }
-        books.elders.remove(&chunk);
+        tables.elders.remove(&chunk);
         Ok(())
     }
 
@@ -327,21 +327,21 @@ impl Ledger for MemoryLedger {
         epoch: Epoch,
         result: ResultObject,
     ) -> Result<(), LedgerError> {
-        let mut books = self.books();
-        books.fenced(chunk.job, epoch)?;
+        let mut tables = self.tables();
+        tables.fenced(chunk.job, epoch)?;
         check_size("the CPU time of a chunk", result.cpu_micros)?;
-        books
+        tables
             .chunk(chunk)
             .filter(|c| c.row.state == ChunkState::Ready && c.row.items == result.items)
             .ok_or(LedgerError::NotAPartition(chunk.job))?;
-        books.change(chunk, ChunkState::Failed { result });
-        books.elders.remove(&chunk);
+        tables.change(chunk, ChunkState::Failed { result });
+        tables.elders.remove(&chunk);
         Ok(())
     }
 
     async fn reopen(&self, chunk: ChunkId, epoch: Epoch) -> Result<(), LedgerError> {
-        let mut books = self.books();
-        let job = books.fenced(chunk.job, epoch)?;
+        let mut tables = self.tables();
+        let job = tables.fenced(chunk.job, epoch)?;
         let Some(stage) = job.stages.get_mut(&chunk.stage) else {
             return Ok(());
         };
@@ -349,16 +349,16 @@ impl Ledger for MemoryLedger {
             return Err(LedgerError::StageOrder(chunk.job, chunk.stage));
         }
         stage.reopen(chunk.first);
-        books.elders.remove(&chunk);
+        tables.elders.remove(&chunk);
         Ok(())
     }
 
     async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
-        let mut books = self.books();
-        let Some(holder) = books.holder(lease) else {
+        let mut tables = self.tables();
+        let Some(holder) = tables.holder(lease) else {
             return Ok(Standing::Ended);
         };
-        let chunk = books.chunk(lease.chunk).filter(|_| !holder.is_elder);
+        let chunk = tables.chunk(lease.chunk).filter(|_| !holder.is_elder);
         Ok(Standing::Held {
             worker: holder.worker,
             request: chunk.and_then(|chunk| chunk.request.clone()),
@@ -367,8 +367,8 @@ impl Ledger for MemoryLedger {
 
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
-        let row = &mut books.fenced(job, epoch)?.row;
+        let mut tables = self.tables();
+        let row = &mut tables.fenced(job, epoch)?.row;
         row.ended = Some(now);
         match end {
             JobEnd::Solved { solutions, summary } => {
@@ -381,7 +381,7 @@ impl Ledger for MemoryLedger {
                 row.reason = Some(reason);
             }
         }
-        books.release_all(job);
+        tables.release_all(job);
         Ok(())
     }
 
@@ -392,8 +392,8 @@ impl Ledger for MemoryLedger {
         from: u64,
         limit: u32,
     ) -> Result<Vec<ChunkRow>, LedgerError> {
-        let mut books = self.books();
-        let chunks = books.job(job)?.stages.get(&stage).map(|s| &s.chunks);
+        let mut tables = self.tables();
+        let chunks = tables.job(job)?.stages.get(&stage).map(|s| &s.chunks);
         let rows = chunks.into_iter().flat_map(|c| c.range(from..));
         Ok(rows
             .map(|(_, chunk)| &chunk.row)
@@ -414,8 +414,8 @@ impl Ledger for MemoryLedger {
         suspicions: u32,
         until: LedgerTime,
     ) -> Result<Vec<ChunkRow>, LedgerError> {
-        let mut books = self.books();
-        let stages = books.job(job)?.stages.values();
+        let mut tables = self.tables();
+        let stages = tables.job(job)?.stages.values();
         let ready = stages.flat_map(|s| s.ready.iter().filter_map(|first| s.chunks.get(first)));
         Ok(ready
             .filter(|chunk| chunk.silent_since.is_none_or(|since| since <= until))
@@ -426,9 +426,9 @@ impl Ledger for MemoryLedger {
     }
 
     async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError> {
-        let mut books = self.books();
+        let mut tables = self.tables();
         let mut sums: BTreeMap<WorkerId, (u64, u64)> = BTreeMap::new();
-        for stage in books.job(job)?.stages.values() {
+        for stage in tables.job(job)?.stages.values() {
             for chunk in stage.chunks.values() {
                 if let ChunkState::Accepted { worker, result } = &chunk.row.state {
                     let sum = sums.entry(worker.clone()).or_default();
@@ -438,7 +438,7 @@ impl Ledger for MemoryLedger {
             }
         }
         let transport = |worker: &WorkerId| {
-            let known = books.workers.get(worker);
+            let known = tables.workers.get(worker);
             known.map_or_else(String::new, |w| w.says.transport.clone())
         };
         Ok(sums
@@ -455,17 +455,17 @@ impl Ledger for MemoryLedger {
     async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError> {
         let now = self.clock.now();
         let until = now.after_ms(request.duration_ms);
-        let mut books = self.books();
-        books.acquit(request.request.session());
+        let mut tables = self.tables();
+        tables.acquit(request.request.session());
         let mut again = Vec::new();
         let mut holds_alone = false;
-        let held = books.held(&request.worker);
+        let held = tables.held(&request.worker);
         let is_idle = held.is_empty();
         for id in held {
-            let job = &books.jobs[&id.job];
+            let job = &tables.jobs[&id.job];
             let (problem, definition) =
                 (job.row.asked.problem, job.stages[&id.stage].row.definition);
-            let Some(chunk) = books.chunk(id) else {
+            let Some(chunk) = tables.chunk(id) else {
                 continue;
             };
             holds_alone |= chunk.row.alone;
@@ -483,7 +483,7 @@ impl Ledger for MemoryLedger {
         }
         let mut leases = Vec::new();
         while leases.len() < request.slots as usize {
-            let Some(lease) = books.lease_one(now, &request) else {
+            let Some(lease) = tables.lease_one(now, &request) else {
                 break;
             };
             let alone = lease.alone;
@@ -493,9 +493,9 @@ impl Ledger for MemoryLedger {
             }
         }
         if leases.is_empty() && is_idle && request.slots > 0 {
-            leases.extend(books.speculate(now, &request));
+            leases.extend(tables.speculate(now, &request));
         }
-        if leases.is_empty() && request.slots > 0 && books.is_evicted(&request.worker) {
+        if leases.is_empty() && request.slots > 0 && tables.is_evicted(&request.worker) {
             return Err(LedgerError::Evicted(request.worker));
         }
         Ok(leases)
@@ -507,13 +507,13 @@ impl Ledger for MemoryLedger {
         duration_ms: u64,
     ) -> Result<Vec<Renewal>, LedgerError> {
         let end = self.clock.now().after_ms(duration_ms);
-        let mut books = self.books();
+        let mut tables = self.tables();
         let renewals = leases.iter().map(|lease| {
-            if let Some(elder) = books.elder(*lease) {
+            if let Some(elder) = tables.elder(*lease) {
                 elder.until = Some(end);
                 return Renewal::Until(end);
             }
-            let chunk = books.chunk(lease.chunk);
+            let chunk = tables.chunk(lease.chunk);
             match chunk.filter(|c| c.row.epoch == lease.epoch) {
                 Some(chunk) => match &mut chunk.row.state {
                     ChunkState::Leased { until, .. } => {
@@ -535,8 +535,8 @@ impl Ledger for MemoryLedger {
     ) -> Result<Completion, LedgerError> {
         check_size("the CPU time of a chunk", result.cpu_micros)?;
         let now = self.clock.now();
-        let mut books = self.books();
-        let Some(chunk) = books.chunk(lease.chunk).map(|chunk| chunk.row.clone()) else {
+        let mut tables = self.tables();
+        let Some(chunk) = tables.chunk(lease.chunk).map(|chunk| chunk.row.clone()) else {
             return Ok(Completion::Stale);
         };
         if chunk.items != result.items {
@@ -545,7 +545,7 @@ impl Ledger for MemoryLedger {
         if let ChunkState::Accepted { result: first, .. } = &chunk.state {
             return Ok(if first.hash != result.hash {
                 Completion::HashDiffers
-            } else if !books.was_leased(lease, chunk.epoch) {
+            } else if !tables.was_leased(lease, chunk.epoch) {
                 Completion::Stale
             } else if first.address == result.address {
                 Completion::AlreadyAccepted
@@ -553,10 +553,10 @@ impl Ledger for MemoryLedger {
                 Completion::Overtaken
             });
         }
-        let Some(holder) = books.holder(lease) else {
+        let Some(holder) = tables.holder(lease) else {
             return Ok(Completion::Stale);
         };
-        books.accept(now, lease.chunk, holder, result);
+        tables.accept(now, lease.chunk, holder, result);
         Ok(Completion::Accepted)
     }
 
@@ -567,7 +567,7 @@ impl Ledger for MemoryLedger {
     ) -> Result<Completion, LedgerError> {
         check_size("the CPU time of a chunk", result.cpu_micros)?;
         let now = self.clock.now();
-        let vote = self.books().confirm(now, lease, &result);
+        let vote = self.tables().confirm(now, lease, &result);
         match vote {
             Some(completion) => Ok(completion),
             None => self.complete(lease, result).await,
@@ -576,43 +576,43 @@ impl Ledger for MemoryLedger {
 
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
-        let Some(holder) = books.holder(lease) else {
+        let mut tables = self.tables();
+        let Some(holder) = tables.holder(lease) else {
             return Ok(());
         };
         if let GiveBack::Failed { .. } = why {
-            books.accuse(now, lease.chunk, &holder.worker);
+            tables.accuse(now, lease.chunk, &holder.worker);
         }
         if holder.is_elder {
-            books.elders.remove(&lease.chunk);
+            tables.elders.remove(&lease.chunk);
         } else {
-            books.unlease(lease.chunk, ChunkState::Ready);
+            tables.unlease(lease.chunk, ChunkState::Ready);
         }
         Ok(())
     }
 
     async fn expire(&self) -> Result<Vec<Expired>, LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
-        let mut held: Vec<ChunkId> = books.leases.values().flatten().copied().collect();
+        let mut tables = self.tables();
+        let mut held: Vec<ChunkId> = tables.leases.values().flatten().copied().collect();
         held.sort_unstable();
         let mut expired = Vec::new();
         for id in held {
-            let Some(chunk) = books.chunk(id) else {
+            let Some(chunk) = tables.chunk(id) else {
                 continue;
             };
             let (ended, holder) = match &chunk.row.state {
                 ChunkState::Leased { until, worker } if *until <= now => (*until, worker.clone()),
                 _ => continue,
             };
-            books.accuse(now, id, &holder);
-            let Some(chunk) = books.chunk(id) else {
+            tables.accuse(now, id, &holder);
+            let Some(chunk) = tables.chunk(id) else {
                 continue;
             };
             let (epoch, suspicions) = (chunk.row.epoch, chunk.row.suspicions);
             let request = chunk.request.clone();
-            if let Some(worker) = books.unlease(id, ChunkState::Ready) {
-                if let Some(chunk) = books.chunk(id) {
+            if let Some(worker) = tables.unlease(id, ChunkState::Ready) {
+                if let Some(chunk) = tables.chunk(id) {
                     (chunk.request, chunk.silent_since) = (request, Some(ended));
                 }
                 expired.push(Expired {
@@ -622,14 +622,14 @@ impl Ledger for MemoryLedger {
                 });
             }
         }
-        expired.extend(books.expire_elders(now));
+        expired.extend(tables.expire_elders(now));
         Ok(expired)
     }
 
     async fn seen(&self, says: WorkerSeen) -> Result<(), LedgerError> {
         let now = self.clock.now();
-        let mut books = self.books();
-        let worker = books
+        let mut tables = self.tables();
+        let worker = tables
             .workers
             .entry(says.worker.clone())
             .or_insert_with(|| Worker {
@@ -646,8 +646,8 @@ impl Ledger for MemoryLedger {
     }
 
     async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, LedgerError> {
-        let books = self.books();
-        let mut rows: Vec<WorkerRow> = books
+        let tables = self.tables();
+        let mut rows: Vec<WorkerRow> = tables
             .workers
             .values()
             .map(|w| WorkerRow {
@@ -656,7 +656,7 @@ impl Ledger for MemoryLedger {
                 last_seen: w.last_seen,
                 items_done: w.items_done,
                 chunks_done: w.chunks_done,
-                leased_chunks: books.held(&w.says.worker).len() as u64,
+                leased_chunks: tables.held(&w.says.worker).len() as u64,
                 evicted: w.evicted,
             })
             .collect();

@@ -404,7 +404,7 @@ impl Pair<'_> {
         }
     }
 
-    /// Everything that can be asked is the same, and the books balance.
+    /// Everything that can be asked is the same, and the counts balance.
     async fn check(&self, accepted: &BTreeSet<(StageOf, u64)>) {
         assert_eq!(both!(self, now()), Some(self.clock.now()));
         both!(self, workers(10));

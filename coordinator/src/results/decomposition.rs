@@ -2,10 +2,7 @@
 //! has it.
 
 use super::store::RecordKind;
-use super::summary::{TimeBlock, WorkerBlock};
-use crate::jobs::planning::Planned;
-use crate::ledger::clock::LedgerTime;
-use crate::ledger::rows::{Contribution, JobRow, StageRow};
+use super::summary::{Finished, TimeBlock, WorkerBlock};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
     Decomposition, Dimension, Doubt, Irreducible, TrackedPaths, Verification, WitnessSet,
@@ -268,16 +265,10 @@ fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
 
 impl DecompositionSummary {
     /// The summary of a job that has found this.
-    pub fn new(
-        job: &JobRow,
-        planned: &Planned,
-        found: &Decomposition,
-        stages: &[StageRow],
-        workers: &[Contribution],
-        now: LedgerTime,
-    ) -> Self {
+    pub fn new(about: &Finished<'_>, found: &Decomposition) -> Self {
+        let planned = about.planned;
         Self {
-            job: job.job.to_string(),
+            job: about.job.job.to_string(),
             problem: DecomposedProblem {
                 name: planned.name.clone(),
                 digest: planned.problem.to_string(),
@@ -291,8 +282,8 @@ impl DecompositionSummary {
                 superset: found.paths,
                 loops: found.paths_of_loops,
             },
-            time: TimeBlock::new(job, stages, now),
-            workers: WorkerBlock::all(workers),
+            time: TimeBlock::new(about),
+            workers: WorkerBlock::all(about.workers),
             settled: found.settled(),
             warnings: planned.warnings.clone(),
         }
@@ -318,10 +309,5 @@ impl DecompositionSummary {
         lines.extend(unsettled.map(|doubt| format!("not settled: {doubt}")));
         lines.extend(self.warnings.iter().map(|w| format!("warning: {w}")));
         lines
-    }
-
-    /// As JSON.
-    pub fn to_json(&self) -> Vec<u8> {
-        serde_json::to_vec_pretty(self).expect("names and numbers can be written as JSON")
     }
 }

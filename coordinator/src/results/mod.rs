@@ -1,15 +1,17 @@
 //! Results: write-once objects, and the summary of a finished job.
 
+pub mod answer;
 pub mod decomposition;
 mod explained;
 pub mod question;
 pub mod store;
 pub mod summary;
 
+use cognate_algorithms::Answer;
 use decomposition::DecompositionSummary;
 use question::QuestionSummary;
 use serde::Serialize;
-use summary::Summary;
+use summary::{Finished, Summary};
 
 /// The summary of a finished job of any kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,6 +26,22 @@ pub enum AnySummary {
 }
 
 impl AnySummary {
+    /// The summary of a job with this answer.
+    pub fn new(answer: &Answer, about: &Finished<'_>) -> Self {
+        match answer {
+            Answer::Isolated(found) => Self::Solve(Box::new(Summary::new(about, found))),
+            Answer::Decomposition(found) => {
+                Self::Decomposition(Box::new(DecompositionSummary::new(about, found)))
+            }
+            Answer::Question(asked) => Self::Question(Box::new(QuestionSummary::new(about, asked))),
+        }
+    }
+
+    /// As one JSON object.
+    pub fn to_json(&self) -> Vec<u8> {
+        serde_json::to_vec_pretty(self).expect("names and numbers can be written as JSON")
+    }
+
     /// Reads the JSON object of any kind: each of the other kinds has a field that tells it.
     pub fn read(json: &str) -> Result<Self, serde_json::Error> {
         let value: serde_json::Value = serde_json::from_str(json)?;

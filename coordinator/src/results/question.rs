@@ -1,11 +1,8 @@
 //! QuestionSummary: the answer of components in one JSON object, field by field as the contract has it.
 
 use super::store::RecordKind;
-use super::summary::{TimeBlock, WorkerBlock};
-use crate::jobs::planning::Planned;
-use crate::ledger::clock::LedgerTime;
-use crate::ledger::rows::{Contribution, JobRow, StageRow};
-use cognate_algorithms::questions::QuestionSolve;
+use super::summary::{Finished, TimeBlock, WorkerBlock};
+use cognate_algorithms::answer::AnsweredQuestion;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::{Answer, TrackedPaths};
 use num_complex::Complex64;
@@ -193,26 +190,16 @@ fn graph(curve: &RealCurve) -> Value {
 
 impl QuestionSummary {
     /// The summary of a job that has answered this question.
-    ///
-    /// # Panics
-    /// Where it has not.
-    pub fn new(
-        job: &JobRow,
-        planned: &Planned,
-        asked: &QuestionSolve,
-        stages: &[StageRow],
-        workers: &[Contribution],
-        now: LedgerTime,
-    ) -> Self {
-        let answer = asked.answer().expect("the job is done");
+    pub fn new(about: &Finished<'_>, asked: &AnsweredQuestion) -> Self {
+        let (planned, answer) = (about.planned, &asked.answer);
         let (points, components, groups) = blocks(answer);
         let curves = match answer {
             Answer::RealCurve(curves) => Some(curves.iter().map(graph).collect()),
             _ => None,
         };
-        let unsettled = asked.doubts();
+        let unsettled = asked.doubts.clone();
         Self {
-            job: job.job.to_string(),
+            job: about.job.job.to_string(),
             question: answer.name().into(),
             problem: AskedProblem {
                 name: planned.name.clone(),
@@ -227,9 +214,9 @@ impl QuestionSummary {
             groups,
             settled: unsettled.is_empty(),
             unsettled,
-            paths: asked.paths(),
-            time: TimeBlock::new(job, stages, now),
-            workers: WorkerBlock::all(workers),
+            paths: asked.paths,
+            time: TimeBlock::new(about),
+            workers: WorkerBlock::all(about.workers),
             warnings: planned.warnings.clone(),
         }
     }
@@ -244,10 +231,5 @@ impl QuestionSummary {
         lines.extend(unsettled.map(|doubt| format!("not settled: {doubt}")));
         lines.extend(self.warnings.iter().map(|w| format!("warning: {w}")));
         lines
-    }
-
-    /// As JSON.
-    pub fn to_json(&self) -> Vec<u8> {
-        serde_json::to_vec_pretty(self).expect("names and numbers can be written as JSON")
     }
 }

@@ -6,6 +6,7 @@ use super::store::RecordKind;
 use crate::jobs::planning::Planned;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{Contribution, JobRow, StageRow};
+use cognate_algorithms::answer::IsolatedSolutions;
 use cognate_algorithms::monodromy::counts::LoopCounts;
 use cognate_solutions::certificates::CertifiedSystem;
 use cognate_solutions::completeness::Completeness;
@@ -19,15 +20,30 @@ use std::collections::BTreeMap;
 pub const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL04");
 
 /// Answers of large jobs as objects.
-pub const LARGE: RecordKind = RecordKind(b"CGNLRG02");
+pub const LARGE: RecordKind = RecordKind(b"CGNLRG03");
 
-/// The answer of a job of which not all paths are held (see `solutions::plain`).
+/// The answer of a job of which not all paths are held (see `solutions::streamed`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LargeAnswer {
     /// The paths that are held, ascending. The ends of the others are read from their results.
     pub held: Vec<u64>,
-    /// The counts of all paths, and the solutions of those that are held.
-    pub set: SolutionSet,
+    /// For each target the counts of all paths, and the solutions of those that are held.
+    pub sets: Vec<SolutionSet>,
+}
+
+/// What is known of a job that has ended, besides its answer.
+#[derive(Clone, Copy)]
+pub struct Finished<'a> {
+    /// The job.
+    pub job: &'a JobRow,
+    /// How it was planned.
+    pub planned: &'a Planned,
+    /// Its stages.
+    pub stages: &'a [StageRow],
+    /// What workers did for it.
+    pub workers: &'a [Contribution],
+    /// When it ended.
+    pub now: LedgerTime,
 }
 
 /// A finished job.
@@ -134,7 +150,10 @@ pub struct TargetBlock {
 
 impl TimeBlock {
     /// The time of a job with these stages that ends now.
-    pub fn new(job: &JobRow, stages: &[StageRow], now: LedgerTime) -> Self {
+    pub fn new(about: &Finished<'_>) -> Self {
+        let Finished {
+            job, stages, now, ..
+        } = about;
         let wall_seconds = now.since_ms(job.submitted) as f64 / 1000.0;
         let tracking: u64 = stages.iter().map(|s| s.cpu_micros).sum();
         let items: u64 = stages.iter().map(|s| s.items).sum();
@@ -165,14 +184,8 @@ impl WorkerBlock {
 
 impl Summary {
     /// The summary of a job whose algorithm is done.
-    pub fn new(
-        job: &JobRow,
-        planned: &Planned,
-        sets: &[SolutionSet],
-        stages: &[StageRow],
-        workers: &[Contribution],
-        now: LedgerTime,
-    ) -> Self {
+    pub fn new(about: &Finished<'_>, found: &IsolatedSolutions) -> Self {
+        let (planned, sets) = (about.planned, &found.sets[..]);
         let mut warnings = planned.warnings.clone();
         let mut failures = BTreeMap::new();
         for (target, set) in sets.iter().enumerate() {
@@ -197,7 +210,7 @@ impl Summary {
             _ => sum(sets),
         };
         Self {
-            job: job.job.to_string(),
+            job: about.job.job.to_string(),
             problem: ProblemBlock {
                 name: planned.name.clone(),
                 digest: planned.problem.to_string(),
@@ -210,10 +223,13 @@ impl Summary {
             paths: sum.paths,
             solutions: sum.solutions,
             classes: sum.classes,
-            monodromy: None,
+            monodromy: found.loops.clone().map(|loops| MonodromyBlock {
+                loops: loops.counts,
+                parameters: loops.parameters,
+            }),
             certification: sum.certification,
-            time: TimeBlock::new(job, stages, now),
-            workers: WorkerBlock::all(workers),
+            time: TimeBlock::new(about),
+            workers: WorkerBlock::all(about.workers),
             failures,
             targets: match sets {
                 [_] => Vec::new(),
@@ -222,11 +238,6 @@ impl Summary {
             settled: sets.iter().all(SolutionSet::settled),
             warnings,
         }
-    }
-
-    /// As JSON.
-    pub fn to_json(&self) -> Vec<u8> {
-        serde_json::to_vec_pretty(self).expect("names and numbers can be written as JSON")
     }
 }
 

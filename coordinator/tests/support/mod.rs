@@ -12,7 +12,7 @@ use cognate_worker::transport::Announcement;
 use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::Bearer;
 use cognate_worker::transport::grpc::Grpc;
-use cognate_worker::transport::way::Way;
+use cognate_worker::transport::route::Route;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -102,11 +102,11 @@ impl House {
     /// A worker by shared memory, or not.
     pub async fn worker_api_by(&self, name: &str, choice: TransportChoice) -> FakeWorker {
         let address = Address::Unix(self.socket());
-        let way = Way::new(self.channel().await, Bearer::default(), address, choice);
-        way.look_for_shared_memory().await;
+        let route = Route::new(self.channel().await, Bearer::default(), address, choice);
+        route.look_for_shared_memory().await;
         FakeWorker {
-            api: WorkerApiClient::new(way.clone()),
-            way,
+            api: WorkerApiClient::new(route.clone()),
+            route,
             name: name.to_owned(),
             session: format!("{name}-session"),
             sequence: 0,
@@ -183,6 +183,14 @@ impl Client {
         Ok(self.0.submit(request).await?.into_inner().job)
     }
 
+    /// Why a worker gets no chunks; empty where it does.
+    pub async fn refusal(&mut self, worker: &str) -> String {
+        let request = v1::ListWorkersRequest {};
+        let workers = self.0.list_workers(request).await.unwrap().into_inner();
+        let mut known = workers.workers.into_iter();
+        known.find(|w| w.worker == worker).unwrap().refused
+    }
+
     /// Watches until the job ends; everything that was told.
     pub async fn watch(&mut self, job: &str) -> Vec<v1::JobProgress> {
         let request = v1::WatchRequest {
@@ -233,8 +241,8 @@ impl Client {
 
 /// A worker that says what the test wants.
 pub struct FakeWorker {
-    pub api: WorkerApiClient<Way>,
-    pub way: Way,
+    pub api: WorkerApiClient<Route>,
+    pub route: Route,
     pub name: String,
     pub session: String,
     pub sequence: u64,

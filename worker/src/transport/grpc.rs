@@ -4,7 +4,7 @@
 //! several coordinators are named, a call without an answer is made to the next.
 
 use super::connect::UnusableAddress;
-use super::way::Way;
+use super::route::Route;
 use super::{
     Announcement, GiveBack, Lease, LeaseId, Pulled, Receipt, Renewal, Transport, TransportError,
 };
@@ -24,7 +24,7 @@ use std::time::Duration;
 use tokio::sync::watch;
 use tonic::{Code, Status};
 
-type Client = WorkerApiClient<Way>;
+type Client = WorkerApiClient<Route>;
 
 /// A call that should be answered at once is given up after this.
 const ANSWER: Duration = Duration::from_secs(20);
@@ -37,7 +37,7 @@ const REPORT_ANSWER: Duration = Duration::from_secs(120);
 /// Calls by gRPC.
 pub struct Grpc {
     clients: Vec<Client>,
-    ways: Vec<Way>,
+    routes: Vec<Route>,
     /// The client that answered last; whoever waits for another hears of the change.
     current: watch::Sender<usize>,
     identity: v1::WorkerIdentity,
@@ -47,27 +47,32 @@ pub struct Grpc {
 impl Grpc {
     /// Prepares the connections; none is made yet. Must be called within a tokio runtime.
     pub fn new(config: &Config, announcement: &Announcement) -> Result<Self, UnusableAddress> {
-        let ways = config
+        let routes = config
             .coordinators
             .iter()
             .map(|address| {
                 let channel = config.credentials.channel(address)?;
                 let bearer = config.credentials.bearer();
-                Ok(Way::new(channel, bearer, address.clone(), config.transport))
+                Ok(Route::new(
+                    channel,
+                    bearer,
+                    address.clone(),
+                    config.transport,
+                ))
             })
             .collect::<Result<Vec<_>, _>>()?;
         let bytes = config.message_bytes;
-        let client = |way: &Way| {
-            Client::new(way.clone())
+        let client = |route: &Route| {
+            Client::new(route.clone())
                 .max_decoding_message_size(bytes)
                 .max_encoding_message_size(bytes)
         };
-        let clients: Vec<_> = ways.iter().map(client).collect();
+        let clients: Vec<_> = routes.iter().map(client).collect();
         assert!(!clients.is_empty(), "a configuration names a coordinator");
         let machine = &announcement.machine;
         Ok(Self {
             clients,
-            ways,
+            routes,
             current: watch::Sender::new(0),
             identity: v1::WorkerIdentity {
                 worker: announcement.worker.clone(),
@@ -228,10 +233,10 @@ impl Transport for Grpc {
         wait: Duration,
     ) -> Result<Pulled, TransportError> {
         // The heartbeat is also the time to look for a better way.
-        let way = &self.ways[*self.current.borrow() % self.ways.len()];
-        way.look_for_shared_memory().await;
+        let route = &self.routes[*self.current.borrow() % self.routes.len()];
+        route.look_for_shared_memory().await;
         let mut machine = self.machine.clone();
-        if way.by_shared_memory() {
+        if route.by_shared_memory() {
             machine.transport = "shared-memory".to_owned();
         }
         let request = v1::PullRequest {

@@ -6,8 +6,8 @@
 pub mod address;
 pub mod connect;
 pub mod grpc;
+pub mod route;
 pub mod shared_memory;
-pub mod way;
 
 use crate::chunk_runner::TrackedChunk;
 use crate::machine::Machine;

@@ -21,6 +21,7 @@ mod slices;
 pub(crate) mod split;
 pub(crate) mod superset;
 
+use crate::answer::Answer;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
 use crate::solve::{Next, Root, Solve, StageNumbers};
@@ -29,7 +30,6 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
-use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::{
     ComponentId, Decomposition, Dimension, Doubt, Method, TrackedPaths, WitnessSet,
 };
@@ -427,8 +427,8 @@ impl Solve for DecompositionSolve {
     }
 
     /// None: its answer is [`DecompositionSolve::decomposition`].
-    fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
-        Vec::new()
+    fn answer(&self, _: &System) -> Option<Answer> {
+        self.decomposition().cloned().map(Answer::Decomposition)
     }
 }
 
@@ -634,7 +634,7 @@ mod tests {
                 Next::Done => break,
             }
         }
-        assert_eq!(solve.decomposition(), Some(&lived));
+        assert_eq!(solve.answer(&system), Some(Answer::Decomposition(lived)));
         assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
     }
 }

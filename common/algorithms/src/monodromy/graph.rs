@@ -35,7 +35,7 @@ pub(crate) struct Vertex {
 
 /// What is known of one point on an edge from where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Fate {
+pub(crate) enum Correspondence {
     /// Its partner is not known: it is to be tracked, for the first time or again.
     Open { attempt: u16 },
     /// Its partner is this point of the edge's other end.
@@ -44,16 +44,16 @@ pub(crate) enum Fate {
     Lost,
 }
 
-/// Along which way an edge is tracked.
+/// Along which direction an edge is tracked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(crate) enum Way {
+pub(crate) enum Direction {
     /// As it was drawn.
     Ahead,
     /// From its end to its beginning, on the same detour.
     Back,
 }
 
-impl Way {
+impl Direction {
     fn other(self) -> Self {
         match self {
             Self::Ahead => Self::Back,
@@ -69,51 +69,53 @@ pub(crate) struct Edge {
     pub ends: [usize; 2],
     /// Seed of its detour.
     pub seed: u64,
-    /// Different orbits lead to different orbits, and it is tracked both ways; else ahead only.
+    /// Different orbits lead to different orbits, and it is tracked in both directions; else ahead only.
     pub bijective: bool,
     /// For each point of the vertices where it begins and ends; of the end only where it is bijective.
-    pub fates: [Vec<Fate>; 2],
+    pub correspondences: [Vec<Correspondence>; 2],
 }
 
 impl Edge {
-    /// The vertex where paths of this way begin.
-    pub fn source(&self, way: Way) -> usize {
-        self.ends[way as usize]
+    /// The vertex where paths of this direction begin.
+    pub fn source(&self, direction: Direction) -> usize {
+        self.ends[direction as usize]
     }
 
     /// The vertex where they arrive.
-    pub fn target(&self, way: Way) -> usize {
-        self.ends[way.other() as usize]
+    pub fn target(&self, direction: Direction) -> usize {
+        self.ends[direction.other() as usize]
     }
 
-    /// Both ways, or the only one.
-    fn ways(&self) -> &'static [Way] {
+    /// Both directions, or the only one.
+    fn directions(&self) -> &'static [Direction] {
         match self.bijective {
-            true => &[Way::Ahead, Way::Back],
-            false => &[Way::Ahead],
+            true => &[Direction::Ahead, Direction::Back],
+            false => &[Direction::Ahead],
         }
     }
 
-    /// How many points have no partner yet and are to be tracked this way.
-    fn open(&self, way: Way) -> usize {
-        let fates = self.fates[way as usize].iter();
-        fates
-            .filter(|fate| matches!(fate, Fate::Open { .. }))
+    /// How many points have no partner yet and are to be tracked in this direction.
+    fn open(&self, direction: Direction) -> usize {
+        let correspondences = self.correspondences[direction as usize].iter();
+        correspondences
+            .filter(|correspondence| matches!(correspondence, Correspondence::Open { .. }))
             .count()
     }
 
     /// How many pairs are known.
     pub fn pairs(&self) -> usize {
-        let fates = self.fates[0].iter();
-        fates.filter(|fate| matches!(fate, Fate::To { .. })).count()
+        let correspondences = self.correspondences[0].iter();
+        correspondences
+            .filter(|correspondence| matches!(correspondence, Correspondence::To { .. }))
+            .count()
     }
 }
 
-/// Paths that can be tracked together: of one edge, one way, and equally tight.
+/// Paths that can be tracked together: of one edge, one direction, and equally tight.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Wanted {
     pub edge: usize,
-    pub way: Way,
+    pub direction: Direction,
     pub attempt: u16,
     /// Points of the vertex where they begin, ascending.
     pub sources: Vec<u32>,
@@ -121,21 +123,21 @@ pub(crate) struct Wanted {
 
 /// What tracking showed about one source.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Arrival {
+pub(crate) struct EdgeEnd {
     pub edge: usize,
-    pub way: Way,
+    pub direction: Direction,
     pub source: u32,
     pub attempt: u16,
     /// Where it arrived; `None` where it arrived nowhere.
     pub end: Option<Known>,
 }
 
-/// A point on an edge: the edge, the way on which it is a source, and its number there.
-type Key = (usize, Way, u32);
+/// A point on an edge: the edge, the direction in which it is a source, and its number there.
+type Key = (usize, Direction, u32);
 
-impl Arrival {
+impl EdgeEnd {
     fn key(&self) -> Key {
-        (self.edge, self.way, self.source)
+        (self.edge, self.direction, self.source)
     }
 }
 
@@ -169,14 +171,15 @@ impl Graph {
 
     /// An edge on which no pair is known.
     pub fn add_edge(&mut self, from: usize, to: usize, seed: u64, bijective: bool) {
-        let open =
-            |vertex: usize| vec![Fate::Open { attempt: 0 }; self.vertices[vertex].points.len()];
+        let open = |vertex: usize| {
+            vec![Correspondence::Open { attempt: 0 }; self.vertices[vertex].points.len()]
+        };
         let back = if bijective { open(to) } else { Vec::new() };
         self.edges.push(Edge {
             ends: [from, to],
             seed,
             bijective,
-            fates: [open(from), back],
+            correspondences: [open(from), back],
         });
     }
 
@@ -193,15 +196,19 @@ impl Graph {
     /// they would bring all that is missing there, if they brought different points.
     pub fn wanted(&self, all: Option<usize>) -> Vec<Wanted> {
         let known = |vertex: usize| self.vertices[vertex].points.len();
-        let mut chosen = BTreeMap::<usize, Vec<(usize, Way)>>::new();
+        let mut chosen = BTreeMap::<usize, Vec<(usize, Direction)>>::new();
         for (number, edge) in self.edges.iter().enumerate() {
-            let ways = edge.ways().iter().filter(|&&way| edge.open(way) > 0);
-            let best = ways.max_by_key(|&&way| (known(edge.source(way)), way.other()));
-            if let Some(&way) = best {
+            let directions = edge
+                .directions()
+                .iter()
+                .filter(|&&direction| edge.open(direction) > 0);
+            let best = directions
+                .max_by_key(|&&direction| (known(edge.source(direction)), direction.other()));
+            if let Some(&direction) = best {
                 chosen
-                    .entry(edge.target(way))
+                    .entry(edge.target(direction))
                     .or_default()
-                    .push((number, way));
+                    .push((number, direction));
             }
         }
         if let Some(all) = all {
@@ -209,27 +216,27 @@ impl Graph {
                 let left = |number: usize| all.saturating_sub(self.edges[number].pairs());
                 edges.sort_by_key(|&(number, _)| (left(number), number));
                 let mut share = 0.0;
-                edges.retain(|&(number, way)| {
+                edges.retain(|&(number, direction)| {
                     let taken = share < 1.0;
-                    share += self.edges[number].open(way) as f64 / left(number).max(1) as f64;
+                    share += self.edges[number].open(direction) as f64 / left(number).max(1) as f64;
                     taken
                 });
             }
         }
-        let mut chosen: Vec<(usize, Way)> = chosen.into_values().flatten().collect();
+        let mut chosen: Vec<(usize, Direction)> = chosen.into_values().flatten().collect();
         chosen.sort_unstable();
         let mut wanted = Vec::new();
-        for (number, way) in chosen {
+        for (number, direction) in chosen {
             let mut open = BTreeMap::<u16, Vec<u32>>::new();
-            let fates = self.edges[number].fates[way as usize].iter();
-            for (source, fate) in fates.enumerate() {
-                if let Fate::Open { attempt } = fate {
+            let correspondences = self.edges[number].correspondences[direction as usize].iter();
+            for (source, correspondence) in correspondences.enumerate() {
+                if let Correspondence::Open { attempt } = correspondence {
                     open.entry(*attempt).or_default().push(source as u32);
                 }
             }
             wanted.extend(open.into_iter().map(|(attempt, sources)| Wanted {
                 edge: number,
-                way,
+                direction,
                 attempt,
                 sources,
             }));
@@ -255,9 +262,10 @@ impl Graph {
         points.push(point);
         let number = points.len() as u32 - 1;
         for edge in &mut self.edges {
-            for &way in edge.ways() {
-                if edge.source(way) == vertex {
-                    edge.fates[way as usize].push(Fate::Open { attempt: 0 });
+            for &direction in edge.directions() {
+                if edge.source(direction) == vertex {
+                    edge.correspondences[direction as usize]
+                        .push(Correspondence::Open { attempt: 0 });
                 }
             }
         }
@@ -271,9 +279,10 @@ impl Graph {
     /// When one can already.
     pub fn merge(&mut self, vertex: usize, group: &SymmetryGroup, shape: &PointShape, seed: u64) {
         assert!(
-            self.edges
+            self.edges.iter().all(|edge| edge
+                .directions()
                 .iter()
-                .all(|edge| edge.ways().iter().all(|&way| edge.source(way) != vertex)),
+                .all(|&direction| edge.source(direction) != vertex)),
             "points are merged before their names are used"
         );
         let points = &self.vertices[vertex].points;
@@ -291,8 +300,8 @@ impl Graph {
         let kept = orbits.iter().map(|orbit| points[orbit[0]].clone());
         self.vertices[vertex].points = kept.collect();
         for edge in self.edges.iter_mut().filter(|edge| edge.ends[1] == vertex) {
-            for fate in &mut edge.fates[0] {
-                if let Fate::To { point, .. } = fate {
+            for correspondence in &mut edge.correspondences[0] {
+                if let Correspondence::To { point, .. } = correspondence {
                     *point = names[*point as usize];
                 }
             }
@@ -326,22 +335,28 @@ impl Graph {
 
     /// To how many different points an edge leads.
     pub fn targets(&self, edge: usize) -> usize {
-        let fates = self.edges[edge].fates[0].iter();
-        let points = fates.filter_map(|fate| match fate {
-            Fate::To { point, .. } => Some(*point),
-            Fate::Open { .. } | Fate::Lost => None,
+        let correspondences = self.edges[edge].correspondences[0].iter();
+        let points = correspondences.filter_map(|correspondence| match correspondence {
+            Correspondence::To { point, .. } => Some(*point),
+            Correspondence::Open { .. } | Correspondence::Lost => None,
         });
         points.collect::<BTreeSet<u32>>().len()
     }
 
     /// The points that all of a vertex lead to along one edge, ahead; `None` while one does not.
     pub fn reached(&self, edge: usize) -> Option<Vec<&Known>> {
-        let Edge { ends, fates, .. } = &self.edges[edge];
+        let Edge {
+            ends,
+            correspondences,
+            ..
+        } = &self.edges[edge];
         let points = &self.vertices[ends[1]].points;
-        let reached = fates[0].iter().map(|fate| match fate {
-            Fate::To { point, .. } => Some(&points[*point as usize]),
-            Fate::Open { .. } | Fate::Lost => None,
-        });
+        let reached = correspondences[0]
+            .iter()
+            .map(|correspondence| match correspondence {
+                Correspondence::To { point, .. } => Some(&points[*point as usize]),
+                Correspondence::Open { .. } | Correspondence::Lost => None,
+            });
         reached.collect()
     }
 
@@ -363,9 +378,9 @@ impl Graph {
             let Some(here) = along.get(&from).filter(|_| inside) else {
                 continue;
             };
-            let step = |point: u32| match edge.fates[0][point as usize] {
-                Fate::To { point, .. } => Some(point),
-                Fate::Open { .. } | Fate::Lost => None,
+            let step = |point: u32| match edge.correspondences[0][point as usize] {
+                Correspondence::To { point, .. } => Some(point),
+                Correspondence::Open { .. } | Correspondence::Lost => None,
             };
             let there: Vec<Option<u32>> = here.iter().map(|point| point.and_then(step)).collect();
             let Some(tree) = along.get(&to) else {
@@ -388,7 +403,7 @@ impl Graph {
     /// points, nothing else. A path is tried again up to `most` times.
     pub fn settle(
         &mut self,
-        arrivals: &[Arrival],
+        arrivals: &[EdgeEnd],
         group: &SymmetryGroup,
         shape: &PointShape,
         seed: u64,
@@ -399,9 +414,9 @@ impl Graph {
             settled.lost += u64::from(!self.again(arrival.key(), arrival.attempt, most));
         }
         for vertex in 0..self.vertices.len() {
-            let here: Vec<(&Arrival, &Known)> = arrivals
+            let here: Vec<(&EdgeEnd, &Known)> = arrivals
                 .iter()
-                .filter(|arrival| self.edges[arrival.edge].target(arrival.way) == vertex)
+                .filter(|arrival| self.edges[arrival.edge].target(arrival.direction) == vertex)
                 .filter_map(|arrival| Some((arrival, arrival.end.as_ref()?)))
                 .collect();
             if !here.is_empty() {
@@ -415,7 +430,7 @@ impl Graph {
     fn settle_at(
         &mut self,
         vertex: usize,
-        here: &[(&Arrival, &Known)],
+        here: &[(&EdgeEnd, &Known)],
         group: &SymmetryGroup,
         shape: &PointShape,
         seed: u64,
@@ -430,8 +445,8 @@ impl Graph {
             .map(|point| (point.values.as_slice(), point.radius))
             .collect();
         let orbits = group.orbits(&points, shape, seed);
-        // For each edge, way and target point: who claims to lead there.
-        let mut claims = BTreeMap::<(usize, Way, u32), Vec<(u32, u16)>>::new();
+        // For each edge, direction and target point: who claims to lead there.
+        let mut claims = BTreeMap::<(usize, Direction, u32), Vec<(u32, u16)>>::new();
         for orbit in orbits {
             let split = orbit.partition_point(|&member| member < known);
             let (old, new) = orbit.split_at(split);
@@ -458,18 +473,19 @@ impl Graph {
                 }
             };
             for (arrival, _) in arrived {
-                let claim = (arrival.edge, arrival.way, target);
+                let claim = (arrival.edge, arrival.direction, target);
                 let claim = claims.entry(claim).or_default();
                 claim.push((arrival.source, arrival.attempt));
             }
         }
-        for ((edge, way, target), mut sources) in claims {
+        for ((edge, direction, target), mut sources) in claims {
             let bijective = self.edges[edge].bijective;
             if bijective {
                 // Its partner from before, whichever way that was found.
-                let before = self.edges[edge].fates[way.other() as usize][target as usize];
-                if let Fate::To { point, .. } = before {
-                    let attempt = self.attempt((edge, way, point));
+                let before =
+                    self.edges[edge].correspondences[direction.other() as usize][target as usize];
+                if let Correspondence::To { point, .. } = before {
+                    let attempt = self.attempt((edge, direction, point));
                     sources.push((point, attempt));
                 }
             }
@@ -477,18 +493,18 @@ impl Graph {
             let crossed = bijective && sources.len() > 1;
             if crossed {
                 // Its own partner is to be looked for again, if it comes to that.
-                let key = (edge, way.other(), target);
+                let key = (edge, direction.other(), target);
                 let attempt = (self.attempt(key) + 1).min(most);
-                *self.fate(key) = Fate::Open { attempt };
+                *self.correspondence(key) = Correspondence::Open { attempt };
             }
             let mut all_again = true;
             for (place, &(source, attempt)) in sources.iter().enumerate() {
-                if crossed && (self.again((edge, way, source), attempt, most) || place > 0) {
+                if crossed && (self.again((edge, direction, source), attempt, most) || place > 0) {
                     all_again &= attempt < most;
                 } else {
                     // What never comes apart leaves the target to the first.
                     all_again &= !crossed;
-                    self.pair((edge, way, source), attempt, target);
+                    self.pair((edge, direction, source), attempt, target);
                 }
             }
             settled.crossings += u64::from(crossed && sources.iter().any(|s| s.1 == 0));
@@ -496,29 +512,29 @@ impl Graph {
         }
     }
 
-    fn fate(&mut self, (edge, way, point): Key) -> &mut Fate {
-        &mut self.edges[edge].fates[way as usize][point as usize]
+    fn correspondence(&mut self, (edge, direction, point): Key) -> &mut Correspondence {
+        &mut self.edges[edge].correspondences[direction as usize][point as usize]
     }
 
     /// How often a point was tracked again; of one that is lost, as if it could be again.
-    fn attempt(&self, (edge, way, point): Key) -> u16 {
-        match self.edges[edge].fates[way as usize][point as usize] {
-            Fate::Open { attempt } | Fate::To { attempt, .. } => attempt,
-            Fate::Lost => u16::MAX - 1,
+    fn attempt(&self, (edge, direction, point): Key) -> u16 {
+        match self.edges[edge].correspondences[direction as usize][point as usize] {
+            Correspondence::Open { attempt } | Correspondence::To { attempt, .. } => attempt,
+            Correspondence::Lost => u16::MAX - 1,
         }
     }
 
     /// Notes that a source has been tracked to a target, for both.
     fn pair(&mut self, key: Key, attempt: u16, target: u32) {
-        let (edge, way, source) = key;
-        *self.fate(key) = Fate::To {
+        let (edge, direction, source) = key;
+        *self.correspondence(key) = Correspondence::To {
             point: target,
             attempt,
         };
         if self.edges[edge].bijective {
-            let partner = (edge, way.other(), target);
+            let partner = (edge, direction.other(), target);
             let attempt = self.attempt(partner);
-            *self.fate(partner) = Fate::To {
+            *self.correspondence(partner) = Correspondence::To {
                 point: source,
                 attempt,
             };
@@ -528,12 +544,12 @@ impl Graph {
     /// Lets a source be tracked again, more tightly; false where that was done often enough.
     fn again(&mut self, key: Key, attempt: u16, most: u16) -> bool {
         let may = attempt < most;
-        *self.fate(key) = if may {
-            Fate::Open {
+        *self.correspondence(key) = if may {
+            Correspondence::Open {
                 attempt: attempt + 1,
             }
         } else {
-            Fate::Lost
+            Correspondence::Lost
         };
         may
     }
@@ -552,10 +568,10 @@ mod tests {
         }
     }
 
-    fn arrival(source: u32, attempt: u16, x: f64) -> Arrival {
-        Arrival {
+    fn arrival(source: u32, attempt: u16, x: f64) -> EdgeEnd {
+        EdgeEnd {
             edge: 0,
-            way: Way::Ahead,
+            direction: Direction::Ahead,
             source,
             attempt,
             end: Some(at(x)),
@@ -573,30 +589,30 @@ mod tests {
         graph
     }
 
-    fn settle(graph: &mut Graph, arrivals: &[Arrival]) -> Settled {
+    fn settle(graph: &mut Graph, arrivals: &[EdgeEnd]) -> Settled {
         let system = system();
         let group = SymmetryGroup::of(&system).unwrap();
         graph.settle(arrivals, &group, &PointShape::of(&system), 1, 2)
     }
 
-    fn back(arrival: Arrival) -> Arrival {
-        Arrival {
-            way: Way::Back,
+    fn back(arrival: EdgeEnd) -> EdgeEnd {
+        EdgeEnd {
+            direction: Direction::Back,
             ..arrival
         }
     }
 
-    fn wanted(graph: &Graph) -> Vec<(usize, Way, u16, Vec<u32>)> {
+    fn wanted(graph: &Graph) -> Vec<(usize, Direction, u16, Vec<u32>)> {
         let wanted = graph.wanted(None).into_iter();
         wanted
-            .map(|w| (w.edge, w.way, w.attempt, w.sources))
+            .map(|w| (w.edge, w.direction, w.attempt, w.sources))
             .collect()
     }
 
     #[test]
     fn everything_is_tracked_once() {
         let mut graph = graph();
-        assert_eq!(wanted(&graph), [(0, Way::Ahead, 0, vec![0, 1, 2])]);
+        assert_eq!(wanted(&graph), [(0, Direction::Ahead, 0, vec![0, 1, 2])]);
         let all = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
         assert_eq!(settle(&mut graph, &all), Settled::default());
         assert_eq!(
@@ -614,19 +630,19 @@ mod tests {
         settle(&mut graph, &all);
         graph.add_point(1, at(0.6));
         graph.add_edge(0, 1, 2, true);
-        let back_alone = (0, Way::Back, 0, vec![3]);
-        let all_back = (1, Way::Back, 0, vec![0, 1, 2, 3]);
+        let back_alone = (0, Direction::Back, 0, vec![3]);
+        let all_back = (1, Direction::Back, 0, vec![0, 1, 2, 3]);
         assert_eq!(wanted(&graph), [back_alone, all_back.clone()]);
         let found = [back(arrival(3, 0, 0.4))];
         assert_eq!(settle(&mut graph, &found), Settled::default());
         assert_eq!(graph.vertices[0].points.len(), 4);
-        let to = |point| Fate::To { point, attempt: 0 };
+        let to = |point| Correspondence::To { point, attempt: 0 };
         assert_eq!(
-            graph.edges[0].fates,
+            graph.edges[0].correspondences,
             [0, 1].map(|_| [0, 1, 2, 3].map(to).to_vec())
         );
         // As much is known on both sides now.
-        assert_eq!(wanted(&graph), [(1, Way::Ahead, 0, vec![0, 1, 2, 3])]);
+        assert_eq!(wanted(&graph), [(1, Direction::Ahead, 0, vec![0, 1, 2, 3])]);
     }
 
     /// The edge with two pairs leads to more new points a path; where it would bring all that is
@@ -660,8 +676,11 @@ mod tests {
         let met = settle(&mut graph, &[back(arrival(3, 0, 0.3))]);
         assert_eq!((met.crossings, met.crossings_left), (1, 0));
         // Both that claim (0.3), and (0.3) itself; the far end knows more.
-        assert_eq!(wanted(&graph), [(0, Way::Back, 1, vec![2, 3])]);
-        assert_eq!(graph.edges[0].fates[0][2], Fate::Open { attempt: 1 });
+        assert_eq!(wanted(&graph), [(0, Direction::Back, 1, vec![2, 3])]);
+        assert_eq!(
+            graph.edges[0].correspondences[0][2],
+            Correspondence::Open { attempt: 1 }
+        );
         let again = [back(arrival(2, 1, 0.3)), back(arrival(3, 1, 0.5))];
         assert_eq!(settle(&mut graph, &again), Settled::default());
         assert_eq!(
@@ -677,7 +696,7 @@ mod tests {
         settle(&mut graph, &first);
         let third = settle(&mut graph, &[arrival(2, 0, 0.8)]);
         assert_eq!((third.crossings, third.crossings_left), (1, 0));
-        assert_eq!(wanted(&graph), [(0, Way::Ahead, 1, vec![1, 2])]);
+        assert_eq!(wanted(&graph), [(0, Direction::Ahead, 1, vec![1, 2])]);
         let again = settle(&mut graph, &[arrival(1, 1, 0.8), arrival(2, 1, 0.9)]);
         assert_eq!(again, Settled::default());
         assert_eq!(
@@ -689,7 +708,7 @@ mod tests {
     #[test]
     fn what_never_parts_or_arrives_is_named() {
         let mut graph = graph();
-        let nowhere = |attempt| Arrival {
+        let nowhere = |attempt| EdgeEnd {
             end: None,
             ..arrival(2, attempt, 0.0)
         };
@@ -705,11 +724,14 @@ mod tests {
             total.lost += settled.lost;
         }
         assert_eq!((total.crossings_left, total.lost), (1, 1));
-        let kept = |attempt| Fate::To { point: 0, attempt };
-        assert_eq!(graph.edges[0].fates[0], [kept(2), Fate::Lost, Fate::Lost]);
+        let kept = |attempt| Correspondence::To { point: 0, attempt };
+        assert_eq!(
+            graph.edges[0].correspondences[0],
+            [kept(2), Correspondence::Lost, Correspondence::Lost]
+        );
         assert!(matches!(
-            graph.edges[0].fates[1][..],
-            [Fate::To { point: 0, .. }]
+            graph.edges[0].correspondences[1][..],
+            [Correspondence::To { point: 0, .. }]
         ));
         assert_eq!(wanted(&graph), []);
     }

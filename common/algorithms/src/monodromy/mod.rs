@@ -16,6 +16,7 @@ pub(crate) mod graph;
 mod places;
 pub mod trace;
 
+use crate::answer::{Answer, FoundByLoops, IsolatedSolutions};
 use crate::completeness_claim::CompletenessClaim;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::limits::MAX_PATHS;
@@ -40,7 +41,7 @@ use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
 use counts::{LoopCounts, Mixing, Stop, Tested, moving};
 use estimate::Estimate;
-use graph::{Arrival, Fate, Graph, Known, Wanted, Way};
+use graph::{Correspondence, Direction, EdgeEnd, Graph, Known, Wanted};
 use num_complex::Complex64;
 use places::{Sizes, generic_parameters};
 use serde::{Deserialize, Serialize};
@@ -216,7 +217,7 @@ impl MonodromySolve {
         graph.add_vertex(base);
         graph.add_edge(START, BASE, edge_seed(seed, FIRST), false);
         let count = usize::try_from(start.count).expect("a plan has no more paths than its limit");
-        graph.edges[FIRST].fates[0] = vec![Fate::Open { attempt: 0 }; count];
+        graph.edges[FIRST].correspondences[0] = vec![Correspondence::Open { attempt: 0 }; count];
         Self {
             shape,
             tolerances,
@@ -259,19 +260,6 @@ impl MonodromySolve {
         &self.counts
     }
 
-    /// Parameters at which solutions are wanted, one set or several.
-    pub fn targets(&self) -> &[Vec<Complex64>] {
-        &self.targets
-    }
-
-    /// The stage whose paths the answer counts: the first to the wanted parameters.
-    pub fn counted_stage(&self) -> StageId {
-        match &self.phase {
-            Phase::Arrive(solve) => solve.paths().first_id(),
-            _ => StageId(0),
-        }
-    }
-
     /// A stage along a path of parameters.
     fn stage(&self, from: &[Complex64], to: &[Complex64], seed: u64, points: StartPoints) -> Stage {
         Stage {
@@ -301,15 +289,15 @@ impl MonodromySolve {
     fn opening(&self, wanted: &Wanted) -> Opening {
         let Wanted {
             edge,
-            way,
+            direction,
             attempt,
             ref sources,
         } = *wanted;
         let e = &self.graph.edges[edge];
-        let (from, to) = (e.source(way), e.target(way));
-        let seed = match way {
-            Way::Ahead => e.seed,
-            Way::Back => way_back(e.seed),
+        let (from, to) = (e.source(direction), e.target(direction));
+        let seed = match direction {
+            Direction::Ahead => e.seed,
+            Direction::Back => way_back(e.seed),
         };
         let (points, objects) = if edge == FIRST {
             let all = sources.len() as u64 == self.start.count;
@@ -666,9 +654,9 @@ impl MonodromySolve {
                 } else {
                     self.max_retries
                 };
-                arrivals.push(Arrival {
+                arrivals.push(EdgeEnd {
                     edge: wanted.edge,
-                    way: wanted.way,
+                    direction: wanted.direction,
                     source,
                     attempt,
                     end,
@@ -879,7 +867,7 @@ impl Solve for MonodromySolve {
         Self::completeness(self)
     }
 
-    fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
+    fn answer(&self, system: &System) -> Option<Answer> {
         let mut sets = match &self.phase {
             Phase::Arrive(solve) => solve.solution_sets(system),
             _ => {
@@ -897,7 +885,27 @@ impl Solve for MonodromySolve {
         for set in &mut sets {
             set.warnings.extend(self.warnings.iter().cloned());
         }
-        sets
+        let names = system.parameters.iter().cloned();
+        let parameters = match self.targets.as_slice() {
+            [one] => names.zip(one.iter().copied()).collect(),
+            _ => BTreeMap::new(),
+        };
+        Some(Answer::Isolated(IsolatedSolutions {
+            sets,
+            loops: Some(FoundByLoops {
+                counts: self.counts.clone(),
+                parameters,
+            }),
+            held: None,
+        }))
+    }
+
+    /// The first stage to the wanted parameters.
+    fn counted_stage(&self) -> StageId {
+        match &self.phase {
+            Phase::Arrive(solve) => solve.paths().first_id(),
+            _ => StageId(0),
+        }
     }
 }
 

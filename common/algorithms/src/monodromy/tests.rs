@@ -323,10 +323,10 @@ fn an_edge_leads_back_to_where_it_came_from() {
     let AnySolve::Monodromy(mut solved) = plan.algorithm.solve().clone() else {
         panic!("it is a monodromy solve")
     };
-    let partners = |solved: &MonodromySolve, edge: usize, way: Way| -> Vec<usize> {
+    let partners = |solved: &MonodromySolve, edge: usize, direction: Direction| -> Vec<usize> {
         let opening = solved.opening(&Wanted {
             edge,
-            way,
+            direction,
             attempt: 0,
             sources: (0..9).collect(),
         });
@@ -334,7 +334,7 @@ fn an_edge_leads_back_to_where_it_came_from() {
         let prepared = PreparedStage::new(&system, &opening.stage, &find).unwrap();
         let ends = prepared.track(0..9, 8).into_iter();
         let ends = ends.map(|result| solved.arrival_of(&result).expect("it arrives"));
-        let there = &solved.graph.vertices[solved.graph.edges[edge].target(way)].points;
+        let there = &solved.graph.vertices[solved.graph.edges[edge].target(direction)].points;
         let distance = |a: &Known, b: &Known| -> f64 {
             let pairs = a.values.iter().zip(&b.values);
             pairs.map(|(a, b)| (a - b).norm_sqr()).sum()
@@ -345,19 +345,25 @@ fn an_edge_leads_back_to_where_it_came_from() {
     let edges = solved.graph.edges.len();
     let mut elsewhere = 0;
     for edge in FIRST + 1..edges {
-        for (way, fates) in [Way::Ahead, Way::Back].into_iter().zip(0..) {
-            let fates = solved.graph.edges[edge].fates[fates as usize].iter();
-            let pairs: Vec<usize> = fates
-                .map(|fate| match fate {
-                    Fate::To { point, .. } => *point as usize,
+        for (direction, correspondences) in [Direction::Ahead, Direction::Back].into_iter().zip(0..)
+        {
+            let correspondences =
+                solved.graph.edges[edge].correspondences[correspondences as usize].iter();
+            let pairs: Vec<usize> = correspondences
+                .map(|correspondence| match correspondence {
+                    Correspondence::To { point, .. } => *point as usize,
                     other => panic!("{other:?}"),
                 })
                 .collect();
-            assert_eq!(partners(&solved, edge, way), pairs, "{edge} {way:?}");
+            assert_eq!(
+                partners(&solved, edge, direction),
+                pairs,
+                "{edge} {direction:?}"
+            );
         }
-        let ahead = partners(&solved, edge, Way::Ahead);
+        let ahead = partners(&solved, edge, Direction::Ahead);
         solved.graph.edges[edge].seed = way_back(solved.graph.edges[edge].seed);
-        elsewhere += u32::from(partners(&solved, edge, Way::Ahead) != ahead);
+        elsewhere += u32::from(partners(&solved, edge, Direction::Ahead) != ahead);
     }
     assert!(edges > 20 && elsewhere > 3, "{edges} {elsewhere}");
 }
@@ -509,7 +515,7 @@ fn points_on_a_slice_are_complete_when_their_sum_moves_on_a_line() {
             .iter_mut()
             .filter(|edge| edge.ends[0] == BASE)
         {
-            edge.fates[0].pop();
+            edge.correspondences[0].pop();
         }
         let without = solve.trace_of(&pencil, moved.unwrap());
         assert!(

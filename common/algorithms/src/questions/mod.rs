@@ -16,6 +16,7 @@ mod sample;
 #[cfg(test)]
 mod tests;
 
+use crate::answer::AnsweredQuestion;
 use crate::decomposition::deflated::Deflations;
 use crate::decomposition::job::Job;
 use crate::decomposition::problem::Problem;
@@ -28,7 +29,6 @@ use check::Check;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
-use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::{Answer, Question, TrackedPaths, WitnessSet};
 use cognate_systems::system::System;
 use member::Member;
@@ -319,8 +319,12 @@ impl Solve for QuestionSolve {
         }
     }
 
-    fn solution_sets(&self, _: &System) -> Vec<SolutionSet> {
-        Vec::new()
+    fn answer(&self, _: &System) -> Option<crate::Answer> {
+        Some(crate::Answer::Question(AnsweredQuestion {
+            answer: self.answer().cloned()?,
+            doubts: self.doubts(),
+            paths: self.paths(),
+        }))
     }
 }
 

@@ -25,7 +25,6 @@ pub(super) struct Multidegree {
     /// Variables of each group, and whether it is homogeneous.
     groups: Vec<(Vec<usize>, bool)>,
     found: Vec<Degrees>,
-    open: bool,
 }
 
 impl Multidegree {
@@ -36,15 +35,11 @@ impl Multidegree {
                 .map(|g| (g.variables.clone(), g.homogeneous))
                 .collect(),
             found: Vec::new(),
-            open: false,
         }
     }
 
     pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
-        if let Some(job) = done
-            && self.open
-        {
-            self.open = false;
+        if let Some(job) = done {
             self.learn(with, job);
         }
         while let Some(operand) = with.operands.get(self.found.len()) {
@@ -75,7 +70,6 @@ impl Multidegree {
             });
             let targets = each.collect();
             self.found.push(known);
-            self.open = true;
             return Some(operand.moved_to(with.problem, with.deflations, targets));
         }
         None

@@ -33,7 +33,6 @@ const OTHER: f64 = 1e-6;
 pub(super) struct Project {
     onto: Vec<u32>,
     found: Vec<Projection>,
-    open: bool,
 }
 
 impl Project {
@@ -56,15 +55,11 @@ impl Project {
         Ok(Self {
             onto: onto.to_vec(),
             found: Vec::new(),
-            open: false,
         })
     }
 
     pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
-        if let Some(job) = done
-            && self.open
-        {
-            self.open = false;
+        if let Some(job) = done {
             self.learn(with, job);
         }
         while let Some(operand) = with.operands.get(self.found.len()) {
@@ -90,7 +85,6 @@ impl Project {
                 self.settle(Some((1, 1)));
                 continue;
             }
-            self.open = true;
             let slice = |number: usize| self.special(with, operand, rank as usize, number);
             let targets = (0..SLICES).map(slice).collect();
             return Some(operand.moved_to(with.problem, with.deflations, targets));

@@ -88,13 +88,26 @@ impl HomotopyKind {
         match self {
             Self::Parameter { targets, .. } => targets.len() as u64,
             Self::Slide { forms, .. } => u64::from(*forms),
-            _ => 1,
+            Self::StraightLine { .. }
+            | Self::PathVariable { .. }
+            | Self::Toric
+            | Self::Generic { .. }
+            | Self::Intersect { .. }
+            | Self::Sections { .. } => 1,
         }
     }
 
     /// Whether its paths are all that there are: those of a start system, not of points that are given.
     pub fn takes_all_paths(&self) -> bool {
-        matches!(self, Self::StraightLine { .. } | Self::Generic { .. })
+        match self {
+            Self::StraightLine { .. } | Self::Generic { .. } => true,
+            Self::Parameter { .. }
+            | Self::PathVariable { .. }
+            | Self::Toric
+            | Self::Slide { .. }
+            | Self::Intersect { .. }
+            | Self::Sections { .. } => false,
+        }
     }
 
     /// Whether the paths end at solutions of the system, rather than of one on the way to it.
@@ -102,7 +115,10 @@ impl HomotopyKind {
         match self {
             Self::Toric | Self::Slide { .. } | Self::Sections { .. } => false,
             Self::Intersect { order, level, .. } => order.len() == *level as usize + 1,
-            _ => true,
+            Self::StraightLine { .. }
+            | Self::Parameter { .. }
+            | Self::PathVariable { .. }
+            | Self::Generic { .. } => true,
         }
     }
 }

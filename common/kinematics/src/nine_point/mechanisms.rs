@@ -1,6 +1,6 @@
 //! Mechanisms: the linkages that can be built, cognates together, best first.
 
-use super::class_book::Found;
+use super::class_record::Found;
 use super::realization::{Realization, realizations};
 use super::{PathPoints, Point};
 use crate::assessment::Assessment;

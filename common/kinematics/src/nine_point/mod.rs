@@ -3,7 +3,7 @@
 //!
 //! Solutions are in the variables of `cognate_systems::named::nine_point`: x, X, a, A, y, Y, b, B.
 
-pub mod class_book;
+pub mod class_record;
 pub mod cognates;
 pub mod family;
 pub mod mechanisms;
@@ -11,7 +11,7 @@ pub mod path_points;
 pub mod realization;
 pub mod search;
 
-pub use class_book::{ClassBook, ClassEnd};
+pub use class_record::{ClassEnd, ClassRecord};
 pub use mechanisms::{Curve, Mechanism};
 pub use path_points::{PathPoints, PointFault};
 pub use search::Search;

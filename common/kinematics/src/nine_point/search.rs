@@ -3,7 +3,7 @@
 //! A state machine that knows no service: [`Search::next_round`] says which solutions of the generic member are to
 //! be followed to the points, whoever drives it follows them and hands their ends to [`Search::absorb`].
 
-use super::class_book::{Arrival, Arrived, ClassBook, ClassEnd, Member};
+use super::class_record::{Arrived, ClassEnd, ClassRecord, Member, PathEnd};
 use super::{PathPoints, Point};
 use std::collections::BTreeMap;
 
@@ -48,7 +48,7 @@ impl Phase {
 
 /// A synthesis under way.
 pub struct Search {
-    book: ClassBook,
+    record: ClassRecord,
     /// Whether the points are real, so that linkages come with their conjugates.
     real: bool,
     phase: Phase,
@@ -61,7 +61,7 @@ impl Search {
     /// A search that has followed nothing yet.
     pub fn new(points: &PathPoints) -> Self {
         Self {
-            book: ClassBook::new(points.parameters()),
+            record: ClassRecord::new(points.parameters()),
             real: points.is_real(),
             phase: Phase::Representatives,
             members: Vec::new(),
@@ -73,12 +73,12 @@ impl Search {
     pub fn next_round(&mut self) -> Option<Round> {
         loop {
             if !matches!(self.phase, Phase::Representatives | Phase::Done) {
-                self.book.compare();
+                self.record.compare();
             }
             let (purpose, members) = match self.phase {
-                Phase::Representatives => ("one of each class", ClassBook::first_round()),
-                Phase::OtherCognates => ("other cognates", self.book.other_cognates()),
-                Phase::Carefully => ("again, carefully", self.book.open()),
+                Phase::Representatives => ("one of each class", ClassRecord::first_round()),
+                Phase::OtherCognates => ("other cognates", self.record.other_cognates()),
+                Phase::Carefully => ("again, carefully", self.record.open()),
                 Phase::OtherWay => ("another way", self.lost()),
                 Phase::Done => return None,
             };
@@ -86,7 +86,7 @@ impl Search {
                 self.phase = self.phase.following();
                 continue;
             }
-            let starts = members.iter().map(|&member| self.book.start(member));
+            let starts = members.iter().map(|&member| self.record.start(member));
             let round = Round {
                 purpose,
                 starts: starts.collect(),
@@ -100,27 +100,27 @@ impl Search {
 
     /// All representatives where a class is lost that the others do not imply; none elsewhere.
     fn lost(&mut self) -> Vec<Member> {
-        self.derived = self.book.derive(&[], self.real);
-        match self.book.counts().contains(&(ClassEnd::Failed, 0)) {
+        self.derived = self.record.derive(&[], self.real);
+        match self.record.counts().contains(&(ClassEnd::Failed, 0)) {
             true => Vec::new(),
-            false => ClassBook::first_round(),
+            false => ClassRecord::first_round(),
         }
     }
 
     /// Takes how the paths of the open round ended, by their places; a path without an end failed.
-    pub fn absorb(&mut self, mut ends: BTreeMap<usize, Arrival>) {
+    pub fn absorb(&mut self, mut ends: BTreeMap<usize, PathEnd>) {
         if self.phase == Phase::OtherWay {
             // Along other parameters every class may end as another one: only what is found counts.
             let regular = |arrival| match arrival {
-                Arrival::Regular(arrived) => Some(arrived),
+                PathEnd::Regular(arrived) => Some(arrived),
                 _ => None,
             };
             let others: Vec<Arrived> = ends.into_values().filter_map(regular).collect();
-            self.derived += self.book.derive(&others, self.real);
+            self.derived += self.record.derive(&others, self.real);
         } else {
             for (place, &member) in self.members.iter().enumerate() {
-                let unknown = || Arrival::Failed("the service says nothing of its path".into());
-                self.book
+                let unknown = || PathEnd::Failed("the service says nothing of its path".into());
+                self.record
                     .note(member, ends.remove(&place).unwrap_or_else(unknown));
             }
         }
@@ -130,8 +130,8 @@ impl Search {
 
     /// What has become of all classes, and how many were settled by what must be there besides what their
     /// own paths found.
-    pub fn finish(self) -> (ClassBook, usize) {
-        (self.book, self.derived)
+    pub fn finish(self) -> (ClassRecord, usize) {
+        (self.record, self.derived)
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
     /// Points whose parameters are those of the generic member: every path stays where it starts.
     fn still() -> Search {
         Search {
-            book: ClassBook::new(family::parameters()),
+            record: ClassRecord::new(family::parameters()),
             real: false,
             phase: Phase::Representatives,
             members: Vec::new(),
@@ -151,8 +151,8 @@ mod tests {
         }
     }
 
-    fn regular(point: Point) -> Arrival {
-        Arrival::Regular(Arrived {
+    fn regular(point: Point) -> PathEnd {
+        PathEnd::Regular(Arrived {
             point,
             accuracy: 1e-15,
             real: None,
@@ -162,7 +162,7 @@ mod tests {
     }
 
     /// Drives a search whose paths stay where they are, but for some, by round and place.
-    fn drive(lost: impl Fn(usize, usize) -> bool) -> (Vec<(&'static str, usize)>, ClassBook) {
+    fn drive(lost: impl Fn(usize, usize) -> bool) -> (Vec<(&'static str, usize)>, ClassRecord) {
         let mut search = still();
         let mut rounds = Vec::new();
         while let Some(round) = search.next_round() {
@@ -182,19 +182,19 @@ mod tests {
 
     #[test]
     fn one_round_is_enough_where_every_path_arrives() {
-        let (rounds, book) = drive(|_, _| false);
+        let (rounds, record) = drive(|_, _| false);
         assert_eq!(rounds, [("one of each class", CLASSES)]);
-        assert!(book.counts().contains(&(ClassEnd::Finite, CLASSES)));
+        assert!(record.counts().contains(&(ClassEnd::Finite, CLASSES)));
     }
 
     #[test]
     fn other_cognates_settle_a_class_whose_representative_is_lost() {
-        let (rounds, book) = drive(|round, place| round == 0 && place == 7);
+        let (rounds, record) = drive(|round, place| round == 0 && place == 7);
         assert_eq!(
             rounds,
             [("one of each class", CLASSES), ("other cognates", 2)]
         );
-        assert!(book.counts().contains(&(ClassEnd::Finite, CLASSES)));
+        assert!(record.counts().contains(&(ClassEnd::Finite, CLASSES)));
     }
 
     #[test]
@@ -207,13 +207,13 @@ mod tests {
         ];
         // On the other way its path arrives.
         let lost = |round, place| round == 0 && place == 7 || round == 1 || round == 2;
-        let (rounds, book) = drive(lost);
+        let (rounds, record) = drive(lost);
         assert_eq!(rounds, expected);
-        assert!(book.counts().contains(&(ClassEnd::Finite, CLASSES)));
-        assert_eq!(book.derived(), 1);
+        assert!(record.counts().contains(&(ClassEnd::Finite, CLASSES)));
+        assert_eq!(record.derived(), 1);
         // Nor there.
-        let (rounds, book) = drive(|round, place| lost(round, place) || place == 7);
+        let (rounds, record) = drive(|round, place| lost(round, place) || place == 7);
         assert_eq!(rounds, expected);
-        assert!(book.counts().contains(&(ClassEnd::Failed, 1)));
+        assert!(record.counts().contains(&(ClassEnd::Failed, 1)));
     }
 }

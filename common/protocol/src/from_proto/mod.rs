@@ -1,5 +1,6 @@
 //! Checked conversion inwards: every field, every length, every index.
 
+mod method;
 pub mod path;
 pub mod problem;
 pub mod question;

@@ -1,7 +1,7 @@
 //! Problem message to Submission, System message to a checked System.
 
 use super::question::question;
-use super::{digest, finite, points, required};
+use super::{digest, finite, method, points, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::submission::{
@@ -9,10 +9,11 @@ use crate::submission::{
     Submission,
 };
 use crate::v1;
+use crate::v1::options::Method;
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_solutions::witness::Method;
+use cognate_solutions::witness;
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::formats::limits as sizes;
 use cognate_systems::scaling::Scaling;
@@ -48,6 +49,12 @@ pub fn submission(message: v1::Problem) -> Result<Submission, ProtocolError> {
 
 /// How a problem is to be solved.
 pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
+    let (m, method) = method::unfolded(m)?;
+    without_method(m).map_err(|error| method::placed(error, method))
+}
+
+/// The same, where `start` says how paths begin.
+fn without_method(m: v1::Options) -> Result<Options, ProtocolError> {
     within_limit("name", m.name.len(), limits::NAME_BYTES)?;
     within_limit("warnings", m.warnings.len(), limits::WARNINGS)?;
     for (i, warning) in m.warnings.iter().enumerate() {
@@ -91,6 +98,11 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             "start_solutions.object",
             &bytes,
         )?)),
+    };
+    let (decompose, question) = match m.method {
+        Some(Method::Decompose(m)) => (Some(decompose(m)?), None),
+        Some(Method::Question(m)) => (None, Some(question(m)?)),
+        _ => (None, None),
     };
     Ok(Options {
         start: match v1::StartKind::try_from(m.start) {
@@ -158,8 +170,8 @@ pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
             true => None,
             false => Some(equation_sets("sets", &m.sets)?),
         },
-        decompose: m.decompose.map(decompose).transpose()?,
-        question: m.question.map(question).transpose()?,
+        decompose,
+        question,
     })
 }
 
@@ -198,9 +210,9 @@ fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
     }
     let method = match m.method.map(v1::DecompositionMethod::try_from) {
         None => None,
-        Some(Ok(v1::DecompositionMethod::Cascade)) => Some(Method::Cascade),
-        Some(Ok(v1::DecompositionMethod::Equations)) => Some(Method::Equations),
-        Some(Ok(v1::DecompositionMethod::Slices)) => Some(Method::Slices),
+        Some(Ok(v1::DecompositionMethod::Cascade)) => Some(witness::Method::Cascade),
+        Some(Ok(v1::DecompositionMethod::Equations)) => Some(witness::Method::Equations),
+        Some(Ok(v1::DecompositionMethod::Slices)) => Some(witness::Method::Slices),
         Some(Ok(v1::DecompositionMethod::Unspecified) | Err(_)) => {
             return Err(ProtocolError::invalid(
                 "decompose.method",

@@ -3,7 +3,8 @@
 use super::question::question;
 use super::{complexes, digest, points, small};
 use crate::submission::{
-    Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+    Decompose, Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions,
+    Submission,
 };
 use crate::v1;
 use cognate_continuation::tracker::settings::Preset;
@@ -97,14 +98,22 @@ pub fn options(options: &Options) -> v1::Options {
             .sets
             .as_ref()
             .map_or(Vec::new(), |sets| equation_sets(sets)),
-        decompose: options.decompose.map(|wanted| v1::Decompose {
-            lowest_dimension: wanted.dimensions.map(|[lowest, _]| lowest),
-            highest_dimension: wanted.dimensions.map(|[_, highest]| highest),
-            idle_loops: wanted.idle_loops,
-            method: wanted.method.map(|method| method_number(method) as i32),
-            verify: wanted.verify,
-        }),
-        question: options.question.as_ref().map(question),
+        // Starts are said in the fields that every version reads.
+        method: match (&options.decompose, &options.question) {
+            (_, Some(asked)) => Some(v1::options::Method::Question(question(asked))),
+            (Some(wanted), None) => Some(v1::options::Method::Decompose(decompose(wanted))),
+            (None, None) => None,
+        },
+    }
+}
+
+fn decompose(wanted: &Decompose) -> v1::Decompose {
+    v1::Decompose {
+        lowest_dimension: wanted.dimensions.map(|[lowest, _]| lowest),
+        highest_dimension: wanted.dimensions.map(|[_, highest]| highest),
+        idle_loops: wanted.idle_loops,
+        method: wanted.method.map(|method| method_number(method) as i32),
+        verify: wanted.verify,
     }
 }
 

@@ -25,9 +25,9 @@ impl Span {
 /// Something wrong at a place of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Where.
+    /// The part of the text that is wrong.
     pub span: Span,
-    /// What.
+    /// What is wrong there.
     pub problem: Problem,
 }
 

@@ -27,9 +27,9 @@ pub struct Place {
 /// What is wrong with an input, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormatError {
-    /// Where.
+    /// File, line and column of the fault.
     pub place: Box<Place>,
-    /// What.
+    /// What is wrong there, and what was expected.
     pub problem: Problem,
 }
 

@@ -175,7 +175,7 @@ pub struct MechanismInverse {
     /// One pose: "x y z qw qx qy qz", in the plane "x y angle"
     #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
     pub pose: Option<String>,
-    /// How.
+    /// How it is solved, and where the answer goes.
     #[command(flatten)]
     pub answer: MechanismAnswer,
 }
@@ -200,7 +200,7 @@ pub struct MechanismForward {
     /// The joints that drive it, instead of the file's
     #[arg(long, value_name = "JOINT")]
     pub input: Vec<String>,
-    /// How.
+    /// How it is solved, and where the answer goes.
     #[command(flatten)]
     pub answer: MechanismAnswer,
 }

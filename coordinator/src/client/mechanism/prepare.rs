@@ -23,7 +23,7 @@ pub struct Prepared {
     pub parameters: Vec<Complex64>,
     /// Its solutions that are positions, point after point.
     pub points: Vec<Complex64>,
-    /// How many.
+    /// Number of these solutions.
     pub count: u64,
     /// What became of the other paths to the member, in words; empty where all are positions.
     pub others: String,

@@ -17,8 +17,8 @@ use super::problem::Prepared;
 use crate::results::summary::Summary;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
-use cognate_kinematics::nine_point::class_book::{Arrival, Arrived};
-use cognate_kinematics::nine_point::{ClassBook, PathPoints, Point, Search, family};
+use cognate_kinematics::nine_point::class_record::{Arrived, PathEnd};
+use cognate_kinematics::nine_point::{ClassRecord, PathPoints, Point, Search, family};
 use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
@@ -56,7 +56,7 @@ pub struct Round {
 /// What has become of all classes.
 pub struct Answer {
     /// Class after class.
-    pub book: ClassBook,
+    pub record: ClassRecord,
     /// The jobs.
     pub rounds: Vec<Round>,
     /// Classes that were settled by what must be there besides what their own paths found.
@@ -101,16 +101,16 @@ async fn carry_out(
         });
         search.absorb(ends);
     }
-    let (book, derived) = search.finish();
+    let (record, derived) = search.finish();
     Ok(Answer {
-        book,
+        record,
         rounds,
         derived,
     })
 }
 
 /// The system that is followed: without the group, of which only one member is wanted, and
-/// without degenerate sets, which the book looks at itself.
+/// without degenerate sets, which the record looks at itself.
 fn followed_system(real: bool) -> System {
     let mut system = nine_point().system;
     system.symmetry.clear();
@@ -193,7 +193,7 @@ async fn run(
     target: &Target,
     prepared: Prepared,
     progress: &mut Progress,
-) -> Result<(Summary, BTreeMap<usize, Arrival>), ClientError> {
+) -> Result<(Summary, BTreeMap<usize, PathEnd>), ClientError> {
     let (mut connection, job, summary) = finished(target, prepared, progress).await?;
     let ends = ends(&mut connection, &job, &summary).await?;
     Ok((summary, ends))
@@ -207,16 +207,16 @@ async fn ends(
     connection: &mut Connection,
     job: &str,
     summary: &Summary,
-) -> Result<BTreeMap<usize, Arrival>, ClientError> {
+) -> Result<BTreeMap<usize, PathEnd>, ClientError> {
     let mut ends = BTreeMap::new();
     connection
         .solutions(job, |solution, _| {
             let arrived = arrived(&solution)?;
             for &path in &solution.paths {
                 let arrival = match (solution.undecided, solution.singular) {
-                    (true, _) => Arrival::Failed(UNDECIDED.into()),
-                    (false, true) => Arrival::Singular(arrived.clone()),
-                    (false, false) => Arrival::Regular(arrived.clone()),
+                    (true, _) => PathEnd::Failed(UNDECIDED.into()),
+                    (false, true) => PathEnd::Singular(arrived.clone()),
+                    (false, false) => PathEnd::Regular(arrived.clone()),
                 };
                 ends.insert(usize::try_from(path).unwrap_or(usize::MAX), arrival);
             }
@@ -254,14 +254,14 @@ fn arrived(solution: &Solution) -> Result<Arrived, ClientError> {
     })
 }
 
-fn without_solution(path: &v1::ClassifiedPath, result: &v1::PathResult) -> Arrival {
+fn without_solution(path: &v1::ClassifiedPath, result: &v1::PathResult) -> PathEnd {
     match path.class() {
-        v1::PathClass::AtInfinity => Arrival::AtInfinity,
-        v1::PathClass::PositiveDimensional => Arrival::PositiveDimensional,
+        v1::PathClass::AtInfinity => PathEnd::AtInfinity,
+        v1::PathClass::PositiveDimensional => PathEnd::PositiveDimensional,
         _ => {
             let outcome = result.outcome().as_str_name();
             let words = outcome.trim_start_matches("PATH_OUTCOME_");
-            Arrival::Failed(match result.outcome() {
+            PathEnd::Failed(match result.outcome() {
                 v1::PathOutcome::Regular | v1::PathOutcome::Singular => {
                     "it ends where another path does, or at no solution".into()
                 }

@@ -1,6 +1,6 @@
 //! Accusations in memory: which workers died of a chunk, or could not do it, and who gets it next.
 
-use super::books::{Books, Chunk, Worker};
+use super::tables::{Chunk, Tables, Worker};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
@@ -19,7 +19,7 @@ impl Worker {
     }
 }
 
-impl Books {
+impl Tables {
     /// Remembers that a worker accuses a chunk. One worker counts once, while others are here that have
     /// not tried.
     pub fn accuse(&mut self, now: LedgerTime, id: ChunkId, who: &WorkerId) {

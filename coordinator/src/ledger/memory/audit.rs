@@ -1,6 +1,6 @@
 //! Audits in memory: votes on chunks, and what becomes of a worker that was outvoted.
 
-use super::books::{Books, Chunk, Stage};
+use super::tables::{Chunk, Stage, Tables};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
@@ -49,7 +49,7 @@ impl Stage {
     }
 }
 
-impl Books {
+impl Tables {
     pub fn is_evicted(&self, worker: &WorkerId) -> bool {
         self.workers.get(worker).is_some_and(|known| known.evicted)
     }

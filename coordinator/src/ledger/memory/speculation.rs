@@ -1,13 +1,13 @@
 //! Speculation in memory: late chunks that a second worker gets, and who of the two may report.
 
-use super::books::Books;
+use super::tables::Tables;
 use crate::chunks::speculation::Pace;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use crate::ledger::rules::estimate;
 
-impl Books {
+impl Tables {
     /// Who may report under this lease; `None` where it has ended, or the chunk has a result.
     pub fn holder(&mut self, lease: LeaseId) -> Option<Holder> {
         if let Some(elder) = self.elder(lease) {
@@ -146,7 +146,7 @@ impl Books {
     }
 }
 
-impl super::books::Job {
+impl super::tables::Job {
     /// What the accepted chunks of all its stages took.
     fn pace(&self) -> Pace {
         let stages = self.stages.values().map(|stage| stage.row.pace());

@@ -88,7 +88,7 @@ pub enum BranchCount {
 /// The cells of a branch, counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CountedCells {
-    /// How many.
+    /// Mixed cells whose first choices are those of the branch.
     pub cells: u64,
     /// The sum of their volumes: how many start points they have.
     pub volume: u64,

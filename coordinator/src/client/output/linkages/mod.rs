@@ -51,15 +51,15 @@ impl Sheet {
         elapsed: Duration,
     ) -> Self {
         let Answer {
-            book,
+            record,
             rounds,
             derived,
         } = answer;
-        let found = book.found();
+        let found = record.found();
         let curves = mechanisms::curves(&found, points);
-        let lost = (0..CLASSES).filter(|&class| book.end(class) == ClassEnd::Failed);
+        let lost = (0..CLASSES).filter(|&class| record.end(class) == ClassEnd::Failed);
         let mut warnings: Vec<String> = lost
-            .map(|class| format!("class {class} is not settled: {}", book.reason(class)))
+            .map(|class| format!("class {class} is not settled: {}", record.reason(class)))
             .collect();
         for (place, curve) in curves.iter().enumerate() {
             let errors = curve.linkages.iter().map(|m| m.realization.error);
@@ -76,7 +76,7 @@ impl Sheet {
         Self {
             name: name.to_owned(),
             points: points.clone(),
-            classes: book.counts(),
+            classes: record.counts(),
             derived,
             real: points.is_real().then_some(curves.len()),
             certified,

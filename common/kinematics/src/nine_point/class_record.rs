@@ -1,4 +1,4 @@
-//! ClassBook: what has become of each of the 1442 classes of linkages, path after path.
+//! ClassRecord: what has become of each of the 1442 classes of linkages, path after path.
 //!
 //! A class is finite if one of its three cognates is: where a representative runs away or is
 //! lost, the others are followed, along the same parameters, so that they end in the same class.
@@ -42,7 +42,7 @@ pub struct Arrived {
 
 /// How a path ended.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Arrival {
+pub enum PathEnd {
     /// At a regular solution.
     Regular(Arrived),
     /// At an isolated solution where the Jacobian is singular.
@@ -82,20 +82,20 @@ pub struct Found {
 }
 
 /// All that is known of the classes.
-pub struct ClassBook {
+pub struct ClassRecord {
     parameters: Vec<Complex64>,
     representatives: Vec<Point>,
     group: SymmetryGroup,
     shape: PointShape,
-    arrivals: Vec<Vec<(usize, Arrival)>>,
+    arrivals: Vec<Vec<(usize, PathEnd)>>,
     /// Classes that arrived where an earlier class is: a path jumped.
     clashing: Vec<Option<usize>>,
     /// Linkages of classes whose own paths were lost, found in another way.
     derived: Vec<Option<Arrived>>,
 }
 
-impl ClassBook {
-    /// An empty book for these parameters (those of [`super::PathPoints`]).
+impl ClassRecord {
+    /// An empty record for these parameters (those of [`super::PathPoints`]).
     pub fn new(parameters: Vec<Complex64>) -> Self {
         let system = nine_point().system;
         let shape = PointShape::of(&system);
@@ -158,7 +158,7 @@ impl ClassBook {
     ///
     /// # Panics
     /// When there is no such class.
-    pub fn note(&mut self, member: Member, arrival: Arrival) {
+    pub fn note(&mut self, member: Member, arrival: PathEnd) {
         self.arrivals[member.class].push((member.cognate, arrival));
     }
 
@@ -187,7 +187,7 @@ impl ClassBook {
             .iter()
             .rev()
             .find_map(|(_, a)| match a {
-                Arrival::Regular(arrived) if self.best(arrived).is_some() => Some(arrived),
+                PathEnd::Regular(arrived) if self.best(arrived).is_some() => Some(arrived),
                 _ => None,
             });
         let own = own.filter(|_| self.clashing[class].is_none());
@@ -238,12 +238,12 @@ impl ClassBook {
         let mut end = None;
         for arrival in arrivals {
             let this = match arrival {
-                Arrival::Singular(arrived) if self.best(arrived).is_some() => ClassEnd::Multiple,
-                Arrival::Regular(_) | Arrival::Singular(_) | Arrival::PositiveDimensional => {
+                PathEnd::Singular(arrived) if self.best(arrived).is_some() => ClassEnd::Multiple,
+                PathEnd::Regular(_) | PathEnd::Singular(_) | PathEnd::PositiveDimensional => {
                     ClassEnd::Degenerate
                 }
-                Arrival::AtInfinity => ClassEnd::AtInfinity,
-                Arrival::Failed(_) => ClassEnd::Failed,
+                PathEnd::AtInfinity => ClassEnd::AtInfinity,
+                PathEnd::Failed(_) => ClassEnd::Failed,
             };
             // A linkage settles it; then what is not known; then where it went.
             let rank = |end: ClassEnd| match end {
@@ -266,7 +266,7 @@ impl ClassBook {
         }
         let reasons = self.arrivals[class].iter().rev();
         let mut failures = reasons.filter_map(|(_, arrival)| match arrival {
-            Arrival::Failed(reason) => Some(reason.clone()),
+            PathEnd::Failed(reason) => Some(reason.clone()),
             _ => None,
         });
         failures
@@ -362,7 +362,7 @@ impl ClassBook {
                 ClassEnd::Multiple => {
                     let arrivals = self.arrivals[class].iter();
                     singular.extend(arrivals.rev().find_map(|(_, arrival)| match arrival {
-                        Arrival::Singular(arrived) => Some((class, self.best(arrived)?)),
+                        PathEnd::Singular(arrived) => Some((class, self.best(arrived)?)),
                         _ => None,
                     }));
                 }
@@ -398,8 +398,8 @@ mod tests {
         }
     }
 
-    fn count(book: &ClassBook, end: ClassEnd) -> usize {
-        let counts = book.counts();
+    fn count(record: &ClassRecord, end: ClassEnd) -> usize {
+        let counts = record.counts();
         assert_eq!(counts.iter().map(|(_, n)| n).sum::<usize>(), CLASSES);
         counts
             .iter()
@@ -408,100 +408,100 @@ mod tests {
             .1
     }
 
-    /// A book of paths that stayed where they started.
-    fn full() -> ClassBook {
-        let mut book = ClassBook::new(family::parameters());
-        for member in ClassBook::first_round() {
-            let point = book.start(member);
-            book.note(member, Arrival::Regular(arrived(point)));
+    /// A record of paths that stayed where they started.
+    fn full() -> ClassRecord {
+        let mut record = ClassRecord::new(family::parameters());
+        for member in ClassRecord::first_round() {
+            let point = record.start(member);
+            record.note(member, PathEnd::Regular(arrived(point)));
         }
-        book
+        record
     }
 
     #[test]
     fn a_class_is_finite_if_one_of_its_cognates_is() {
-        let mut book = full();
-        assert_eq!(book.compare(), 0);
-        assert_eq!(count(&book, ClassEnd::Finite), CLASSES);
-        assert!(book.other_cognates().is_empty() && book.open().is_empty());
-        let found = book.found();
+        let mut record = full();
+        assert_eq!(record.compare(), 0);
+        assert_eq!(count(&record, ClassEnd::Finite), CLASSES);
+        assert!(record.other_cognates().is_empty() && record.open().is_empty());
+        let found = record.found();
         assert_eq!(found.len(), CLASSES);
 
-        let mut book = ClassBook::new(family::parameters());
-        for member in ClassBook::first_round() {
-            let point = book.start(member);
+        let mut record = ClassRecord::new(family::parameters());
+        for member in ClassRecord::first_round() {
+            let point = record.start(member);
             let arrival = match member.class {
-                7 => Arrival::AtInfinity,
-                8 => Arrival::Failed("lost".into()),
-                9 => Arrival::PositiveDimensional,
-                _ => Arrival::Regular(arrived(point)),
+                7 => PathEnd::AtInfinity,
+                8 => PathEnd::Failed("lost".into()),
+                9 => PathEnd::PositiveDimensional,
+                _ => PathEnd::Regular(arrived(point)),
             };
-            book.note(member, arrival);
+            record.note(member, arrival);
         }
-        let others = book.other_cognates();
+        let others = record.other_cognates();
         let classes: Vec<usize> = others.iter().map(|m| m.class).collect();
         assert_eq!(classes, [7, 7, 8, 8, 9, 9]);
         for member in others {
             let arrival = match (member.class, member.cognate) {
-                (7, 2) | (8, 1) => Arrival::Regular(arrived(book.start(member))),
-                _ => Arrival::AtInfinity,
+                (7, 2) | (8, 1) => PathEnd::Regular(arrived(record.start(member))),
+                _ => PathEnd::AtInfinity,
             };
-            book.note(member, arrival);
+            record.note(member, arrival);
         }
-        assert_eq!(book.compare(), 0);
-        assert_eq!(count(&book, ClassEnd::Finite), CLASSES - 1);
-        assert_eq!(book.end(9), ClassEnd::Degenerate);
+        assert_eq!(record.compare(), 0);
+        assert_eq!(count(&record, ClassEnd::Finite), CLASSES - 1);
+        assert_eq!(record.end(9), ClassEnd::Degenerate);
     }
 
     #[test]
     fn a_class_that_arrives_where_another_is_has_jumped() {
-        let mut book = full();
+        let mut record = full();
         // Class 30 at a cognate of class 12.
         let member = Member {
             class: 30,
             cognate: 0,
         };
-        let elsewhere = book.start(Member {
+        let elsewhere = record.start(Member {
             class: 12,
             cognate: 2,
         });
-        book.note(member, Arrival::Regular(arrived(elsewhere)));
-        assert_eq!(book.compare(), 1);
-        assert_eq!(book.end(30), ClassEnd::Failed);
-        assert!(book.reason(30).contains("class 12"));
-        let again: Vec<usize> = book.open().iter().map(|m| m.class).collect();
+        record.note(member, PathEnd::Regular(arrived(elsewhere)));
+        assert_eq!(record.compare(), 1);
+        assert_eq!(record.end(30), ClassEnd::Failed);
+        assert!(record.reason(30).contains("class 12"));
+        let again: Vec<usize> = record.open().iter().map(|m| m.class).collect();
         assert_eq!(again, [12, 12, 12, 30, 30, 30]);
         // Nothing else is known: it stays lost. Then it is found along another way.
-        assert_eq!(book.derive(&[], false), 0);
-        let known = arrived(book.start(Member {
+        assert_eq!(record.derive(&[], false), 0);
+        let known = arrived(record.start(Member {
             class: 5,
             cognate: 1,
         }));
-        let missing = arrived(book.start(Member {
+        let missing = arrived(record.start(Member {
             class: 30,
             cognate: 1,
         }));
-        assert_eq!(book.derive(&[known, missing], false), 1);
-        assert_eq!(count(&book, ClassEnd::Finite), CLASSES);
-        assert_eq!(book.derived(), 1);
-        assert_eq!(book.compare(), 0);
+        assert_eq!(record.derive(&[known, missing], false), 1);
+        assert_eq!(count(&record, ClassEnd::Finite), CLASSES);
+        assert_eq!(record.derived(), 1);
+        assert_eq!(record.compare(), 0);
     }
 
     #[test]
     fn several_classes_at_one_singular_linkage_are_listed_once() {
-        let mut book = full();
+        let mut record = full();
         for class in [3, 4] {
-            book.arrivals[class].clear();
+            record.arrivals[class].clear();
             let member = Member { class, cognate: 0 };
-            let point = book.start(Member {
+            let point = record.start(Member {
                 class: 3,
                 cognate: class - 3,
             });
-            book.note(member, Arrival::Singular(arrived(point)));
+            record.note(member, PathEnd::Singular(arrived(point)));
         }
-        assert_eq!(book.compare(), 0);
-        assert_eq!(count(&book, ClassEnd::Multiple), 2);
-        let found = book.found();
+        assert_eq!(record.compare(), 0);
+        assert_eq!(count(&record, ClassEnd::Multiple), 2);
+        let found = record.found();
         assert_eq!(found.len(), CLASSES - 1);
         assert_eq!((found[3].class, found[3].classes), (3, 2));
     }

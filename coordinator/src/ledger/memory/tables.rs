@@ -10,7 +10,7 @@ use cognate_continuation::work::StageId;
 use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Default)]
-pub struct Books {
+pub struct Tables {
     pub requests: BTreeMap<RequestId, JobId>,
     pub jobs: BTreeMap<JobId, Job>,
     /// Virtual time of each tenant: microseconds of CPU that were used or are in use.
@@ -120,7 +120,7 @@ impl Job {
     }
 }
 
-impl Books {
+impl Tables {
     pub fn job(&mut self, job: JobId) -> Result<&mut Job, LedgerError> {
         self.jobs.get_mut(&job).ok_or(LedgerError::UnknownJob(job))
     }

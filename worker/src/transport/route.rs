@@ -1,4 +1,4 @@
-//! Way: how one coordinator is called: by shared memory while it works, else by a connection.
+//! Route: how one coordinator is called: by shared memory while it works, else by a connection.
 //!
 //! It stands below the generated client, so that every call is written once, whatever
 //! carries it.
@@ -31,7 +31,7 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(300);
 
 /// The ways to one coordinator.
 #[derive(Clone)]
-pub struct Way {
+pub struct Route {
     channel: Channel,
     bearer: Bearer,
     shared: Arc<Shared>,
@@ -50,7 +50,7 @@ struct State {
     next: Option<Instant>,
 }
 
-impl Way {
+impl Route {
     /// Over this channel, and by shared memory where the choice allows it.
     pub fn new(
         channel: Channel,
@@ -143,7 +143,7 @@ impl Way {
     }
 }
 
-impl Service<http::Request<Body>> for Way {
+impl Service<http::Request<Body>> for Route {
     type Response = http::Response<Body>;
     type Error = BoxError;
     type Future = Pin<Box<dyn Future<Output = Result<Self::Response, BoxError>> + Send>>;

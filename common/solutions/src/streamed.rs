@@ -1,9 +1,9 @@
-//! Plain paths: ends that are understood without any other, so that a large solve need not hold them.
+//! Streamed paths: ends that are understood without any other, so that a large solve need not hold them.
 //!
-//! A path is plain when it ends clearly at infinity, or at a regular point with no other regular end near
+//! A path can be streamed when it ends clearly at infinity, or at a regular point with no other regular end near
 //! it. Of its end a key is kept, 24 bytes, or 40 of where it entered the endgame when it ends at infinity; the
 //! end itself is read again from where results are stored when it is asked for. All others are held, and treated as in a solve that holds everything. As nearly all
-//! paths of a good solve are plain, memory grows with the number of paths by their keys only.
+//! paths of a good solve are streamed, memory grows with the number of paths by their keys only.
 
 use crate::classification::{Tolerances, Verdict, classify};
 use crate::involution::Involution;
@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 
 /// Plain paths, counted. What is counted can be taken away again.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PlainCounts {
+pub struct StreamedCounts {
     /// At a finite regular point.
     pub finite: u64,
     /// At infinity.
@@ -35,7 +35,7 @@ pub struct PlainCounts {
     pub by_precision: BTreeMap<u32, u64>,
 }
 
-impl PlainCounts {
+impl StreamedCounts {
     /// All of them.
     pub fn total(&self) -> u64 {
         self.finite + self.at_infinity
@@ -49,13 +49,13 @@ enum Kind {
     Special,
     /// At infinity, and no other end matters to it.
     Away,
-    /// At a regular point: plain where no other is near.
+    /// At a regular point: streamed where no other is near.
     Regular(Verdict),
 }
 
-/// Tells plain paths from others, by the rules of `classification` and `path_crossing`.
+/// Tells streamed paths from others, by the rules of `classification` and `path_crossing`.
 #[derive(Clone, Debug)]
-pub struct Sieve {
+pub struct PathFilter {
     shape: PointShape,
     tolerances: Tolerances,
     projection: Projection,
@@ -63,7 +63,7 @@ pub struct Sieve {
     variables: Vec<String>,
 }
 
-impl Sieve {
+impl PathFilter {
     /// For ends of this system's paths, where its parameters have these values.
     pub fn new(
         system: &System,
@@ -134,8 +134,8 @@ impl Sieve {
         Some(is_real(point, radius, &self.shape, involution))
     }
 
-    /// What becomes of a plain path, and the solution that it ends at where it is finite: the same that a
-    /// `SolutionSet` would have. Meant for plain paths only.
+    /// What becomes of a streamed path, and the solution that it ends at where it is finite: the same that a
+    /// `SolutionSet` would have. Meant for streamed paths only.
     pub fn answer(&self, result: &PathResult) -> (Verdict, Option<Solution>) {
         let verdict = classify(result, &self.shape, &self.tolerances).verdict;
         if verdict != Verdict::Finite {
@@ -176,11 +176,11 @@ struct Key {
     path: u64,
 }
 
-/// All paths of a large stage: counts and keys of those that are plain, the names of the others.
+/// All paths of a large stage: counts and keys of those that are streamed, the names of the others.
 #[derive(Clone, Debug)]
-pub struct Crowd {
-    sieve: Sieve,
-    counts: PlainCounts,
+pub struct EndpointIndex {
+    filter: PathFilter,
+    counts: StreamedCounts,
     /// Sorted once all are seen.
     keys: Vec<Key>,
     widest: f64,
@@ -190,12 +190,12 @@ pub struct Crowd {
     special: Vec<u64>,
 }
 
-impl Crowd {
-    /// Nobody yet; room for the keys of so many paths.
-    pub fn new(sieve: Sieve, paths: u64) -> Self {
+impl EndpointIndex {
+    /// An empty index with capacity for the keys of `paths` paths.
+    pub fn new(filter: PathFilter, paths: u64) -> Self {
         Self {
-            sieve,
-            counts: PlainCounts::default(),
+            filter,
+            counts: StreamedCounts::default(),
             // A vector that grows by doubling would hold three times as much for a moment.
             keys: Vec::with_capacity(usize::try_from(paths).unwrap_or(0)),
             widest: 0.0,
@@ -206,27 +206,27 @@ impl Crowd {
     }
 
     /// By what paths are told apart.
-    pub fn sieve(&self) -> &Sieve {
-        &self.sieve
+    pub fn filter(&self) -> &PathFilter {
+        &self.filter
     }
 
-    /// The plain paths, counted. Those that are near each other are counted too, until they are taken back.
-    pub fn counts(&self) -> &PlainCounts {
+    /// The streamed paths, counted. Those that are near each other are counted too, until they are taken back.
+    pub fn counts(&self) -> &StreamedCounts {
         &self.counts
     }
 
     /// One more path. All of a stage come in the order of their indices, then [`Self::settle`].
     pub fn see(&mut self, result: &PathResult) {
-        if self.sieve.kind(result) == Kind::Special {
+        if self.filter.kind(result) == Kind::Special {
             self.special.push(result.origin.0);
         } else {
             self.count(result, |count| *count += 1);
         }
-        if let Some(key) = self.sieve.key(result) {
+        if let Some(key) = self.filter.key(result) {
             self.widest = self.widest.max(key.to - key.from);
             self.keys.push(key);
         }
-        if let Some(key) = self.sieve.boundary(result) {
+        if let Some(key) = self.filter.boundary(result) {
             self.boundaries.push(key);
             self.owners.push(result.origin.0);
         }
@@ -234,7 +234,7 @@ impl Crowd {
 
     fn count(&mut self, result: &PathResult, change: impl Fn(&mut u64)) {
         let counts = &mut self.counts;
-        match self.sieve.kind(result) {
+        match self.filter.kind(result) {
             Kind::Special => return,
             Kind::Away => {
                 change(&mut counts.at_infinity);
@@ -242,7 +242,7 @@ impl Crowd {
             }
             Kind::Regular(Verdict::Finite) => {
                 change(&mut counts.finite);
-                if self.sieve.is_real(result) == Some(true) {
+                if self.filter.is_real(result) == Some(true) {
                     change(&mut counts.real);
                 }
             }
@@ -302,11 +302,11 @@ impl Crowd {
         self.owners.retain(|&path| !held(path));
     }
 
-    /// The plain paths, ascending, whose ends may be at the ends of these others, or that came to the
+    /// The streamed paths, ascending, whose ends may be at the ends of these others, or that came to the
     /// endgame where these did.
     pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
         let mut found = Vec::new();
-        for key in others.iter().filter_map(|result| self.sieve.key(result)) {
+        for key in others.iter().filter_map(|result| self.filter.key(result)) {
             let first = (self.keys).partition_point(|old| old.from < key.from - self.widest);
             let reached = self.keys[first..].iter();
             let reached = reached.take_while(|old| old.from <= key.to);
@@ -314,12 +314,12 @@ impl Crowd {
         }
         let own = self.boundaries.len();
         let mut all = self.boundaries.clone();
-        all.extend(others.iter().filter_map(|r| self.sieve.boundary(r)));
+        all.extend(others.iter().filter_map(|r| self.filter.boundary(r)));
         if all.len() > own {
             let met = meetings(&all).into_iter();
             let met = met.filter(|members| members.iter().any(|&place| place >= own));
-            let plain = met.flatten().filter_map(|place| self.owners.get(place));
-            found.extend(plain);
+            let streamed = met.flatten().filter_map(|place| self.owners.get(place));
+            found.extend(streamed);
         }
         found.sort_unstable();
         found.dedup();
@@ -331,22 +331,22 @@ impl SolutionSet {
     /// The set of all paths, from the set of those that are held: the solutions of the others are
     /// counted, and not in the list.
     #[must_use]
-    pub fn with_plain(mut self, plain: &PlainCounts) -> Self {
+    pub fn with_streamed(mut self, streamed: &StreamedCounts) -> Self {
         let paths = &mut self.paths;
-        paths.total += plain.total();
-        paths.finite += plain.finite;
-        paths.at_infinity += plain.at_infinity;
-        for (&bits, &count) in &plain.by_precision {
+        paths.total += streamed.total();
+        paths.finite += streamed.finite;
+        paths.at_infinity += streamed.at_infinity;
+        for (&bits, &count) in &streamed.by_precision {
             *paths.by_precision.entry(bits).or_default() += count;
             paths.highest_precision_bits = paths.highest_precision_bits.max(bits);
         }
         assert_eq!(paths.sum(), paths.total, "every path is in one class");
         let counts = &mut self.counts;
-        counts.distinct += plain.finite;
-        counts.nonsingular += plain.finite;
-        counts.with_multiplicity += plain.finite;
-        counts.real = counts.real.map(|real| real + plain.real);
-        if plain.not_regular > 0 {
+        counts.distinct += streamed.finite;
+        counts.nonsingular += streamed.finite;
+        counts.with_multiplicity += streamed.finite;
+        counts.real = counts.real.map(|real| real + streamed.real);
+        if streamed.not_regular > 0 {
             counts.positive_dimensional = counts.positive_dimensional.filter(|&there| there);
         }
         self
@@ -422,14 +422,14 @@ mod tests {
         SolutionSet::new(&system(), &[], results, history, &Tolerances::default(), 5)
     }
 
-    fn crowd(results: &[PathResult]) -> (Crowd, Vec<PathResult>) {
-        let sieve = Sieve::new(&system(), &[], &Tolerances::default(), 5);
-        let mut crowd = Crowd::new(sieve, results.len() as u64);
-        results.iter().for_each(|result| crowd.see(result));
-        let held = crowd.settle();
+    fn index(results: &[PathResult]) -> (EndpointIndex, Vec<PathResult>) {
+        let filter = PathFilter::new(&system(), &[], &Tolerances::default(), 5);
+        let mut index = EndpointIndex::new(filter, results.len() as u64);
+        results.iter().for_each(|result| index.see(result));
+        let held = index.settle();
         let held: Vec<PathResult> = held.iter().map(|&k| results[k as usize].clone()).collect();
-        crowd.take_back(&held);
-        (crowd, held)
+        index.take_back(&held);
+        (index, held)
     }
 
     #[test]
@@ -442,16 +442,19 @@ mod tests {
                     ..History::default()
                 };
                 let expected = whole(&results, &history);
-                let (crowd, held) = crowd(&results);
-                assert_eq!(crowd.counts().total() + held.len() as u64, count);
-                assert!(count < 700 || crowd.counts().finite > 300, "most are plain");
-                let mut found = whole(&held, &history).with_plain(crowd.counts());
+                let (index, held) = index(&results);
+                assert_eq!(index.counts().total() + held.len() as u64, count);
+                assert!(
+                    count < 700 || index.counts().finite > 300,
+                    "most are streamed"
+                );
+                let mut found = whole(&held, &history).with_streamed(index.counts());
                 // The solutions of the others are made of their results.
                 let is_held = |r: &&PathResult| held.iter().any(|h| h.origin == r.origin);
                 let others = results.iter().filter(|r| !is_held(r));
                 found
                     .solutions
-                    .extend(others.filter_map(|r| crowd.sieve().answer(r).1));
+                    .extend(others.filter_map(|r| index.filter().answer(r).1));
                 found.solutions.sort_by_key(|solution| solution.paths[0]);
                 assert_eq!(found, expected);
             }
@@ -461,33 +464,33 @@ mod tests {
     #[test]
     fn who_came_to_the_endgame_with_another_is_held_whenever_that_shows() {
         let results: Vec<PathResult> = (0..300).map(away).collect();
-        let (mut crowd, held) = crowd(&results);
+        let (mut index, held) = index(&results);
         let held: Vec<u64> = held.iter().map(|result| result.origin.0).collect();
         assert!(held.iter().copied().eq((0..300).step_by(5)));
         let late = PathResult {
             origin: PathIndex(70),
             ..away(17)
         };
-        assert_eq!(crowd.near(std::slice::from_ref(&late)), [17]);
-        crowd.take_back(&[away(17)]);
-        assert_eq!(crowd.near(&[late]), [] as [u64; 0]);
+        assert_eq!(index.near(std::slice::from_ref(&late)), [17]);
+        index.take_back(&[away(17)]);
+        assert_eq!(index.near(&[late]), [] as [u64; 0]);
     }
 
     #[test]
-    fn a_plain_end_is_found_when_another_comes_there_later() {
+    fn a_streamed_end_is_found_when_another_comes_there_later() {
         let results = ends(700);
-        let (mut crowd, held) = crowd(&results);
-        let plain = results
+        let (mut index, held) = index(&results);
+        let streamed = results
             .iter()
             .find(|r| !held.iter().any(|h| h.origin == r.origin));
-        let plain = plain.expect("most are plain");
-        let mut late = plain.clone();
+        let streamed = streamed.expect("most are streamed");
+        let mut late = streamed.clone();
         late.origin = held[0].origin;
-        assert_eq!(crowd.near(&[late.clone()]), [plain.origin.0]);
-        assert_eq!(crowd.near(&[held[0].clone()]), [] as [u64; 0]);
-        let before = crowd.counts().total();
-        crowd.take_back(std::slice::from_ref(plain));
-        assert_eq!(crowd.counts().total(), before - 1);
-        assert_eq!(crowd.near(&[late]), [] as [u64; 0]);
+        assert_eq!(index.near(&[late.clone()]), [streamed.origin.0]);
+        assert_eq!(index.near(&[held[0].clone()]), [] as [u64; 0]);
+        let before = index.counts().total();
+        index.take_back(std::slice::from_ref(streamed));
+        assert_eq!(index.counts().total(), before - 1);
+        assert_eq!(index.near(&[late]), [] as [u64; 0]);
     }
 }

@@ -1,0 +1,20 @@
+//! Phase: where a stage and its repetitions stand.
+
+use cognate_continuation::start_points::StoredPoints;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What comes next.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Phase {
+    /// The first stage is to be opened, with the points that it brings.
+    Begins(Vec<Arc<StoredPoints>>),
+    /// The results of an open stage are awaited.
+    Waits,
+    /// These paths are to be tracked again, ascending.
+    Repeats(Vec<u64>),
+    /// Singular points are to be asked whether they are isolated.
+    Asks,
+    /// Nothing.
+    Done,
+}
