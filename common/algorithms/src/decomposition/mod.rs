@@ -12,6 +12,7 @@
 mod cascade;
 mod costs;
 pub(crate) mod deflated;
+mod dimension_start;
 mod equations;
 pub(crate) mod job;
 mod junk;
@@ -138,7 +139,8 @@ impl DecompositionSolve {
     /// The decomposition of a system that has been checked.
     pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
         let problem = Problem::of_options(system, options)?;
-        let method = options.method.unwrap_or(Method::Equations);
+        let method = options.method;
+        let method = method.unwrap_or_else(|| costs::choose(&problem).0);
         Ok(Self {
             state: State {
                 system: Arc::new(system.clone()),
@@ -249,7 +251,7 @@ impl DecompositionSolve {
         let second = self.problem.second(self.state.method);
         let verify = self.state.options.verify;
         let (purpose, method) = match (self.state.purpose, self.state.first.take()) {
-            (Purpose::First, _) if self.state.options.method.is_none() && !found.settled() => {
+            (Purpose::First, _) if self.may_go_again() && !found.settled() => {
                 (Purpose::Again, Method::Cascade)
             }
             (Purpose::First, _) if verify => (Purpose::Verify, second),
@@ -273,6 +275,12 @@ impl DecompositionSolve {
         self.state.purpose = purpose;
         self.state.method = method;
         first_step(method, &self.problem)
+    }
+
+    /// Whether the cascade follows where the first way leaves something in doubt: where a way was not asked for, and
+    /// the first was not chosen because the others have far more paths.
+    fn may_go_again(&self) -> bool {
+        self.state.options.method.is_none() && self.state.method != Method::Slices
     }
 
     fn summary(&mut self) -> Decomposition {

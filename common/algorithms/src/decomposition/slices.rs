@@ -1,10 +1,12 @@
-//! Slices: each dimension by itself, from a start system of the degrees of its equations.
+//! Slices: each dimension by itself, from the start system that has the fewest paths.
 //!
 //! The solutions of as many combinations of the equations as cut out a set of that dimension, on its slices, hold
 //! a witness superset of it; nothing of one dimension rests on what was found in another. (Sommese, Wampler: The
-//! Numerical Solution of Systems of Polynomials, 2005, section 13.2.)
+//! Numerical Solution of Systems of Polynomials, 2005, section 13.2.) Combinations of few terms keep sparse systems
+//! sparse, so that their mixed volumes can be far below the products of degrees.
 
 use super::deflated::Deflations;
+use super::dimension_start::DimensionStart;
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use super::superset::Superset;
@@ -45,10 +47,14 @@ impl Slices {
         (problem, deflations): (&Problem, &mut Deflations),
         done: Option<&Job>,
     ) -> Option<Job> {
-        let n = problem.variables();
         if let Some(job) = done {
-            let mut superset = Superset::empty(n - self.rows);
-            let others = superset.sort(problem, job);
+            if job.is_uncounted() {
+                let start = DimensionStart::of_degrees(problem, self.rows);
+                return Some(self.job(problem, deflations, Some(start)));
+            }
+            let dimension = problem.variables() - self.rows;
+            let mut superset = Superset::empty(dimension);
+            let others = superset.sort(problem, &problem.tracked_equations(dimension), job);
             if self.rows == problem.levels {
                 superset.excess = others.len() as u64;
             }
@@ -58,16 +64,32 @@ impl Slices {
             return None;
         }
         self.rows += 1;
-        let dimension = n - self.rows;
-        let mut degrees = problem.row_degrees[..self.rows].to_vec();
-        degrees.resize(n, 1);
-        let system = StageSystem::Tracked {
+        Some(self.job(problem, deflations, None))
+    }
+
+    /// The paths to the dimension that is next, from this start or from the one with the fewest paths.
+    fn job(
+        &self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        start: Option<DimensionStart>,
+    ) -> Job {
+        let dimension = problem.variables() - self.rows;
+        let wanted = StageSystem::Tracked {
             ranks: Vec::new(),
             dimension,
         };
-        let made = deflations.of_stage(problem, &system);
+        let made = deflations.of_stage(problem, &wanted);
         let parameters = problem.slices(dimension).concat();
-        let job = Job::straight((system, &*made), parameters, degrees, &problem.tracking);
-        Some(job.ends_only())
+        let start = start.unwrap_or_else(|| DimensionStart::of(problem, self.rows, &made));
+        let (system, with) = ((wanted, &*made), &problem.tracking);
+        match start {
+            DimensionStart::TotalDegree { degrees } => {
+                Job::straight(system, parameters, degrees, with).ends_only()
+            }
+            DimensionStart::MixedCells { count } => {
+                Job::polyhedral(system, parameters, count, with)
+            }
+        }
     }
 }
