@@ -107,7 +107,7 @@ fn bound_of_slices(problem: &Problem, most: Option<u64>) -> Option<u64> {
     for rows in 1..=problem.asked_levels {
         let dimension = problem.variables() - rows;
         let sliced = problem.tracked(&problem.given, dimension).ok()?;
-        let start = DimensionStart::of(problem, rows, &sliced);
+        let start = DimensionStart::of(problem, rows, &sliced, problem.seed());
         paths = paths.checked_add(start.paths()?)?;
         if most.is_some_and(|most| paths > most) {
             return None;

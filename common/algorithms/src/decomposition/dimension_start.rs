@@ -33,8 +33,8 @@ impl DimensionStart {
         Self::TotalDegree { degrees }
     }
 
-    /// The start with fewer paths of the system that is tracked in a dimension.
-    pub fn of(problem: &Problem, rows: usize, sliced: &System) -> Self {
+    /// The start with fewer paths of the system that is tracked in a dimension, with liftings of this seed.
+    pub fn of(problem: &Problem, rows: usize, sliced: &System, seed: u64) -> Self {
         let by_degrees = Self::of_degrees(problem, rows);
         let product = by_degrees.paths();
         let fewer = |volume: u64| product.is_none_or(|count| polyhedral_is_cheaper(volume, count));
@@ -45,7 +45,7 @@ impl DimensionStart {
         let Ok(supports) = cell_supports(sliced) else {
             return by_degrees;
         };
-        match mixed_cells(&supports, problem.seed(), CHOOSING_OPERATIONS) {
+        match mixed_cells(&supports, seed, CHOOSING_OPERATIONS) {
             Ok(found) if found.mixed_volume > 0 && fewer(found.mixed_volume) => Self::MixedCells {
                 count: Some(found.mixed_volume),
             },

@@ -291,6 +291,11 @@ impl Job {
         first.into_iter().chain(self.ending())
     }
 
+    /// Whether its paths begin in mixed cells.
+    pub fn is_polyhedral(&self) -> bool {
+        matches!(self.work, Doing::Polyhedral(_))
+    }
+
     /// Whether its paths could not be counted, so that none was tracked.
     pub fn is_uncounted(&self) -> bool {
         matches!(&self.work, Doing::Polyhedral(solve) if solve.failure().is_some())

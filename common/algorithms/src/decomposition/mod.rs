@@ -612,16 +612,14 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
-        let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; \
-                    f = (x - y)^2*(y - x^2 + 2);\nEND;\n";
-        let system = formats::read("test", text.as_bytes()).unwrap().system;
-        let solve = || DecompositionSolve::new(&system, &DecompositionOptions::default()).unwrap();
-        let lived = run_locally(solve(), 8).unwrap();
-        let mut solve = AnyAlgorithm::from(AnySolve::Decomposition(Box::new(solve())));
+    /// Decomposes with a state that is written down and read back after each stage is open; which kinds of work were
+    /// done is given back, too.
+    fn with_restarts(system: &System, options: &DecompositionOptions) -> (Decomposition, String) {
+        let solve = DecompositionSolve::new(system, options).unwrap();
+        let mut solve = AnyAlgorithm::from(AnySolve::Decomposition(Box::new(solve)));
         let mut open: Option<Box<crate::Opening>> = None;
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+        let mut kinds = String::new();
         loop {
             match solve.next() {
                 Next::Open(opening) => open = Some(opening),
@@ -634,15 +632,57 @@ mod tests {
                     let made = opening.objects.iter();
                     objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
                     let find = |digest: Digest| objects.get(&digest).cloned();
+                    let stage = &opening.stage;
+                    kinds.push_str(&format!("{:?} {:?}; ", stage.work, stage.homotopy));
                     let system = opening.system.as_deref().unwrap();
-                    let prepared = PreparedWork::new(system, &opening.stage, &find).unwrap();
+                    let prepared = PreparedWork::new(system, stage, &find).unwrap();
                     let results = prepared.run(0..prepared.items(), 8);
                     solve.absorb(opening.stage.id, &mut results.into_iter());
                 }
                 Next::Done => break,
             }
         }
-        assert_eq!(solve.decomposition(), Some(&lived));
         assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
+        (solve.decomposition().unwrap().clone(), kinds)
+    }
+
+    #[test]
+    fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
+        let curves = "variable_group x, y, z; function f, g; \
+                      f = (x - y)^2*(y - x^2 + 2); g = (z - x*y)*(x + y + z - 5);";
+        let text = format!("CONFIG\nEND;\nINPUT\n{curves}\nEND;\n");
+        let curves = formats::read("test", text.as_bytes()).unwrap().system;
+        let points = cognate_systems::named::cyclic(5).system;
+        let mut done = String::new();
+        for (system, methods) in [
+            (&curves, Method::ALL.as_slice()),
+            (&points, &[Method::Slices]),
+        ] {
+            for &method in methods {
+                let options = DecompositionOptions {
+                    method: Some(method),
+                    ..DecompositionOptions::default()
+                };
+                let solve = DecompositionSolve::new(system, &options).unwrap();
+                let lived = run_locally(solve, 8).unwrap();
+                let (restarted, kinds) = with_restarts(system, &options);
+                assert_eq!(restarted, lived, "{method:?}");
+                done.push_str(&kinds);
+            }
+        }
+        // Every kind of stage was among them.
+        let kinds = [
+            "Track StraightLine",
+            "Track Toric",
+            "Track Generic",
+            "Track Slide",
+            "Track Intersect",
+            "Track Parameter",
+            "LocalDimension",
+            "Bend",
+        ];
+        for kind in kinds {
+            assert!(done.contains(kind), "{kind}");
+        }
     }
 }

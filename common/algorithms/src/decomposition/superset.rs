@@ -54,6 +54,11 @@ impl Superset {
         }
     }
 
+    /// Paths of which it is not known where they ended, or whether that is a point of the set.
+    pub fn lost(&self) -> u64 {
+        self.failed + self.unclear
+    }
+
     /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations; gives
     /// back regular ones that solve the combinations only.
     pub fn sort(
