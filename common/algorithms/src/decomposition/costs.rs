@@ -5,6 +5,7 @@ use super::options::DecompositionOptions;
 use super::problem::{Problem, ProblemError};
 use cognate_solutions::witness::Method;
 use cognate_systems::system::System;
+use cognate_systems::transform::slice;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -106,8 +107,9 @@ fn bound_of_slices(problem: &Problem, most: Option<u64>) -> Option<u64> {
     let mut paths = 0u64;
     for rows in 1..=problem.asked_levels {
         let dimension = problem.variables() - rows;
-        let sliced = problem.tracked(&problem.given, dimension).ok()?;
-        let start = DimensionStart::of(problem, rows, &sliced, problem.seed());
+        let rows = problem.combined(dimension, problem.seed());
+        let sliced = slice(&rows, dimension, problem.variables());
+        let start = DimensionStart::of(&sliced, problem.seed());
         paths = paths.checked_add(start.paths()?)?;
         if most.is_some_and(|most| paths > most) {
             return None;

@@ -258,6 +258,10 @@ impl Deflations {
                 let system = self.system(problem, ranks);
                 Arc::new(slice(&system, *dimension, problem.variables()))
             }
+            StageSystem::Combined { dimension, seed } => {
+                let rows = problem.combined(*dimension, *seed);
+                Arc::new(slice(&rows, *dimension, problem.variables()))
+            }
             StageSystem::Tracked { ranks, dimension } => {
                 let tracked = problem.tracked(&self.system(problem, ranks), *dimension);
                 Arc::new(tracked.expect("derivatives of polynomials have degrees"))

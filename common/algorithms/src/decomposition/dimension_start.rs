@@ -1,9 +1,9 @@
 //! DimensionStart: where the paths to one dimension by itself begin.
 
-use super::problem::Problem;
 use crate::plan::CHOOSING_OPERATIONS;
 use crate::start_costs::{cell_supports, polyhedral_is_cheaper};
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
+use cognate_systems::polynomial::degrees;
 use cognate_systems::system::System;
 
 /// Most paths of total degree that are followed where mixed cells cannot be counted at once.
@@ -26,16 +26,17 @@ pub(super) enum DimensionStart {
 }
 
 impl DimensionStart {
-    /// By the degrees of the first `rows` combinations.
-    pub fn of_degrees(problem: &Problem, rows: usize) -> Self {
-        let mut degrees = problem.row_degrees[..rows].to_vec();
-        degrees.resize(problem.variables(), 1);
-        Self::TotalDegree { degrees }
+    /// By the degrees of the combinations and slices.
+    pub fn of_degrees(sliced: &System) -> Self {
+        let degrees = degrees(sliced).expect("combinations of equations with degrees have degrees");
+        Self::TotalDegree {
+            degrees: degrees.total,
+        }
     }
 
     /// The start with fewer paths of the system that is tracked in a dimension, with liftings of this seed.
-    pub fn of(problem: &Problem, rows: usize, sliced: &System, seed: u64) -> Self {
-        let by_degrees = Self::of_degrees(problem, rows);
+    pub fn of(sliced: &System, seed: u64) -> Self {
+        let by_degrees = Self::of_degrees(sliced);
         let product = by_degrees.paths();
         let fewer = |volume: u64| product.is_none_or(|count| polyhedral_is_cheaper(volume, count));
         // Where even one path would not be fewer, nothing is counted.

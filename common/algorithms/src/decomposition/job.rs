@@ -28,6 +28,26 @@ pub(crate) struct Tracking {
     pub seed: u64,
 }
 
+/// A path that may fail, since others can be tracked in its place, is given up after so many steps,
+const FEW_STEPS: u32 = 5000;
+/// ... where it needs more bits,
+const FEW_BITS: u32 = 212;
+/// ... or where it fails more often.
+const FEW_RETRIES: u16 = 1;
+
+impl Tracking {
+    /// The same where paths may fail.
+    pub fn soon_given_up(&self) -> Self {
+        let mut with = self.clone();
+        let settings = &mut with.settings;
+        settings.max_steps = settings.max_steps.min(FEW_STEPS);
+        let most = FEW_BITS.max(settings.precision_bits);
+        settings.max_precision_bits = settings.max_precision_bits.min(most);
+        with.max_retries = with.max_retries.min(FEW_RETRIES);
+        with
+    }
+}
+
 /// The system that a stage is of: what is written down of it, so that it can be made again.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum StageSystem {
@@ -52,6 +72,13 @@ pub(crate) enum StageSystem {
         dimension: usize,
         /// Which factor.
         factor: u32,
+    },
+    /// As many combinations of the equations as cut out this dimension, with its slices.
+    Combined {
+        /// The dimension.
+        dimension: usize,
+        /// Seed of the combinations.
+        seed: u64,
     },
     /// Combinations of the equations that cut out curves, with the equation of the points that are critical for a real
     /// linear form.

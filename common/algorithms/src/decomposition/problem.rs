@@ -308,15 +308,14 @@ impl Problem {
     pub fn tracked(&self, equations: &System, dimension: usize) -> Result<System, ProblemError> {
         let of = degrees(equations)?;
         let rows = equations.variable_count() - dimension;
-        let rows = combine_few(equations, &of, rows, self.seed());
+        let rows = combine_few(equations, &of, rows, self.seed(), true);
         Ok(slice(&rows, dimension, self.variables()))
     }
 
-    /// The combinations of the given equations that are tracked in a dimension, with its slices.
-    pub fn tracked_equations(&self, dimension: usize) -> SlicedEquations {
+    /// As many combinations of the given equations, where the ends of paths from mixed cells are seldom near infinity.
+    pub fn combined(&self, dimension: usize, seed: u64) -> System {
         let rows = self.variables() - dimension;
-        let rows = combine_few(&self.given, &self.degrees, rows, self.seed());
-        SlicedEquations::new(&rows, self.slices(dimension))
+        combine_few(&self.given, &self.degrees, rows, seed, false)
     }
 
     /// As many combinations of the equations as cut out curves.

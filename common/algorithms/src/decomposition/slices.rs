@@ -10,11 +10,13 @@ use super::dimension_start::DimensionStart;
 use super::job::{Job, StageSystem, Tracking};
 use super::problem::Problem;
 use super::superset::Superset;
+use cognate_continuation::bend::SlicedEquations;
 use cognate_numeric::random::{Purpose, RandomStream};
 use serde::{Deserialize, Serialize};
 
-/// How often a dimension is begun at another generic system, where paths from mixed cells were lost.
-const MOST_BEGINNINGS: u32 = 4;
+/// How often a dimension is begun with other combinations and at another generic system, where paths from mixed cells
+/// were lost.
+const MOST_BEGINNINGS: u32 = 6;
 
 /// Dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,13 +60,12 @@ impl Slices {
     ) -> Option<Job> {
         if let Some(job) = done {
             if job.is_uncounted() {
-                let start = DimensionStart::of_degrees(problem, self.rows);
-                return Some(self.job(problem, deflations, Some(start)));
+                return Some(self.job(problem, deflations, true));
             }
             let superset = self.learn(problem, job);
             if superset.lost() > 0 && job.is_polyhedral() && self.beginnings < MOST_BEGINNINGS {
                 self.best = Some(superset);
-                return Some(self.job(problem, deflations, None));
+                return Some(self.job(problem, deflations, false));
             }
             self.supersets.push(superset);
             self.beginnings = 0;
@@ -73,14 +74,16 @@ impl Slices {
             return None;
         }
         self.rows += 1;
-        Some(self.job(problem, deflations, None))
+        Some(self.job(problem, deflations, false))
     }
 
     /// What the paths of the dimension found; where those of an earlier beginning lost less, what they found.
     fn learn(&mut self, problem: &Problem, job: &Job) -> Superset {
         let dimension = problem.variables() - self.rows;
         let mut superset = Superset::empty(dimension);
-        let others = superset.sort(problem, &problem.tracked_equations(dimension), job);
+        let rows = problem.combined(dimension, self.seed(problem));
+        let combinations = SlicedEquations::new(&rows, problem.slices(dimension));
+        let others = superset.sort(problem, &combinations, job);
         if self.rows == problem.levels {
             superset.excess = others.len() as u64;
         }
@@ -92,46 +95,44 @@ impl Slices {
         }
     }
 
-    /// The paths to the dimension that is next, from this start or from the one with the fewest paths.
-    fn job(
-        &self,
-        problem: &Problem,
-        deflations: &mut Deflations,
-        start: Option<DimensionStart>,
-    ) -> Job {
+    /// The paths to the dimension that is next: as many as the degrees say, or from the start with the fewest.
+    fn job(&self, problem: &Problem, deflations: &mut Deflations, by_degrees: bool) -> Job {
         let dimension = problem.variables() - self.rows;
-        let wanted = StageSystem::Tracked {
-            ranks: Vec::new(),
-            dimension,
-        };
+        let seed = self.seed(problem);
+        let wanted = StageSystem::Combined { dimension, seed };
         let made = deflations.of_stage(problem, &wanted);
         let parameters = problem.slices(dimension).concat();
-        let with = self.beginning(&problem.tracking);
-        let seed = with.seed;
-        let start = start.unwrap_or_else(|| DimensionStart::of(problem, self.rows, &made, seed));
+        let start = match by_degrees {
+            true => DimensionStart::of_degrees(&made),
+            false => DimensionStart::of(&made, seed),
+        };
         let system = (wanted, &*made);
+        let with = &problem.tracking;
         match start {
             DimensionStart::TotalDegree { degrees } => {
-                Job::straight(system, parameters, degrees, &problem.tracking).ends_only()
+                Job::straight(system, parameters, degrees, with).ends_only()
             }
             DimensionStart::MixedCells { count } => {
-                Job::polyhedral(system, parameters, count, &with)
+                Job::polyhedral(system, parameters, count, &self.beginning(with, seed))
             }
         }
     }
 
-    /// The tracking of one beginning: a path that is lost twice is not tracked a third time, since another
-    /// beginning has other paths.
-    fn beginning(&self, with: &Tracking) -> Tracking {
+    /// Seed of the combinations and of the generic system of a beginning.
+    fn seed(&self, problem: &Problem) -> u64 {
         let number = u64::MAX - u64::from(self.beginnings);
-        let mut random = RandomStream::new(with.seed, Purpose::StartSystem, number);
-        Tracking {
-            seed: match self.beginnings {
-                0 => with.seed,
-                _ => random.bits(),
-            },
-            max_retries: with.max_retries.min(1),
-            ..with.clone()
+        match self.beginnings {
+            0 => problem.seed(),
+            _ => RandomStream::new(problem.seed(), Purpose::StartSystem, number).bits(),
         }
+    }
+
+    /// The tracking of a beginning: every other one gives paths up soon, since in another beginning they are others.
+    fn beginning(&self, with: &Tracking, seed: u64) -> Tracking {
+        let with = match self.beginnings % 2 {
+            0 => with.soon_given_up(),
+            _ => with.clone(),
+        };
+        Tracking { seed, ..with }
     }
 }

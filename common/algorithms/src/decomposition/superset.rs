@@ -71,6 +71,10 @@ impl Superset {
         for (place, (_, decision, values)) in job.ends().into_iter().enumerate() {
             let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
             match decision.verdict {
+                // Another beginning may tell.
+                Verdict::AtInfinity if decision.by_precision_limit && job.is_polyhedral() => {
+                    self.unclear += 1;
+                }
                 Verdict::AtInfinity => {}
                 Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => self.failed += 1,
                 Verdict::Finite => {

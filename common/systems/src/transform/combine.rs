@@ -22,11 +22,13 @@ use std::cmp::Reverse;
 /// # Panics
 /// When `degrees` has another length, or a group is homogeneous.
 pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> System {
-    rows(system, degrees, count, seed, |row, _| row + 1)
+    let whole = independent(system, degrees);
+    rows(system, degrees, (count, seed), whole, |row, _| row + 1)
 }
 
-/// As many rows as cut out sets of one codimension, of few terms: of the equations that do not stay as they are each
-/// row has one, and random multiples of those only that no row begins with.
+/// As many rows as cut out sets of one codimension, of few terms: each has one equation of those that are combined, and
+/// random multiples of those only that no row begins with. With `keep` equations that `independent` finds stay as
+/// they are; else those are combined, too, where that leaves over no others.
 ///
 /// In row echelon form all general combinations of the equations look like this, so the rows cut out the same kind of
 /// set as those of [`combine`], with fewer monomials. The rows of one `count` are not among those of another. A pure
@@ -34,23 +36,35 @@ pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> S
 ///
 /// # Panics
 /// When `degrees` has another length, or a group is homogeneous.
-pub fn combine_few(system: &System, degrees: &Degrees, count: usize, seed: u64) -> System {
-    rows(system, degrees, count, seed, |_, mixed| mixed)
-}
-
-/// The rows; `begin`: from which equation on others are added to one, by its row and by the number of such rows.
-fn rows(
+pub fn combine_few(
     system: &System,
     degrees: &Degrees,
     count: usize,
     seed: u64,
+    keep: bool,
+) -> System {
+    let mut whole = independent(system, degrees);
+    // As many as would be left over may be combined with all others.
+    let left_over = system.equation_count().saturating_sub(count);
+    if !keep && (1..=whole.len()).contains(&left_over) {
+        whole.clear();
+    }
+    rows(system, degrees, (count, seed), whole, |_, mixed| mixed)
+}
+
+/// The rows, `whole` ones first; `begin`: from which equation on others are added to one, by its row and by the number
+/// of such rows.
+fn rows(
+    system: &System,
+    degrees: &Degrees,
+    (count, seed): (usize, u64),
+    mut whole: Vec<usize>,
     begin: impl Fn(usize, usize) -> usize,
 ) -> System {
     let equations = system.equation_count();
     assert_eq!(degrees.total.len(), equations, "a degree for each equation");
     let affine = system.groups.iter().all(|group| !group.homogeneous);
     assert!(affine, "rows of several degrees are added as they are");
-    let mut whole = independent(system, degrees);
     whole.truncate(count);
     let mut order: Vec<usize> = (0..equations).filter(|i| !whole.contains(i)).collect();
     order.sort_by_key(|&i| (Reverse(degrees.total[i]), i));
@@ -113,14 +127,17 @@ mod tests {
         let problem = crate::formats::read("test", text);
         let system = problem.expect("a problem of this test").system;
         let of = degrees(&system).unwrap();
-        let terms = |count: usize| -> Vec<usize> {
-            let rows = combine_few(&system, &of, count, 1);
+        let terms = |count: usize, keep: bool| -> Vec<usize> {
+            let rows = combine_few(&system, &of, count, 1, keep);
             let supports = crate::polynomial::supports(&rows).expect("few terms");
             supports.iter().map(Vec::len).collect()
         };
         // z - 2 alone, the cubics with the conic, and the conic alone where none is left over.
-        assert_eq!(terms(3), [2, 4, 3]);
-        assert_eq!(terms(4), [2, 2, 2, 2]);
-        assert_eq!(terms(2), [2, 5]);
+        assert_eq!(terms(3, true), [2, 4, 3]);
+        assert_eq!(terms(4, true), [2, 2, 2, 2]);
+        assert_eq!(terms(2, true), [2, 5]);
+        // The linear one is the one left over.
+        assert_eq!(terms(3, false), [4, 3, 3]);
+        assert_eq!(terms(2, false), [2, 5]);
     }
 }
