@@ -107,7 +107,7 @@ fn bound_of_slices(problem: &Problem, most: Option<u64>) -> Option<u64> {
     let mut paths = 0u64;
     for rows in 1..=problem.asked_levels {
         let dimension = problem.variables() - rows;
-        let rows = problem.combined(dimension, problem.seed());
+        let rows = problem.combined(dimension, problem.seed(), false);
         let sliced = slice(&rows, dimension, problem.variables());
         let start = DimensionStart::of(&sliced, problem.seed());
         paths = paths.checked_add(start.paths()?)?;

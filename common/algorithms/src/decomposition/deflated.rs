@@ -258,8 +258,12 @@ impl Deflations {
                 let system = self.system(problem, ranks);
                 Arc::new(slice(&system, *dimension, problem.variables()))
             }
-            StageSystem::Combined { dimension, seed } => {
-                let rows = problem.combined(*dimension, *seed);
+            StageSystem::Combined {
+                dimension,
+                seed,
+                keep,
+            } => {
+                let rows = problem.combined(*dimension, *seed, *keep);
                 Arc::new(slice(&rows, *dimension, problem.variables()))
             }
             StageSystem::Tracked { ranks, dimension } => {

@@ -79,6 +79,8 @@ pub(crate) enum StageSystem {
         dimension: usize,
         /// Seed of the combinations.
         seed: u64,
+        /// Whether linear equations stay as they are.
+        keep: bool,
     },
     /// Combinations of the equations that cut out curves, with the equation of the points that are critical for a real
     /// linear form.

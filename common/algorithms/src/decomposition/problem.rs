@@ -312,10 +312,10 @@ impl Problem {
         Ok(slice(&rows, dimension, self.variables()))
     }
 
-    /// As many combinations of the given equations, where the ends of paths from mixed cells are seldom near infinity.
-    pub fn combined(&self, dimension: usize, seed: u64) -> System {
+    /// As many combinations of the given equations; `keep`: whether linear ones stay as they are.
+    pub fn combined(&self, dimension: usize, seed: u64, keep: bool) -> System {
         let rows = self.variables() - dimension;
-        combine_few(&self.given, &self.degrees, rows, seed, false)
+        combine_few(&self.given, &self.degrees, rows, seed, keep)
     }
 
     /// As many combinations of the equations as cut out curves.

@@ -81,7 +81,7 @@ impl Slices {
     fn learn(&mut self, problem: &Problem, job: &Job) -> Superset {
         let dimension = problem.variables() - self.rows;
         let mut superset = Superset::empty(dimension);
-        let rows = problem.combined(dimension, self.seed(problem));
+        let rows = problem.combined(dimension, self.seed(problem), self.keeps());
         let combinations = SlicedEquations::new(&rows, problem.slices(dimension));
         let others = superset.sort(problem, &combinations, job);
         if self.rows == problem.levels {
@@ -99,7 +99,11 @@ impl Slices {
     fn job(&self, problem: &Problem, deflations: &mut Deflations, by_degrees: bool) -> Job {
         let dimension = problem.variables() - self.rows;
         let seed = self.seed(problem);
-        let wanted = StageSystem::Combined { dimension, seed };
+        let wanted = StageSystem::Combined {
+            dimension,
+            seed,
+            keep: self.keeps(),
+        };
         let made = deflations.of_stage(problem, &wanted);
         let parameters = problem.slices(dimension).concat();
         let start = match by_degrees {
@@ -125,6 +129,12 @@ impl Slices {
             0 => problem.seed(),
             _ => RandomStream::new(problem.seed(), Purpose::StartSystem, number).bits(),
         }
+    }
+
+    /// Whether linear equations stay as they are in a beginning: in two of four. Their combinations have other ends near
+    /// infinity than those without.
+    fn keeps(&self) -> bool {
+        self.beginnings / 2 % 2 == 1
     }
 
     /// The tracking of a beginning: every other one gives paths up soon, since in another beginning they are others.
