@@ -107,9 +107,15 @@ fn bound_of_slices(problem: &Problem, most: Option<u64>) -> Option<u64> {
     let mut paths = 0u64;
     for rows in 1..=problem.asked_levels {
         let dimension = problem.variables() - rows;
-        let rows = problem.combined(dimension, problem.seed(), false);
-        let sliced = slice(&rows, dimension, problem.variables());
-        let start = DimensionStart::of(&sliced, problem.seed());
+        let start = |keep: bool| {
+            let rows = problem.combined(dimension, problem.seed(), keep);
+            let sliced = slice(&rows, dimension, problem.variables());
+            DimensionStart::of(&sliced, problem.seed())
+        };
+        let start = match start(false) {
+            DimensionStart::TotalDegree { .. } => start(true),
+            cells => cells,
+        };
         paths = paths.checked_add(start.paths()?)?;
         if most.is_some_and(|most| paths > most) {
             return None;

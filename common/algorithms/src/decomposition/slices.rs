@@ -81,7 +81,13 @@ impl Slices {
     fn learn(&mut self, problem: &Problem, job: &Job) -> Superset {
         let dimension = problem.variables() - self.rows;
         let mut superset = Superset::empty(dimension);
-        let rows = problem.combined(dimension, self.seed(problem), self.keeps());
+        let StageSystem::Combined { seed, keep, .. } = job.system else {
+            unreachable!(
+                "a dimension by itself is tracked by combinations, not {:?}",
+                job.system
+            )
+        };
+        let rows = problem.combined(dimension, seed, keep);
         let combinations = SlicedEquations::new(&rows, problem.slices(dimension));
         let others = superset.sort(problem, &combinations, job);
         if self.rows == problem.levels {
@@ -99,16 +105,24 @@ impl Slices {
     fn job(&self, problem: &Problem, deflations: &mut Deflations, by_degrees: bool) -> Job {
         let dimension = problem.variables() - self.rows;
         let seed = self.seed(problem);
-        let wanted = StageSystem::Combined {
-            dimension,
-            seed,
-            keep: self.keeps(),
+        let mut made = |keep: bool| {
+            let wanted = StageSystem::Combined {
+                dimension,
+                seed,
+                keep,
+            };
+            let made = deflations.of_stage(problem, &wanted);
+            let start = match by_degrees {
+                true => DimensionStart::of_degrees(&made),
+                false => DimensionStart::of(&made, seed),
+            };
+            (wanted, made, start)
         };
-        let made = deflations.of_stage(problem, &wanted);
         let parameters = problem.slices(dimension).concat();
-        let start = match by_degrees {
-            true => DimensionStart::of_degrees(&made),
-            false => DimensionStart::of(&made, seed),
+        let (wanted, made, start) = match made(self.keeps()) {
+            // By degrees there are fewer paths where linear equations stay as they are.
+            (_, _, DimensionStart::TotalDegree { .. }) => made(true),
+            cells => cells,
         };
         let system = (wanted, &*made);
         let with = &problem.tracking;
