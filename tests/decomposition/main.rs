@@ -397,6 +397,93 @@ fn three_ways_find_the_same() {
     }
 }
 
+/// Dimensions by themselves begin in mixed cells where these have fewer paths: in dimension 0 alone 156 instead of 720.
+#[test]
+fn sparse_systems_have_few_paths_on_slices() {
+    let system = cognate_systems::named::cyclic(6).system;
+    for seed in 1..=3 {
+        let found = decompose_by(&system, seed, Some(Method::Slices));
+        assert!(found.settled(), "seed {seed}:{}", doubts(&found));
+        assert_eq!(counted(&found), [(0, 1, 1, 156)]);
+        assert!(found.paths.total < 720, "{:?}", found.paths);
+    }
+}
+
+/// Systems whose components are known by construction, for whichever a way would not be taken by itself: no way may find
+/// anything else.
+#[test]
+fn sets_that_are_made_to_be_hard() {
+    let minors =
+        "x0*x2 - x1^2, x0*x3 - x1*x2, x0*x4 - x1*x3, x1*x3 - x2^2, x1*x4 - x2*x3, x2*x4 - x3^2";
+    let cases: [(&str, &str, &[Expected]); 9] = [
+        // Vertex covers of a circle of five: coordinate spaces of one dimension.
+        (
+            "variable_group x0, x1, x2, x3, x4",
+            "x0*x1, x1*x2, x2*x3, x3*x4, x4*x0",
+            &[(2, 1, 1, 5)],
+        ),
+        // ... and of a star: a hyperplane, and the axis of its centre.
+        (
+            "variable_group x0, x1, x2, x3",
+            "x0*x1, x0*x2, x0*x3",
+            &[(3, 1, 1, 1), (1, 1, 1, 1)],
+        ),
+        ("variable_group x, y, z", "x^2, x*y, y^3", &[(1, 1, 4, 1)]),
+        (
+            "variable_group x, y",
+            "x^2*y^3*(x + y - 1)^4*(x^2 - y)",
+            &[(1, 2, 1, 1), (1, 1, 4, 1), (1, 1, 3, 1), (1, 1, 2, 1)],
+        ),
+        // Two spheres that touch: two lines through the point, neither real.
+        (
+            "variable_group x, y, z",
+            "x^2 + y^2 + z^2 - 1, (x - 2)^2 + y^2 + z^2 - 1",
+            &[(1, 1, 1, 2)],
+        ),
+        (
+            "variable_group x, y, z",
+            "x^2*y - 1, y^2*z - 1",
+            &[(1, 6, 1, 1)],
+        ),
+        // No solutions, by the third and the fourth equation together.
+        (
+            "variable_group x, y, z",
+            "x*y - 1, y*z - 1, x*z + 1, x - z + 1",
+            &[],
+        ),
+        // The rational normal curve of degree 4, by six minors.
+        (
+            "hom_variable_group x0, x1, x2, x3, x4",
+            minors,
+            &[(1, 4, 1, 1)],
+        ),
+        // A graph over a line, by two forms in two groups.
+        (
+            "hom_variable_group a, b; hom_variable_group x, y, z",
+            "a*x + b*y, a*y + b*z",
+            &[(1, 3, 1, 1)],
+        ),
+    ];
+    for (number, (groups, equations, expected)) in cases.into_iter().enumerate() {
+        let equations: Vec<&str> = equations.split(", ").collect();
+        let names: Vec<String> = (1..=equations.len()).map(|k| format!("f{k}")).collect();
+        let lines = names.iter().zip(&equations);
+        let lines: Vec<String> = lines.map(|(name, f)| format!("{name} = {f};")).collect();
+        let text = format!(
+            "{groups}; function {}; {}",
+            names.join(", "),
+            lines.join(" ")
+        );
+        let system = written(&text);
+        for method in [None, Some(Method::Cascade), Some(Method::Slices)] {
+            let found = decompose_by(&system, 1 + number as u64, method);
+            let (counts, doubts) = (counted(&found), doubts(&found));
+            assert!(found.settled(), "{text}, {method:?}:{doubts}");
+            assert_eq!(counts, expected, "{text}, {method:?}");
+        }
+    }
+}
+
 /// A multiple surface that a further equation cuts is not followed by the equations, and it is said.
 #[test]
 fn what_the_equations_cannot_cut_is_said() {

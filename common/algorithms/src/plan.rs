@@ -38,7 +38,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 /// Most operations that choosing a start spends on a mixed volume: about a second.
-const CHOOSING_OPERATIONS: u64 = 500_000_000;
+pub(crate) const CHOOSING_OPERATIONS: u64 = 500_000_000;
 
 /// Most operations that planning a polyhedral start spends on a mixed volume: a few seconds. Workers
 /// count what takes longer.

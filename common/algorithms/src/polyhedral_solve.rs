@@ -97,6 +97,28 @@ impl PolyhedralSolve {
         self
     }
 
+    /// The same, where it is of no interest whether singular ends are isolated.
+    #[must_use]
+    pub fn ends_only(mut self) -> Self {
+        self.generic = self.generic.ends_only();
+        self
+    }
+
+    /// The leg to the system that is asked; `None` before the first one has found something.
+    pub fn last_leg(&self) -> Option<&RetriedStage> {
+        self.target.as_ref()
+    }
+
+    /// The leg to the generic system.
+    pub fn first_leg(&self) -> &RetriedStage {
+        &self.generic
+    }
+
+    /// Paths of the first leg that did not arrive.
+    pub fn lost(&self) -> u64 {
+        (self.generic.results().len() - self.arrived.len()) as u64
+    }
+
     /// Takes the counts of all branches: the first leg has as many paths, or another lifting is
     /// counted, or it ends here.
     fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
@@ -159,7 +181,7 @@ impl PolyhedralSolve {
             system: None,
             objects: vec![points],
         };
-        let lost = (self.generic.results().len() - self.arrived.len()) as u64;
+        let lost = self.lost();
         Some(self.target.insert(self.generic.followed_by(first, lost)))
     }
 
@@ -322,7 +344,7 @@ impl Solve for PolyhedralSolve {
             },
             Some(target) => {
                 let mut second = target.progress("from the generic system to this one");
-                second.paths.failed += (self.generic.results().len() - self.arrived.len()) as u64;
+                second.paths.failed += self.lost();
                 let mut stages = first.stages;
                 stages.append(&mut second.stages);
                 Progress { stages, ..second }

@@ -459,7 +459,7 @@ pub(crate) fn cell_supports(system: &System) -> Result<Vec<Vec<Vec<i64>>>, Strin
 ///
 /// Paths of a total-degree start that end at infinity are the dear ones, and a polyhedral start
 /// has few of them; so the second leg is not counted in full.
-fn polyhedral_is_cheaper(volume: u64, count: u64) -> bool {
+pub(crate) fn polyhedral_is_cheaper(volume: u64, count: u64) -> bool {
     count > 16 && volume.saturating_add(volume / 2) < count
 }
 

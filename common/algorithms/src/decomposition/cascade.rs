@@ -113,7 +113,7 @@ impl Cascade {
             failed: self.failed,
             ..Superset::default()
         };
-        self.points = superset.sort(problem, job);
+        self.points = superset.sort(problem, &problem.level_equations(dimension), job);
         self.level += 1;
         if self.level == problem.levels {
             superset.excess = std::mem::take(&mut self.points).len() as u64;

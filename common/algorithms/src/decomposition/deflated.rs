@@ -258,6 +258,14 @@ impl Deflations {
                 let system = self.system(problem, ranks);
                 Arc::new(slice(&system, *dimension, problem.variables()))
             }
+            StageSystem::Combined {
+                dimension,
+                seed,
+                keep,
+            } => {
+                let rows = problem.combined(*dimension, *seed, *keep);
+                Arc::new(slice(&rows, *dimension, problem.variables()))
+            }
             StageSystem::Tracked { ranks, dimension } => {
                 let tracked = problem.tracked(&self.system(problem, ranks), *dimension);
                 Arc::new(tracked.expect("derivatives of polynomials have degrees"))

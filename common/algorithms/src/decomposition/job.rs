@@ -1,12 +1,14 @@
 //! Job: one stage of a decomposition with its repetitions, and the system that it is of.
 
 use crate::opening::Opening;
+use crate::polyhedral_solve::PolyhedralSolve;
 use crate::retried_stage::RetriedStage;
-use crate::solve::{Next, StageNumbers};
+use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
+use cognate_continuation::start_systems::polyhedral::branches::CellBranches;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Decision, Tolerances, Verdict};
@@ -24,6 +26,26 @@ pub(crate) struct Tracking {
     pub tolerances: Tolerances,
     pub max_retries: u16,
     pub seed: u64,
+}
+
+/// A path that may fail, since others can be tracked in its place, is given up after so many steps,
+const FEW_STEPS: u32 = 5000;
+/// ... where it needs more bits,
+const FEW_BITS: u32 = 212;
+/// ... or where it fails more often.
+const FEW_RETRIES: u16 = 1;
+
+impl Tracking {
+    /// The same where paths may fail.
+    pub fn soon_given_up(&self) -> Self {
+        let mut with = self.clone();
+        let settings = &mut with.settings;
+        settings.max_steps = settings.max_steps.min(FEW_STEPS);
+        let most = FEW_BITS.max(settings.precision_bits);
+        settings.max_precision_bits = settings.max_precision_bits.min(most);
+        with.max_retries = with.max_retries.min(FEW_RETRIES);
+        with
+    }
 }
 
 /// The system that a stage is of: what is written down of it, so that it can be made again.
@@ -50,6 +72,15 @@ pub(crate) enum StageSystem {
         dimension: usize,
         /// Which factor.
         factor: u32,
+    },
+    /// As many combinations of the equations as cut out this dimension, with its slices.
+    Combined {
+        /// The dimension.
+        dimension: usize,
+        /// Seed of the combinations.
+        seed: u64,
+        /// Whether linear equations stay as they are.
+        keep: bool,
     },
     /// Combinations of the equations that cut out curves, with the equation of the points that are critical for a real
     /// linear form.
@@ -78,6 +109,8 @@ pub(crate) enum StageSystem {
 enum Doing {
     /// Paths, tracked again where they failed or crossed.
     Tracked(Box<RetriedStage>),
+    /// Paths in two legs, from mixed cells.
+    Polyhedral(Box<PolyhedralSolve>),
     /// Points about which something is asked once.
     Asked {
         /// The stage that asks, until it is open.
@@ -123,6 +156,27 @@ impl Job {
         let start_points = StartPoints::TotalDegree { degrees };
         let first = stage(Work::Track, homotopy, start_points, with);
         Self::tracked((description, system), first, with)
+    }
+
+    /// Paths from the mixed cells of the system, with these values of its parameters; `count`: how many, where that is
+    /// known.
+    pub fn polyhedral(
+        (description, system): (StageSystem, &System),
+        parameters: Vec<Complex64>,
+        count: Option<u64>,
+        with: &Tracking,
+    ) -> Self {
+        let start_points = StartPoints::MixedCells {
+            count: count.unwrap_or_default(),
+            branches: count.is_none().then(|| CellBranches::uncounted(0)),
+        };
+        let first = stage(Work::Track, HomotopyKind::Toric, start_points, with);
+        let solve = PolyhedralSolve::new(first, system, parameters, with.tolerances.clone());
+        let solve = solve.with_max_retries(with.max_retries).ends_only();
+        Self {
+            system: description,
+            work: Doing::Polyhedral(Box::new(solve)),
+        }
     }
 
     fn tracked(
@@ -230,6 +284,7 @@ impl Job {
     pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         match &mut self.work {
             Doing::Tracked(stages) => stages.next_stage(numbers),
+            Doing::Polyhedral(solve) => solve.next(numbers),
             Doing::Asked { opening, results } => match (opening.take(), results) {
                 (Some(opening), _) => numbers.open(*opening, &mut Vec::new()),
                 (None, None) => Next::Wait,
@@ -242,29 +297,63 @@ impl Job {
     pub fn absorb(&mut self, id: StageId, taken: &mut dyn Iterator<Item = ItemResult>) {
         match &mut self.work {
             Doing::Tracked(stages) => stages.absorb(id, taken),
+            Doing::Polyhedral(solve) => solve.absorb(id, taken),
             Doing::Asked { results, .. } => *results = Some(taken.collect()),
+        }
+    }
+
+    /// The stage in which its paths end; `None` where it tracks none to the end.
+    fn ending(&self) -> Option<&RetriedStage> {
+        match &self.work {
+            Doing::Tracked(stages) => Some(stages),
+            Doing::Polyhedral(solve) => solve.last_leg(),
+            Doing::Asked { .. } => None,
+        }
+    }
+
+    /// All of its stages that track.
+    fn legs(&self) -> impl Iterator<Item = &RetriedStage> {
+        let first = match &self.work {
+            Doing::Polyhedral(solve) => Some(solve.first_leg()),
+            Doing::Tracked(_) | Doing::Asked { .. } => None,
+        };
+        first.into_iter().chain(self.ending())
+    }
+
+    /// Whether its paths begin in mixed cells.
+    pub fn is_polyhedral(&self) -> bool {
+        matches!(self.work, Doing::Polyhedral(_))
+    }
+
+    /// Whether its paths could not be counted, so that none was tracked.
+    pub fn is_uncounted(&self) -> bool {
+        matches!(&self.work, Doing::Polyhedral(solve) if solve.failure().is_some())
+    }
+
+    /// Paths that were lost before its last leg began.
+    pub fn lost(&self) -> u64 {
+        match &self.work {
+            Doing::Polyhedral(solve) => solve.lost(),
+            Doing::Tracked(_) | Doing::Asked { .. } => 0,
         }
     }
 
     /// The last results of its paths, in the order of its items; none where it asks about points.
     pub fn results(&self) -> &[PathResult] {
-        match &self.work {
-            Doing::Tracked(stages) => stages.results(),
-            Doing::Asked { .. } => &[],
-        }
+        self.ending().map_or(&[], RetriedStage::results)
     }
 
     /// What was said about its points, in their order; none where it tracks paths.
     pub fn answers(&self) -> &[ItemResult] {
         match &self.work {
-            Doing::Tracked(_) => &[],
+            Doing::Tracked(_) | Doing::Polyhedral(_) => &[],
             Doing::Asked { results, .. } => results.as_deref().unwrap_or(&[]),
         }
     }
 
     /// The results of its paths, what their ends are, and the values of the variables there.
     pub fn ends(&self) -> Vec<(&PathResult, Decision, Vec<Complex64>)> {
-        let Doing::Tracked(stages) = &self.work else {
+        let Some(stages) = self.ending() else {
             return Vec::new();
         };
         // One that ended its worker has no end.
@@ -278,29 +367,35 @@ impl Job {
 
     /// How the ends of its paths are laid out.
     pub fn shape(&self) -> Option<&PointShape> {
-        match &self.work {
-            Doing::Tracked(stages) => Some(stages.shape()),
-            Doing::Asked { .. } => None,
-        }
+        self.ending().map(RetriedStage::shape)
     }
 
     /// Its paths, counted.
     pub fn paths(&self) -> TrackedPaths {
-        let Doing::Tracked(stages) = &self.work else {
-            return TrackedPaths::default();
+        let failed = |stages: &RetriedStage| {
+            let decisions = stages.decisions().into_iter();
+            decisions.filter(|d| d.verdict == Verdict::Failed).count() as u64
         };
-        let failed = stages.decisions().into_iter();
-        let failed = failed.filter(|decision| decision.verdict == Verdict::Failed);
+        let lost = self.lost();
+        let Some(ending) = self.ending() else {
+            return TrackedPaths {
+                total: lost,
+                failed: lost,
+                ..TrackedPaths::default()
+            };
+        };
         let mut paths = TrackedPaths {
-            total: stages.results().len() as u64,
-            failed: failed.count() as u64,
+            total: lost + ending.results().len() as u64,
+            failed: lost + failed(ending),
             ..TrackedPaths::default()
         };
-        for target in 0..stages.first().homotopy.targets() as usize {
-            let history = stages.history(target, false);
-            paths.retracked += history.retracked;
-            paths.crossings_found += history.crossings_found;
-            paths.crossings_resolved += history.crossings_resolved;
+        for stages in self.legs() {
+            for target in 0..stages.first().homotopy.targets() as usize {
+                let history = stages.history(target, false);
+                paths.retracked += history.retracked;
+                paths.crossings_found += history.crossings_found;
+                paths.crossings_resolved += history.crossings_resolved;
+            }
         }
         paths
     }

@@ -32,6 +32,9 @@ const NEAR_FACTOR: f64 = 100.0;
 const NEAR: f64 = 1e-7;
 /// ... and is not beyond this.
 const FAR: f64 = 1e-3;
+/// Most paths that confirm in one dimension what dual spaces and moved slices call junk: where there would be more,
+/// points spread evenly among them are asked for all.
+const MOST_CONFIRMING: usize = 100_000;
 
 /// What is known of a singular point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +42,9 @@ struct Suspect {
     end: SingularEnd,
     isolation: Isolation,
     dual_dimensions: Vec<u32>,
-    /// On a set of higher dimension: `None` where that is not clear.
+    /// Whether paths ask about it.
+    asked: bool,
+    /// On a set of higher dimension by these paths: `None` where that is not clear.
     member: Option<bool>,
 }
 
@@ -165,10 +170,7 @@ impl Sieve {
     ) -> Option<Job> {
         while !self.sets_left.is_empty() {
             let set = self.sets_left.remove(0);
-            let asks = |suspect: &Suspect| {
-                let clear = suspect.isolation == Isolation::PositiveDimensional;
-                (problem.confirm_junk || !clear) && suspect.member != Some(true)
-            };
+            let asks = |suspect: &Suspect| suspect.asked && suspect.member != Some(true);
             let places = 0..self.suspects.len();
             let suspects: Vec<usize> = places.filter(|&k| asks(&self.suspects[k])).collect();
             if suspects.is_empty() {
@@ -203,6 +205,7 @@ impl Sieve {
                         suspect.dual_dimensions.clone_from(&found.dual_dimensions);
                     }
                 }
+                self.choose_asked(problem, sets);
             }
             Asking::Membership { set, suspects } => {
                 let ends = job.ends();
@@ -220,6 +223,20 @@ impl Sieve {
         }
     }
 
+    /// Chooses the points about which paths ask: all that are not clear, and of clear junk as many as there is time for.
+    fn choose_asked(&mut self, problem: &Problem, sets: &[PureSet]) {
+        let clear = |suspect: &&mut Suspect| suspect.isolation == Isolation::PositiveDimensional;
+        let count = self.suspects.iter_mut().filter(clear).count();
+        let degree: usize = sets.iter().map(|set| set.points.len()).sum();
+        let chosen = match problem.confirm_junk {
+            true => (MOST_CONFIRMING / degree.max(1)).clamp(1, count.max(1)),
+            false => 0,
+        };
+        for (k, suspect) in self.suspects.iter_mut().filter(clear).enumerate() {
+            suspect.asked = k * chosen / count != (k + 1) * chosen / count;
+        }
+    }
+
     /// Decides about the points of the current dimension.
     fn settle(&mut self, problem: &Problem, deflations: &mut Deflations, sets: &mut Vec<PureSet>) {
         let Some(superset) = self.current.take() else {
@@ -232,7 +249,7 @@ impl Sieve {
         for suspect in std::mem::take(&mut self.suspects) {
             let paths = suspect.end.paths;
             let isolated = match (suspect.isolation, suspect.member) {
-                (Isolation::PositiveDimensional, Some(false)) if problem.confirm_junk => None,
+                (Isolation::PositiveDimensional, Some(false)) if suspect.asked => None,
                 (Isolation::PositiveDimensional, _) if higher => Some(false),
                 (Isolation::Undecided, Some(true)) => Some(false),
                 (Isolation::Isolated { .. } | Isolation::Undecided, Some(false)) => Some(true),
@@ -326,6 +343,7 @@ impl Suspect {
             end: end.clone(),
             isolation: Isolation::Undecided,
             dual_dimensions: Vec::new(),
+            asked: true,
             member: Some(false),
         }
     }

@@ -12,6 +12,7 @@
 mod cascade;
 mod costs;
 pub(crate) mod deflated;
+mod dimension_start;
 mod equations;
 pub(crate) mod job;
 mod junk;
@@ -138,7 +139,8 @@ impl DecompositionSolve {
     /// The decomposition of a system that has been checked.
     pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
         let problem = Problem::of_options(system, options)?;
-        let method = options.method.unwrap_or(Method::Equations);
+        let method = options.method;
+        let method = method.unwrap_or_else(|| costs::choose(&problem).0);
         Ok(Self {
             state: State {
                 system: Arc::new(system.clone()),
@@ -249,7 +251,7 @@ impl DecompositionSolve {
         let second = self.problem.second(self.state.method);
         let verify = self.state.options.verify;
         let (purpose, method) = match (self.state.purpose, self.state.first.take()) {
-            (Purpose::First, _) if self.state.options.method.is_none() && !found.settled() => {
+            (Purpose::First, _) if self.may_go_again() && !found.settled() => {
                 (Purpose::Again, Method::Cascade)
             }
             (Purpose::First, _) if verify => (Purpose::Verify, second),
@@ -273,6 +275,12 @@ impl DecompositionSolve {
         self.state.purpose = purpose;
         self.state.method = method;
         first_step(method, &self.problem)
+    }
+
+    /// Whether the cascade follows where the first way leaves something in doubt: where a way was not asked for, and
+    /// the first was not chosen because the others have far more paths.
+    fn may_go_again(&self) -> bool {
+        self.state.options.method.is_none() && self.state.method != Method::Slices
     }
 
     fn summary(&mut self) -> Decomposition {
@@ -604,16 +612,14 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
-        let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; \
-                    f = (x - y)^2*(y - x^2 + 2);\nEND;\n";
-        let system = formats::read("test", text.as_bytes()).unwrap().system;
-        let solve = || DecompositionSolve::new(&system, &DecompositionOptions::default()).unwrap();
-        let lived = run_locally(solve(), 8).unwrap();
-        let mut solve = AnyAlgorithm::from(AnySolve::Decomposition(Box::new(solve())));
+    /// Decomposes with a state that is written down and read back after each stage is open; which kinds of work were
+    /// done is given back, too.
+    fn with_restarts(system: &System, options: &DecompositionOptions) -> (Decomposition, String) {
+        let solve = DecompositionSolve::new(system, options).unwrap();
+        let mut solve = AnyAlgorithm::from(AnySolve::Decomposition(Box::new(solve)));
         let mut open: Option<Box<crate::Opening>> = None;
         let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+        let mut kinds = String::new();
         loop {
             match solve.next() {
                 Next::Open(opening) => open = Some(opening),
@@ -626,15 +632,60 @@ mod tests {
                     let made = opening.objects.iter();
                     objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
                     let find = |digest: Digest| objects.get(&digest).cloned();
+                    let stage = &opening.stage;
+                    kinds.push_str(&format!("{:?} {:?}; ", stage.work, stage.homotopy));
                     let system = opening.system.as_deref().unwrap();
-                    let prepared = PreparedWork::new(system, &opening.stage, &find).unwrap();
+                    let prepared = PreparedWork::new(system, stage, &find).unwrap();
                     let results = prepared.run(0..prepared.items(), 8);
                     solve.absorb(opening.stage.id, &mut results.into_iter());
                 }
                 Next::Done => break,
             }
         }
-        assert_eq!(solve.answer(&system), Some(Answer::Decomposition(lived)));
         assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
+        let Some(Answer::Decomposition(decomposition)) = solve.answer(system) else {
+            panic!("a decomposition ends with one");
+        };
+        (decomposition, kinds)
+    }
+
+    #[test]
+    fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
+        let curves = "variable_group x, y, z; function f, g; \
+                      f = (x - y)^2*(y - x^2 + 2); g = (z - x*y)*(x + y + z - 5);";
+        let text = format!("CONFIG\nEND;\nINPUT\n{curves}\nEND;\n");
+        let curves = formats::read("test", text.as_bytes()).unwrap().system;
+        let points = cognate_systems::named::cyclic(5).system;
+        let mut done = String::new();
+        for (system, methods) in [
+            (&curves, Method::ALL.as_slice()),
+            (&points, &[Method::Slices]),
+        ] {
+            for &method in methods {
+                let options = DecompositionOptions {
+                    method: Some(method),
+                    ..DecompositionOptions::default()
+                };
+                let solve = DecompositionSolve::new(system, &options).unwrap();
+                let lived = run_locally(solve, 8).unwrap();
+                let (restarted, kinds) = with_restarts(system, &options);
+                assert_eq!(restarted, lived, "{method:?}");
+                done.push_str(&kinds);
+            }
+        }
+        // Every kind of stage was among them.
+        let kinds = [
+            "Track StraightLine",
+            "Track Toric",
+            "Track Generic",
+            "Track Slide",
+            "Track Intersect",
+            "Track Parameter",
+            "LocalDimension",
+            "Bend",
+        ];
+        for kind in kinds {
+            assert!(done.contains(kind), "{kind}");
+        }
     }
 }

@@ -14,7 +14,7 @@ use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::{
-    FixError, affine_chart, combine, equilibrate, factors, fix_parameters, slice,
+    FixError, affine_chart, combine, combine_few, equilibrate, factors, fix_parameters, slice,
 };
 use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
@@ -308,8 +308,14 @@ impl Problem {
     pub fn tracked(&self, equations: &System, dimension: usize) -> Result<System, ProblemError> {
         let of = degrees(equations)?;
         let rows = equations.variable_count() - dimension;
-        let rows = combine(equations, &of, rows, self.seed());
+        let rows = combine_few(equations, &of, rows, self.seed(), true);
         Ok(slice(&rows, dimension, self.variables()))
+    }
+
+    /// As many combinations of the given equations; `keep`: whether linear ones stay as they are.
+    pub fn combined(&self, dimension: usize, seed: u64, keep: bool) -> System {
+        let rows = self.variables() - dimension;
+        combine_few(&self.given, &self.degrees, rows, seed, keep)
     }
 
     /// As many combinations of the equations as cut out curves.

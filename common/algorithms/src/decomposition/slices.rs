@@ -1,14 +1,22 @@
-//! Slices: each dimension by itself, from a start system of the degrees of its equations.
+//! Slices: each dimension by itself, from the start system that has the fewest paths.
 //!
 //! The solutions of as many combinations of the equations as cut out a set of that dimension, on its slices, hold
 //! a witness superset of it; nothing of one dimension rests on what was found in another. (Sommese, Wampler: The
-//! Numerical Solution of Systems of Polynomials, 2005, section 13.2.)
+//! Numerical Solution of Systems of Polynomials, 2005, section 13.2.) Combinations of few terms keep sparse systems
+//! sparse, so that their mixed volumes can be far below the products of degrees.
 
 use super::deflated::Deflations;
-use super::job::{Job, StageSystem};
+use super::dimension_start::DimensionStart;
+use super::job::{Job, StageSystem, Tracking};
 use super::problem::Problem;
 use super::superset::Superset;
+use cognate_continuation::bend::SlicedEquations;
+use cognate_numeric::random::{Purpose, RandomStream};
 use serde::{Deserialize, Serialize};
+
+/// How often a dimension is begun with other combinations and at another generic system, where paths from mixed cells
+/// were lost.
+const MOST_BEGINNINGS: u32 = 6;
 
 /// Dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,6 +24,9 @@ pub(super) struct Slices {
     /// How many rows hold where the open stage ends; 0 before the first.
     rows: usize,
     supersets: Vec<Superset>,
+    /// How often the dimension was begun before, and the best that was found then.
+    beginnings: u32,
+    best: Option<Superset>,
 }
 
 impl Slices {
@@ -23,6 +34,8 @@ impl Slices {
         Self {
             rows: 0,
             supersets: Vec::new(),
+            beginnings: 0,
+            best: None,
         }
     }
 
@@ -45,29 +58,105 @@ impl Slices {
         (problem, deflations): (&Problem, &mut Deflations),
         done: Option<&Job>,
     ) -> Option<Job> {
-        let n = problem.variables();
         if let Some(job) = done {
-            let mut superset = Superset::empty(n - self.rows);
-            let others = superset.sort(problem, job);
-            if self.rows == problem.levels {
-                superset.excess = others.len() as u64;
+            if job.is_uncounted() {
+                return Some(self.job(problem, deflations, true));
+            }
+            let superset = self.learn(problem, job);
+            if superset.lost() > 0 && job.is_polyhedral() && self.beginnings < MOST_BEGINNINGS {
+                self.best = Some(superset);
+                return Some(self.job(problem, deflations, false));
             }
             self.supersets.push(superset);
+            self.beginnings = 0;
         }
         if self.rows == problem.asked_levels {
             return None;
         }
         self.rows += 1;
-        let dimension = n - self.rows;
-        let mut degrees = problem.row_degrees[..self.rows].to_vec();
-        degrees.resize(n, 1);
-        let system = StageSystem::Tracked {
-            ranks: Vec::new(),
-            dimension,
+        Some(self.job(problem, deflations, false))
+    }
+
+    /// What the paths of the dimension found; where those of an earlier beginning lost less, what they found.
+    fn learn(&mut self, problem: &Problem, job: &Job) -> Superset {
+        let dimension = problem.variables() - self.rows;
+        let mut superset = Superset::empty(dimension);
+        let StageSystem::Combined { seed, keep, .. } = job.system else {
+            unreachable!(
+                "a dimension by itself is tracked by combinations, not {:?}",
+                job.system
+            )
         };
-        let made = deflations.of_stage(problem, &system);
+        let rows = problem.combined(dimension, seed, keep);
+        let combinations = SlicedEquations::new(&rows, problem.slices(dimension));
+        let others = superset.sort(problem, &combinations, job);
+        if self.rows == problem.levels {
+            superset.excess = others.len() as u64;
+        }
+        self.beginnings += 1;
+        let earlier = self.best.take();
+        match earlier.filter(|earlier| earlier.lost() <= superset.lost()) {
+            Some(earlier) => earlier,
+            None => superset,
+        }
+    }
+
+    /// The paths to the dimension that is next: as many as the degrees say, or from the start with the fewest.
+    fn job(&self, problem: &Problem, deflations: &mut Deflations, by_degrees: bool) -> Job {
+        let dimension = problem.variables() - self.rows;
+        let seed = self.seed(problem);
+        let mut made = |keep: bool| {
+            let wanted = StageSystem::Combined {
+                dimension,
+                seed,
+                keep,
+            };
+            let made = deflations.of_stage(problem, &wanted);
+            let start = match by_degrees {
+                true => DimensionStart::of_degrees(&made),
+                false => DimensionStart::of(&made, seed),
+            };
+            (wanted, made, start)
+        };
         let parameters = problem.slices(dimension).concat();
-        let job = Job::straight((system, &*made), parameters, degrees, &problem.tracking);
-        Some(job.ends_only())
+        let (wanted, made, start) = match made(self.keeps()) {
+            // By degrees there are fewer paths where linear equations stay as they are.
+            (_, _, DimensionStart::TotalDegree { .. }) => made(true),
+            cells => cells,
+        };
+        let system = (wanted, &*made);
+        let with = &problem.tracking;
+        match start {
+            DimensionStart::TotalDegree { degrees } => {
+                Job::straight(system, parameters, degrees, with).ends_only()
+            }
+            DimensionStart::MixedCells { count } => {
+                Job::polyhedral(system, parameters, count, &self.beginning(with, seed))
+            }
+        }
+    }
+
+    /// Seed of the combinations and of the generic system of a beginning.
+    fn seed(&self, problem: &Problem) -> u64 {
+        let number = u64::MAX - u64::from(self.beginnings);
+        match self.beginnings {
+            0 => problem.seed(),
+            _ => RandomStream::new(problem.seed(), Purpose::StartSystem, number).bits(),
+        }
+    }
+
+    /// Whether linear equations stay as they are in a beginning: in two of four. Their combinations have other ends near
+    /// infinity than those without.
+    fn keeps(&self) -> bool {
+        self.beginnings / 2 % 2 == 1
+    }
+
+    /// The tracking of a beginning: every other one gives paths up soon, since in another beginning they are others.
+    fn beginning(&self, with: &Tracking, seed: u64) -> Tracking {
+        let with = match self.beginnings % 2 {
+            0 => with.soon_given_up(),
+            _ => with.clone(),
+        };
+        Tracking { seed, ..with }
     }
 }

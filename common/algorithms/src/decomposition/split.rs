@@ -184,7 +184,8 @@ impl Split {
         };
         let system = deflations.of_stage(problem, &self.set.tracked());
         let system = (self.set.tracked(), &*system);
-        Some(Job::track(system, homotopy, &points, &problem.tracking).ends_only())
+        let with = problem.tracking.soon_given_up();
+        Some(Job::track(system, homotopy, &points, &with).ends_only())
     }
 
     /// The stage that asks how the points move when the slices do.
@@ -275,7 +276,12 @@ impl Split {
         };
         let system = deflations.of_stage(problem, &self.set.tracked());
         let system = (self.set.tracked(), &*system);
-        Job::track(system, homotopy, points, &problem.tracking).ends_only()
+        // Another loop does as well, unless all of them are hard.
+        let with = match self.loops % 2 {
+            0 => problem.tracking.soon_given_up(),
+            _ => problem.tracking.clone(),
+        };
+        Job::track(system, homotopy, points, &with).ends_only()
     }
 
     fn give_up_loop(&mut self) {

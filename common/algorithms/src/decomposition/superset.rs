@@ -2,7 +2,7 @@
 
 use super::job::Job;
 use super::problem::{Problem, REFINED, SINGULAR};
-use cognate_continuation::bend::exactly;
+use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::path_crossing::coincidences;
 use num_complex::Complex64;
@@ -54,18 +54,31 @@ impl Superset {
         }
     }
 
-    /// Takes the ends of a job that is done on slices of its dimension, by combinations of the equations; gives
-    /// back regular ones that solve these combinations only.
-    pub fn sort(&mut self, problem: &Problem, job: &Job) -> Vec<Vec<Complex64>> {
-        let equations = problem.level_equations(self.dimension);
+    /// Paths of which it is not known where they ended, or whether that is a point of the set.
+    pub fn lost(&self) -> u64 {
+        self.failed + self.unclear
+    }
+
+    /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations; gives
+    /// back regular ones that solve the combinations only.
+    pub fn sort(
+        &mut self,
+        problem: &Problem,
+        combinations: &SlicedEquations,
+        job: &Job,
+    ) -> Vec<Vec<Complex64>> {
         let (mut singular, mut others) = (Vec::new(), Vec::new());
         for (place, (_, decision, values)) in job.ends().into_iter().enumerate() {
             let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
             match decision.verdict {
+                // Another beginning may tell.
+                Verdict::AtInfinity if decision.by_precision_limit && job.is_polyhedral() => {
+                    self.unclear += 1;
+                }
                 Verdict::AtInfinity => {}
                 Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => self.failed += 1,
                 Verdict::Finite => {
-                    let refined = equations.refine(&exact);
+                    let refined = combinations.refine(&exact);
                     match refined.and_then(|refined| problem.solves(&refined.point, &REFINED)) {
                         Some(true) => self.regular.push(values),
                         Some(false) => others.push(values),
@@ -80,7 +93,7 @@ impl Superset {
                 }
             }
         }
-        self.failed += job.crossings_left();
+        self.failed += job.crossings_left() + job.lost();
         self.gather(problem, job, &singular);
         others
     }

@@ -1,4 +1,4 @@
-//! Combinations of equations for a cascade: row i is general in the equations from i on.
+//! Combinations of equations for a cascade, where row i is general in the equations from i on, or for one dimension.
 //!
 //! Equations by descending degree, each row one of them plus random real multiples of all that
 //! come after it. On the zeros of the rows before it, a row is general among all equations, so
@@ -22,11 +22,49 @@ use std::cmp::Reverse;
 /// # Panics
 /// When `degrees` has another length, or a group is homogeneous.
 pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> System {
+    let whole = independent(system, degrees);
+    rows(system, degrees, (count, seed), whole, |row, _| row + 1)
+}
+
+/// As many rows as cut out sets of one codimension, of few terms: each has one equation of those that are combined, and
+/// random multiples of those only that no row begins with. With `keep` equations that `independent` finds stay as
+/// they are; else those are combined, too, where that leaves over no others.
+///
+/// In row echelon form all general combinations of the equations look like this, so the rows cut out the same kind of
+/// set as those of [`combine`], with fewer monomials. The rows of one `count` are not among those of another. A pure
+/// function of its arguments.
+///
+/// # Panics
+/// When `degrees` has another length, or a group is homogeneous.
+pub fn combine_few(
+    system: &System,
+    degrees: &Degrees,
+    count: usize,
+    seed: u64,
+    keep: bool,
+) -> System {
+    let mut whole = independent(system, degrees);
+    // As many as would be left over may be combined with all others.
+    let left_over = system.equation_count().saturating_sub(count);
+    if !keep && (1..=whole.len()).contains(&left_over) {
+        whole.clear();
+    }
+    rows(system, degrees, (count, seed), whole, |_, mixed| mixed)
+}
+
+/// The rows, `whole` ones first; `begin`: from which equation on others are added to one, by its row and by the number
+/// of such rows.
+fn rows(
+    system: &System,
+    degrees: &Degrees,
+    (count, seed): (usize, u64),
+    mut whole: Vec<usize>,
+    begin: impl Fn(usize, usize) -> usize,
+) -> System {
     let equations = system.equation_count();
     assert_eq!(degrees.total.len(), equations, "a degree for each equation");
     let affine = system.groups.iter().all(|group| !group.homogeneous);
     assert!(affine, "rows of several degrees are added as they are");
-    let mut whole = independent(system, degrees);
     whole.truncate(count);
     let mut order: Vec<usize> = (0..equations).filter(|i| !whole.contains(i)).collect();
     order.sort_by_key(|&i| (Reverse(degrees.total[i]), i));
@@ -41,7 +79,8 @@ pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> S
     for row in 0..mixed {
         let mut random = RandomStream::new(seed, Purpose::Randomization, row as u64);
         let first: NodeId = scaled[order[row]];
-        let sum = order[row + 1..].iter().fold(first, |sum, &j| {
+        let others = &order[begin(row, mixed)..];
+        let sum = others.iter().fold(first, |sum, &j| {
             let a = out.constant(ComplexRational::real(coefficient(&mut random)));
             let term = out.multiply(a, scaled[j]);
             out.add(sum, term)
@@ -79,5 +118,26 @@ mod tests {
         assert_eq!(rows.equations[0], system.equations[2]);
         assert_eq!(rows, combine(&system, &of, 3, 1));
         assert_eq!(combine(&system, &of, 2, 1).equations, rows.equations[..2]);
+    }
+
+    #[test]
+    fn few_terms_are_those_of_one_equation_and_of_the_ones_left_over() {
+        let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y, z; function f1, f2, f3, f4;\
+                     f1 = x*y - 1; f2 = x^3 - y^2*z; f3 = z - 2; f4 = x^2*z - 3;\nEND;\n";
+        let problem = crate::formats::read("test", text);
+        let system = problem.expect("a problem of this test").system;
+        let of = degrees(&system).unwrap();
+        let terms = |count: usize, keep: bool| -> Vec<usize> {
+            let rows = combine_few(&system, &of, count, 1, keep);
+            let supports = crate::polynomial::supports(&rows).expect("few terms");
+            supports.iter().map(Vec::len).collect()
+        };
+        // z - 2 alone, the cubics with the conic, and the conic alone where none is left over.
+        assert_eq!(terms(3, true), [2, 4, 3]);
+        assert_eq!(terms(4, true), [2, 2, 2, 2]);
+        assert_eq!(terms(2, true), [2, 5]);
+        // The linear one is the one left over.
+        assert_eq!(terms(3, false), [4, 3, 3]);
+        assert_eq!(terms(2, false), [2, 5]);
     }
 }

@@ -14,7 +14,7 @@ mod rescale;
 mod slice;
 
 pub use affine_chart::affine_chart;
-pub use combine::{combine, equilibrate};
+pub use combine::{combine, combine_few, equilibrate};
 pub use critical::{MOST_CRITICAL_VARIABLES, critical, fibre};
 pub use deflate::deflate;
 pub use factors::factors;
