@@ -6,6 +6,7 @@
 use crate::point_shape::{PointShape, largest, modulus};
 use cognate_continuation::path_result::{AskedFit, LocalDimension, MovedSlice, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
+use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 /// Every number that decides a verdict.
@@ -16,7 +17,8 @@ pub struct Tolerances {
     /// ... or within this, whatever the estimate says: five hundred roundings of a
     /// coordinate of size 1.
     pub infinity_floor: f64,
-    /// Regular endpoints far out have a homogenising coordinate with digits of its own: it is 0 within this.
+    /// Regular endpoints far out have a homogenising coordinate with digits of its own, which is 0 where they say so; not
+    /// 0, but below this, where they do not tell.
     pub regular_infinity_floor: f64,
     /// The same where the endpoint is singular and the coordinate was seen to turn around 0:
     /// errors of singular endpoints are estimated less well.
@@ -67,7 +69,7 @@ impl Default for Tolerances {
         Self {
             infinity_factor: 10.0,
             infinity_floor: 1e-13,
-            regular_infinity_floor: 1e-22,
+            regular_infinity_floor: 1e-300,
             singular_infinity_floor: 1e-10,
             infinity_band: 10.0,
             residual_factor: 100.0,
@@ -173,11 +175,9 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
                     && coordinate < bound * tolerances.infinity_band;
             }
             None => {
-                // A regular endpoint far out has digits of its own.
-                let floor = tolerances.regular_infinity_floor;
-                at_infinity |= coordinate <= floor;
-                by_precision_limit |= coordinate > floor / tolerances.infinity_band
-                    && coordinate < floor * tolerances.infinity_band;
+                let zero = coordinate <= tolerances.regular_infinity_floor;
+                at_infinity |= zero;
+                by_precision_limit |= zero && group[0] != Complex64::default();
             }
         }
     }
@@ -360,7 +360,7 @@ mod tests {
             let result = regular(0, &[(1.0 / norm, 0.0), (1.0, 0.0), (0.3, -0.2)]);
             assert_eq!(verdict(&result), (Verdict::Finite, false), "norm {norm}");
         }
-        let result = regular(0, &[(3e-24, 1e-24), (1.0, 0.0)]);
+        let result = regular(0, &[(0.0, 0.0), (1.0, 0.0)]);
         assert_eq!(verdict(&result), (Verdict::AtInfinity, false));
     }
 
@@ -376,10 +376,8 @@ mod tests {
 
     #[test]
     fn near_the_border_the_precision_decides_and_says_so() {
-        for x0 in [5e-22, 5e-23] {
-            let result = regular(0, &[(x0, 0.0), (1.0, 0.0)]);
-            assert!(verdict(&result).1);
-        }
+        let result = regular(0, &[(f64::MIN_POSITIVE, 0.0), (1.0, 0.0)]);
+        assert_eq!(verdict(&result), (Verdict::AtInfinity, true));
     }
 
     #[test]
@@ -450,7 +448,7 @@ mod tests {
             with(singular(0, &point, 2, &[0]), 1e-3, 0.1),
             Verdict::Excess,
         );
-        let far = [(1e-24, 0.0), (1.0, 0.0)];
+        let far = [(0.0, 0.0), (1.0, 0.0)];
         expect(with(regular(0, &far), 0.3, 0.2), Verdict::AtInfinity);
     }
 

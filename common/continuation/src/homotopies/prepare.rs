@@ -20,7 +20,7 @@ use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::sparse::{SparseElimination, sparse_order};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
+use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter, values};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::polynomial::Degrees;
@@ -557,10 +557,14 @@ impl Homotopy {
     }
 
     /// The same of a point with more digits, from which those of the homogenising coordinates come.
-    pub(crate) fn precise_endpoint(&self, point: &[Complex<DoubleDouble<f64>>]) -> Vec<Complex64> {
+    pub(crate) fn precise_endpoint<S: Real>(
+        &self,
+        context: S::Context,
+        point: &[Complex<S>],
+    ) -> Vec<Complex64> {
         let rounded: Vec<Complex64> = point.iter().map(|z| z.lane(0)).collect();
         let mut coordinates = self.chart.homogeneous(&rounded);
-        let precise = self.homogenizing((), point);
+        let precise = self.homogenizing(context, point);
         for (place, y0) in self.chart.homogenizing().into_iter().zip(precise) {
             coordinates[place] = y0.lane(0);
         }
@@ -571,16 +575,21 @@ impl Homotopy {
     /// The smallest homogenising coordinate of normalised homogeneous coordinates; infinity where there is none.
     pub(crate) fn smallest_homogenizing(&self, coordinates: &[Complex64]) -> f64 {
         let places = self.chart.homogenizing().into_iter();
-        let sizes = places.map(|place| coordinates[place].norm_sqr().sqrt());
+        let sizes = places.map(|place| size(coordinates[place]));
         sizes.fold(f64::INFINITY, f64::min)
     }
 
-    /// Sets homogenising coordinates to 0 that are at most `least`, in normalised homogeneous coordinates.
-    pub(crate) fn clear_homogenizing(&self, coordinates: &mut [Complex64], least: f64) {
+    /// Sets homogenising coordinates that are at most `least` to `value`, in normalised homogeneous coordinates.
+    pub(crate) fn set_homogenizing(&self, coordinates: &mut [Complex64], least: f64, value: f64) {
         for place in self.chart.homogenizing() {
-            if coordinates[place].norm_sqr() <= least * least {
-                coordinates[place] = Complex64::default();
+            if size(coordinates[place]) <= least {
+                coordinates[place] = Complex64::new(value, 0.0);
             }
         }
     }
+}
+
+/// The larger of the real and the imaginary part: of numbers whose squares are none of a double's, too.
+fn size(z: Complex64) -> f64 {
+    z.re.abs().max(z.im.abs())
 }

@@ -9,6 +9,7 @@
 
 use super::batch::Batch;
 use super::digits::Digits;
+use super::far_out;
 use super::lane::{Lane, Phase};
 use super::limits::{Limits, MOST_ROUNDS, rounds};
 use super::observer::{Observer, StepEvent};
@@ -29,7 +30,7 @@ use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::jet::TERMS;
-use cognate_numeric::scalar::{Complex, DoubleDouble, Mask, Real};
+use cognate_numeric::scalar::{Complex, Mask, Real};
 use cognate_systems::evaluation::Evaluate;
 use num_complex::Complex64;
 
@@ -64,12 +65,6 @@ const TAME: f64 = 1e10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
 /// next rung.
 const STARVED: u32 = 2;
-/// Relative Newton correction in double-doubles below which a point is known to so many digits.
-pub(super) const RESOLVED: f64 = 1e-26;
-/// A regular end whose homogenising coordinate is at most this part of the largest is at infinity,
-const FARTHEST: f64 = 1e-13;
-/// ... and this where it is known to that many digits, and the data has them.
-pub(super) const FARTHEST_RESOLVED: f64 = 1e-22;
 /// In robust mode a first Newton correction is at most this part of the distance to another path.
 const APART: f64 = 0.05;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
@@ -894,8 +889,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// Normalised homogeneous coordinates of where a path ends. A regular point far out is given with digits of its
-    /// own: those that doubles have there are digits of its largest coordinate. Homogenising coordinates that are 0 as far
-    /// as digits tell, or data does, are 0.
+    /// own: those that doubles have there are digits of its largest coordinate.
     fn endpoint(&mut self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
         let homotopy = self.room.homotopy;
         if let Some(coordinates) = self.far_out.take() {
@@ -904,23 +898,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
         if outcome != PathOutcome::Regular {
             return homotopy.endpoint(&self.point);
         }
-        let mut coordinates = homotopy.endpoint(&self.point);
+        let coordinates = homotopy.endpoint(&self.point);
         if homotopy.smallest_homogenizing(&coordinates) >= FAR_OUT {
             return coordinates;
         }
-        let mut least = FARTHEST;
-        let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ()).until(RESOLVED);
-        let mut point = self.point.clone();
-        let report = refiner.refine(&mut point, target);
-        if report.converged {
-            coordinates = homotopy.precise_endpoint(refiner.last());
-            let exact = self.settings.exact_data || self.settings.data_accuracy == 0.0;
-            if exact && report.accuracy <= RESOLVED {
-                least = FARTHEST_RESOLVED;
-            }
+        match far_out::resolve(homotopy, &self.settings, &self.point, target) {
+            Some(far) => far.coordinates,
+            None => far_out::unresolved(homotopy, coordinates),
         }
-        homotopy.clear_homogenizing(&mut coordinates, least);
-        coordinates
     }
 }
 

@@ -6,6 +6,7 @@
 mod batch;
 pub(crate) mod boundary;
 mod digits;
+mod far_out;
 pub(crate) mod lane;
 mod limits;
 pub mod lockstep;

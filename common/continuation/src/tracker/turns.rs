@@ -4,17 +4,18 @@
 //! back: the point, its homogenising coordinates and their valuations.
 
 use super::digits::Digits;
+use super::far_out;
 use super::lane::Phase;
-use super::lockstep::{ENDGAME_BITS, FARTHEST_RESOLVED, Lockstep, RESOLVED, Step};
+use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
 use super::rooms::Door;
 use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
 use crate::endgames::circle::VERTICES;
 use crate::endgames::infinity::Homogenizing;
-use crate::refine::{Refiner, Report};
+use crate::refine::Report;
 use cognate_numeric::precision::{DOUBLE, unit_roundoff};
-use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
+use cognate_numeric::scalar::{Complex, Real};
 use num_complex::Complex64;
 
 /// The first point of turns is where they may begin again on another rung if its last Newton
@@ -206,22 +207,15 @@ impl<R: Real> Lockstep<'_, R> {
     }
 
     /// Whether a path of one sheet that ends at infinity as far as its turns tell ends at a regular point far out, which
-    /// then stands in `self.point` and `self.far_out`: Newton's method in double-doubles tells the two apart.
+    /// then stands in `self.point` and `self.far_out`: Newton's method with more digits tells the two apart.
     fn regular_far_out(&mut self, lane: usize) -> Option<Report> {
-        let (homotopy, settings) = (self.room.homotopy, &self.settings);
-        let mut point = self.lanes[lane].cauchy.mean();
-        let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ()).until(RESOLVED);
-        let report = refiner.refine(&mut point, self.lanes[lane].target);
-        if !(report.converged && report.accuracy <= RESOLVED) {
-            return None;
-        }
-        let exact = settings.exact_data || settings.data_accuracy == 0.0;
-        let coordinates = homotopy.precise_endpoint(refiner.last());
-        let finite = exact && homotopy.smallest_homogenizing(&coordinates) > FARTHEST_RESOLVED;
-        finite.then(|| {
-            self.point = point;
-            self.far_out = Some(coordinates);
-            report
+        let path = &self.lanes[lane];
+        let mean = path.cauchy.mean();
+        let far = far_out::resolve(self.room.homotopy, &self.settings, &mean, path.target)?;
+        far.finite.then(|| {
+            self.point = far.point;
+            self.far_out = Some(far.coordinates);
+            far.report
         })
     }
 
