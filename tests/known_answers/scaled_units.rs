@@ -66,6 +66,28 @@ fn numbers_far_from_1_are_no_infinity_and_no_zero() {
     );
 }
 
+/// f and g have one solution with x near 3 and one with x near the constant: y is 2 - 5 / x.
+#[test]
+fn a_solution_as_far_out_as_a_coefficient_is_none_at_infinity() {
+    for exponent in [13, 17, 22, 25, 40, 100] {
+        let system = written(&format!(
+            "variable_group x, y; function f, g; \
+             f = (x - 3)*(x - 10^{exponent}) + y*x; g = x*y - 2*x + 5;"
+        ));
+        for seed in 1..=3 {
+            let (_, sets) = solve(&system, &options(seed, StartChoice::Auto), &|_| None);
+            let set = &sets[0];
+            let counts = (set.counts.nonsingular, set.counts.singular, set.counts.real);
+            let what = format!("{exponent}, seed {seed}: {:?}", set.paths);
+            assert_eq!(counts, (2, 0, Some(2)), "{what}");
+            let far = values(set)
+                .iter()
+                .any(|point| (point[1].re - 2.0).abs() < 1e-9);
+            assert!(far, "{what}");
+        }
+    }
+}
+
 /// f says x y^3 = 2e-6 or 8e6 / 3; g has the roots 2 and 3 +- 50000i. In the units that make coefficients ordinary, the
 /// solution with x = 1e6 / 3 lies 1e15 out.
 #[test]
