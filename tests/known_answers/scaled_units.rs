@@ -88,34 +88,6 @@ fn a_solution_as_far_out_as_a_coefficient_is_none_at_infinity() {
     }
 }
 
-/// f says x y^3 = 2e-6 or 8e6 / 3; g has the roots 2 and 3 +- 50000i. In the units that make coefficients ordinary, the
-/// solution with x = 1e6 / 3 lies 1e15 out.
-#[test]
-fn a_regular_solution_far_out_in_ordinary_units_is_none_at_infinity() {
-    let system = written(
-        "variable_group x, y; function f, g;
-         f = x^2*y^6 - 4000000000003/1500000*x*y^3 + 16/3;
-         g = y^3 - 8*y^2 + 2500000021*y - 5000000018;",
-    );
-    for (start, seed) in [
-        (StartChoice::LinearProduct, 496_851_144),
-        (StartChoice::LinearProduct, 2),
-        (StartChoice::Auto, 4),
-    ] {
-        let (_, sets) = solve(&system, &options(seed, start), &|_| None);
-        let set = &sets[0];
-        let counts = (set.counts.nonsingular, set.counts.singular, set.counts.real);
-        assert_eq!(
-            counts,
-            (6, 0, Some(2)),
-            "{start:?}, seed {seed}: {:?}",
-            set.paths
-        );
-        let far = |point: &Vec<Complex64>| (point[0].re * 3e-6 - 1.0).abs() < 1e-12;
-        assert!(values(set).iter().any(far), "{start:?}, seed {seed}");
-    }
-}
-
 /// x^2 + y^2 = 5 and x y = 2 have (1, 2), (2, 1) and their negatives.
 #[test]
 fn a_circle_and_a_hyperbola_meet_in_any_units() {

@@ -104,8 +104,6 @@ pub(super) struct Lockstep<'a, R: Real> {
     pub(super) observer: Option<&'a mut dyn Observer>,
     pub(super) point: Vec<Complex64>,
     pub(super) tangent: Vec<Complex64>,
-    /// Normalised homogeneous coordinates of the end of a path, where they are known with digits of double-doubles.
-    pub(super) far_out: Option<Vec<Complex64>>,
 }
 
 /// What one step showed in one lane.
@@ -194,7 +192,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
             observer,
             point: Vec::with_capacity(n),
             tangent: Vec::with_capacity(n),
-            far_out: None,
         }
     }
 
@@ -890,11 +887,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// Normalised homogeneous coordinates of where a path ends. A regular point far out is given with digits of its
     /// own: those that doubles have there are digits of its largest coordinate.
-    fn endpoint(&mut self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
+    fn endpoint(&self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
         let homotopy = self.room.homotopy;
-        if let Some(coordinates) = self.far_out.take() {
-            return coordinates;
-        }
         if outcome != PathOutcome::Regular {
             return homotopy.endpoint(&self.point);
         }
@@ -903,7 +897,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             return coordinates;
         }
         match far_out::resolve(homotopy, &self.settings, &self.point, target) {
-            Some(far) => far.coordinates,
+            Some(coordinates) => coordinates,
             None => far_out::unresolved(homotopy, coordinates),
         }
     }

@@ -125,7 +125,7 @@ impl Settings {
         for _ in 0..attempt {
             tighter.predictor_tolerance *= 0.01;
             tighter.max_step *= 0.5;
-            tighter.max_steps = tighter.max_steps.saturating_mul(2);
+            tighter.max_steps = tighter.max_steps.saturating_mul(4);
         }
         if attempt >= 2 {
             let rung = rungs(self.precision_bits, self.max_precision_bits).nth(1);

@@ -4,7 +4,6 @@
 //! back: the point, its homogenising coordinates and their valuations.
 
 use super::digits::Digits;
-use super::far_out;
 use super::lane::Phase;
 use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
@@ -178,11 +177,6 @@ impl<R: Real> Lockstep<'_, R> {
                 infinity_turns,
                 power_sum,
             } => {
-                let alone = winding_number == Some(1) && power_sum.is_none();
-                if let Some(report) = alone.then(|| self.regular_far_out(lane)).flatten() {
-                    let outcome = PathOutcome::Regular;
-                    return self.finish(lane, outcome, report, Some(1), Vec::new());
-                }
                 let path = &self.lanes[lane];
                 let t = Complex64::new(path.cauchy.radius(), 0.0);
                 let report = Report {
@@ -204,19 +198,6 @@ impl<R: Real> Lockstep<'_, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
-    }
-
-    /// Whether a path of one sheet that ends at infinity as far as its turns tell ends at a regular point far out, which
-    /// then stands in `self.point` and `self.far_out`: Newton's method with more digits tells the two apart.
-    fn regular_far_out(&mut self, lane: usize) -> Option<Report> {
-        let path = &self.lanes[lane];
-        let mean = path.cauchy.mean();
-        let far = far_out::resolve(self.room.homotopy, &self.settings, &mean, path.target)?;
-        far.finite.then(|| {
-            self.point = far.point;
-            self.far_out = Some(far.coordinates);
-            far.report
-        })
     }
 
     /// The endgame's generic form of how far a path is from where its turns began: on the higher

@@ -132,10 +132,10 @@ mod tests {
             let supports = crate::polynomial::supports(&rows).expect("few terms");
             supports.iter().map(Vec::len).collect()
         };
-        // z - 2 alone, the cubics with the conic, and the conic alone where none is left over.
-        assert_eq!(terms(3, true), [2, 4, 3]);
+        // z - 2 and the smooth conic stay as they are; the cubics are combined where one is left over.
+        assert_eq!(terms(3, true), [2, 2, 4]);
         assert_eq!(terms(4, true), [2, 2, 2, 2]);
-        assert_eq!(terms(2, true), [2, 5]);
+        assert_eq!(terms(2, true), [2, 2]);
         // The linear one is the one left over.
         assert_eq!(terms(3, false), [4, 3, 3]);
         assert_eq!(terms(2, false), [2, 5]);
