@@ -13,6 +13,8 @@ use num_complex::Complex64;
 /// A homogenising coordinate that is at most this part of the largest is 0, unless coefficients are exact and differ by
 /// many orders of magnitude: rounded coefficients have such solutions where exact ones have infinity.
 const WITHIN_DATA: f64 = 1e-13;
+/// Within this factor of that, nothing tells.
+const BAND: f64 = 10.0;
 /// With those such a coordinate may be the square of how small coefficients are, and is known to be 0 within this.
 const EXACT: f64 = 1e-22;
 /// No smaller than this.
@@ -44,7 +46,11 @@ pub(super) fn resolve(
         }?;
         let error = MARGIN * accuracy;
         let vanishing = error.max(zero);
-        let finite = homotopy.smallest_homogenizing(&coordinates) > vanishing;
+        let smallest = homotopy.smallest_homogenizing(&coordinates);
+        if smallest > zero / BAND && smallest < zero * BAND {
+            return None;
+        }
+        let finite = smallest > vanishing;
         if !finite {
             homotopy.set_homogenizing(&mut coordinates, vanishing, 0.0);
         }
@@ -54,7 +60,7 @@ pub(super) fn resolve(
 
 /// A point whose homogenising coordinates are neither 0 nor not as far as is known.
 pub(super) fn unresolved(homotopy: &Homotopy, mut coordinates: Vec<Complex64>) -> Vec<Complex64> {
-    homotopy.set_homogenizing(&mut coordinates, WITHIN_DATA, f64::MIN_POSITIVE);
+    homotopy.set_homogenizing(&mut coordinates, BAND * WITHIN_DATA, f64::MIN_POSITIVE);
     coordinates
 }
 
