@@ -1,4 +1,4 @@
-//! How many paths a solve may have, and which solves may have fewer.
+//! How many paths a solve may have, which solves may have fewer, and what choosing a start may cost.
 
 /// Most paths of one solve where all results are held in memory, about 300 bytes a path. So it is
 /// - with certificates or more digits: one stage gets all endpoints as one object;
@@ -9,3 +9,6 @@ pub const MAX_PATHS: u64 = 4_000_000;
 /// ... and where those of streamed paths need not be (see `solutions::streamed`), of which 24 bytes are: by
 /// degrees, and from given solutions to one target or several.
 pub const MAX_STREAMED_PATHS: u64 = 40_000_000;
+
+/// Most operations that choosing a start spends on a mixed volume: about a second.
+pub(crate) const CHOOSING_OPERATIONS: u64 = 500_000_000;

@@ -8,6 +8,7 @@ use crate::coefficient_family::coefficient_family;
 use crate::coefficients::Coefficients;
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
+use crate::limits::CHOOSING_OPERATIONS;
 pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
@@ -36,9 +37,6 @@ use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-
-/// Most operations that choosing a start spends on a mixed volume: about a second.
-pub(crate) const CHOOSING_OPERATIONS: u64 = 500_000_000;
 
 /// Most operations that planning a polyhedral start spends on a mixed volume: a few seconds. Workers
 /// count what takes longer.

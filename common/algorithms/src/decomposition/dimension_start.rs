@@ -1,6 +1,6 @@
 //! DimensionStart: where the paths to one dimension by itself begin.
 
-use crate::plan::CHOOSING_OPERATIONS;
+use crate::limits::CHOOSING_OPERATIONS;
 use crate::start_costs::{cell_supports, polyhedral_is_cheaper};
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_systems::polynomial::degrees;
