@@ -177,7 +177,7 @@ mod tests {
             regular(2, &[(0.0, 2.0), (0.0, 1.0)]), // the same point, scaled
             singular(3, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0]),
             regular(4, &[(1.0, 0.0), (0.5, 1e-6)]),
-            regular(5, &[(1e-17, 0.0), (1.0, 0.0)]),
+            regular(5, &[(0.0, 0.0), (0.0, 1.0)]),
             regular(6, &[(0.0, 0.0), (1.0, 0.0)]), // at infinity too
         ];
         let decisions: Vec<Decision> = results

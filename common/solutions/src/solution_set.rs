@@ -660,24 +660,13 @@ fn some_of(paths: &[u64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_results::{failed, isolated, regular, singular};
-    use cognate_systems::system::{DegenerateSet, VariableGroup};
+    use crate::test_results::{failed, isolated, regular, roots_of_unity, singular};
+    use cognate_systems::system::DegenerateSet;
 
-    /// x^5 = x, say: a real equation in one variable; x must not vanish.
+    /// x^5 = x: a real equation in one variable; x must not vanish.
     fn system() -> System {
-        let mut system = System {
-            variables: vec!["x".into()],
-            groups: vec![VariableGroup {
-                variables: vec![0],
-                homogeneous: false,
-            }],
-            equation_names: vec!["f".into()],
-            ..System::default()
-        };
-        let e = &mut system.expressions;
-        let x = e.variable(0);
-        let fifth = e.power(x, 5);
-        system.equations = vec![e.subtract(fifth, x)];
+        let mut system = roots_of_unity(5);
+        let x = system.expressions.variable(0);
         system
             .degenerate
             .insert("zero".into(), DegenerateSet::Nonzero(x));

@@ -357,28 +357,9 @@ impl SolutionSet {
 mod tests {
     use super::*;
     use crate::solution_set::History;
-    use crate::test_results::{failed, regular, singular};
+    use crate::test_results::{failed, regular, roots_of_unity, singular};
     use cognate_continuation::path_result::PathIndex;
     use cognate_numeric::random::{Purpose, RandomStream};
-    use cognate_systems::system::VariableGroup;
-
-    /// x^7 = x in one variable.
-    fn system() -> System {
-        let mut system = System {
-            variables: vec!["x".into()],
-            groups: vec![VariableGroup {
-                variables: vec![0],
-                homogeneous: false,
-            }],
-            equation_names: vec!["f".into()],
-            ..System::default()
-        };
-        let e = &mut system.expressions;
-        let x = e.variable(0);
-        let power = e.power(x, 7);
-        system.equations = vec![e.subtract(power, x)];
-        system
-    }
 
     /// Ends of all kinds, many of them near each other.
     fn ends(count: u64) -> Vec<PathResult> {
@@ -396,7 +377,7 @@ mod tests {
                 3 => failed(k),
                 5 => singular(k, &[(1.0, 0.0), (0.5, 0.0)], 1, &[0]),
                 7 => away(k),
-                9 => regular(k, &[(1e-17, 0.0), (1.0, 0.0)]),
+                9 => regular(k, &[(0.0, 0.0), (1.0, 0.0)]),
                 _ => regular(k, &[(1.0, 0.0), place(k)]),
             })
             .collect()
@@ -419,11 +400,18 @@ mod tests {
     }
 
     fn whole(results: &[PathResult], history: &History) -> SolutionSet {
-        SolutionSet::new(&system(), &[], results, history, &Tolerances::default(), 5)
+        SolutionSet::new(
+            &roots_of_unity(7),
+            &[],
+            results,
+            history,
+            &Tolerances::default(),
+            5,
+        )
     }
 
     fn index(results: &[PathResult]) -> (EndpointIndex, Vec<PathResult>) {
-        let filter = PathFilter::new(&system(), &[], &Tolerances::default(), 5);
+        let filter = PathFilter::new(&roots_of_unity(7), &[], &Tolerances::default(), 5);
         let mut index = EndpointIndex::new(filter, results.len() as u64);
         results.iter().for_each(|result| index.see(result));
         let held = index.settle();

@@ -79,22 +79,11 @@ impl StreamedTargets {
 mod tests {
     use super::*;
     use crate::classification::Tolerances;
-    use crate::test_results::regular;
-    use cognate_systems::system::{System, VariableGroup};
+    use crate::test_results::{regular, roots_of_unity};
 
     #[test]
     fn only_ends_at_one_target_are_near_each_other() {
-        let mut system = System {
-            variables: vec!["x".into()],
-            groups: vec![VariableGroup {
-                variables: vec![0],
-                homogeneous: false,
-            }],
-            equation_names: vec!["f".into()],
-            ..System::default()
-        };
-        let x = system.expressions.variable(0);
-        system.equations = vec![x];
+        let system = roots_of_unity(2);
         let filter = PathFilter::new(&system, &[], &Tolerances::default(), 7);
         let mut index = StreamedTargets::new(vec![filter.clone(), filter], 6);
         // Paths 0 and 1 end together, and so do 3 and 2, but at two targets.

@@ -18,6 +18,24 @@ pub fn affine_shape(variables: usize) -> PointShape {
     })
 }
 
+/// x^degree = x in one variable.
+pub fn roots_of_unity(degree: u32) -> System {
+    let mut system = System {
+        variables: vec!["x".into()],
+        groups: vec![VariableGroup {
+            variables: vec![0],
+            homogeneous: false,
+        }],
+        equation_names: vec!["f".into()],
+        ..System::default()
+    };
+    let e = &mut system.expressions;
+    let x = e.variable(0);
+    let power = e.power(x, degree);
+    system.equations = vec![e.subtract(power, x)];
+    system
+}
+
 /// A regular endpoint.
 pub fn regular(path: u64, point: &[(f64, f64)]) -> PathResult {
     let point = point.iter().map(|&(re, im)| Complex64::new(re, im));

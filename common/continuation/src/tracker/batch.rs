@@ -13,7 +13,8 @@ const SLOTS: usize = POINTS + 1;
 ///
 /// The points stand in a ring, with one slot for the step that is tried. In lanes that do not move, while others do, the
 /// point that the ring would lose takes a free slot: a rejected step leaves a lane with the points that it had, since a
-/// prediction from fewer of them would fail at a shorter step too. So their order is not that of the path.
+/// prediction from fewer of them would fail at a shorter step too. So their order is not that of the path: the oldest
+/// point may outlive a newer one by some steps.
 pub(super) struct Batch<R: Real> {
     pub x: [Vec<Complex<R>>; SLOTS],
     pub tangent: [Vec<Complex<R>>; SLOTS],
@@ -314,8 +315,9 @@ mod tests {
         type Two = Lanes<2>;
         let mut batch = Batch::<Two>::new((), 1, 0, 1e-4);
         let number = |value: f64| Complex::<Two>::from_f64((), value, 0.0);
-        // The second lane moves in the first, second and fourth step.
-        for (step, moves) in [true, true, false, true, false].into_iter().enumerate() {
+        // The second lane moves in all steps but the fourth and the last.
+        let moves = [true, true, true, false, true, false];
+        for (step, moves) in moves.into_iter().enumerate() {
             let value = step as f64 + 1.0;
             let mut moved = <Two as Real>::Mask::splat(true);
             moved.set_lane(1, moves);
@@ -338,11 +340,11 @@ mod tests {
                 })
                 .collect()
         };
-        assert_eq!(known(0), [5.0, 4.0, 3.0, 2.0]);
+        assert_eq!(known(0), [6.0, 5.0, 4.0, 3.0]);
         let mut points = known(1);
         points.sort_by(f64::total_cmp);
-        assert_eq!(points, [0.0, 1.0, 2.0, 4.0]);
+        assert_eq!(points, [0.0, 2.0, 3.0, 5.0]);
         let before = batch.before(1);
-        assert_eq!(batch.x[before][0].lane(1).re, 2.0);
+        assert_eq!(batch.x[before][0].lane(1).re, 3.0);
     }
 }
