@@ -136,8 +136,8 @@ mod tests {
         assert_eq!(terms(3, true), [2, 2, 4]);
         assert_eq!(terms(4, true), [2, 2, 2, 2]);
         assert_eq!(terms(2, true), [2, 2]);
-        // The linear one is the one left over.
+        // The linear one is the one left over, then the conic as well.
         assert_eq!(terms(3, false), [4, 3, 3]);
-        assert_eq!(terms(2, false), [2, 5]);
+        assert_eq!(terms(2, false), [5, 4]);
     }
 }
