@@ -157,13 +157,13 @@ impl<'a> Checked<'a> {
             HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
                 fits("parameters", parameters)?;
             }
-            HomotopyKind::Slide {
+            HomotopyKind::MoveSlice {
                 parameters,
                 order,
                 level,
                 ..
             }
-            | HomotopyKind::Intersect {
+            | HomotopyKind::ProductToEquation {
                 parameters,
                 order,
                 level,
@@ -230,8 +230,8 @@ impl<'a> Checked<'a> {
             HomotopyKind::Parameter { .. }
                 | HomotopyKind::Toric
                 | HomotopyKind::Generic { .. }
-                | HomotopyKind::Slide { .. }
-                | HomotopyKind::Intersect { .. }
+                | HomotopyKind::MoveSlice { .. }
+                | HomotopyKind::ProductToEquation { .. }
         );
         let exchange = stage.start_points.exchange();
         if exchange.is_some_and(|exchange| overdetermined || !exchange.fits(system)) {
@@ -528,7 +528,7 @@ impl PreparedStage {
     pub(crate) fn item(&self, item: u64) -> (u64, u64) {
         let origin = self.stage.origin(item);
         match self.stage.homotopy {
-            HomotopyKind::Parameter { .. } | HomotopyKind::Slide { .. } => {
+            HomotopyKind::Parameter { .. } | HomotopyKind::MoveSlice { .. } => {
                 (origin, origin / self.starts)
             }
             // Its cell is found by the path.
