@@ -52,7 +52,7 @@ pub enum ServerError {
     Folder {
         /// Path of the folder.
         folder: String,
-        /// What the system said.
+        /// The operating system's error.
         source: io::Error,
     },
     /// Signals cannot be listened to.
