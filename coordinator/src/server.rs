@@ -18,7 +18,7 @@ use crate::ledger::{Ledger, LedgerError};
 use crate::metrics;
 use crate::results::store::{Store, StoreError};
 use crate::transport::introduction::{Connections, raise_open_files};
-use crate::transport::shared_memory::SharedMemoryDoor;
+use crate::transport::shared_memory::SharedMemoryListener;
 use crate::transport::{self, ListenError, Listener};
 use cognate_protocol::DESCRIPTORS;
 use cognate_protocol::limits::MESSAGE_BYTES;
@@ -52,7 +52,7 @@ pub enum ServerError {
     Folder {
         /// Path of the folder.
         folder: String,
-        /// What the system said.
+        /// The operating system's error.
         source: io::Error,
     },
     /// Signals cannot be listened to.
@@ -87,7 +87,7 @@ impl Server {
             return Err(ListenError::NoAddress.into());
         }
         raise_open_files();
-        // Doors first: whoever is refused here has touched nothing.
+        // Listeners first: a caller that is refused here has touched nothing.
         let mut listeners = Vec::new();
         for address in &config.listen {
             listeners.push(Listener::open(address, &config.security, config.insecure).await?);
@@ -125,7 +125,7 @@ impl Server {
         let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
             .expect("a UUID is a name");
         let memory = config.shared_memory.and_then(|least_free| {
-            let opened = SharedMemoryDoor::open(least_free);
+            let opened = SharedMemoryListener::open(least_free);
             let refused = |error| tracing::info!(%error, "no shared memory; workers use gRPC");
             opened.map_err(refused).ok()
         });
@@ -153,7 +153,7 @@ impl Server {
     /// Starts one on parts that are there already, behind these listeners.
     pub async fn serve(
         listeners: Vec<Listener>,
-        memory: Option<SharedMemoryDoor>,
+        memory: Option<SharedMemoryListener>,
         security: Security,
         ledger: Arc<dyn Ledger>,
         store: Store,
@@ -164,7 +164,7 @@ impl Server {
         let admission = Admission::new(rules.calls);
         let connections = Connections::new(rules.connections);
         let stopping = CancellationToken::new();
-        let named = memory.as_ref().map(SharedMemoryDoor::named);
+        let named = memory.as_ref().map(SharedMemoryListener::named);
         let context = Arc::new(Context::new(
             coordinator.clone(),
             rules,

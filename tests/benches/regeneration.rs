@@ -41,8 +41,8 @@ fn points(set: &SolutionSet) -> Vec<Vec<Complex64>> {
 fn purpose(stage: &Stage) -> String {
     let what = match &stage.homotopy {
         _ if stage.work != Work::Track => "whether singular ends are isolated".to_string(),
-        HomotopyKind::Slide { level, forms, .. } => format!("{}: {forms} slices", level + 1),
-        HomotopyKind::Intersect { level, .. } => format!("{}: the equation", level + 1),
+        HomotopyKind::MoveSlice { level, forms, .. } => format!("{}: {forms} slices", level + 1),
+        HomotopyKind::ProductToEquation { level, .. } => format!("{}: the equation", level + 1),
         other => format!("{other:?}"),
     };
     match stage.attempt {

@@ -130,13 +130,13 @@ homotopy_conformance! {
         of_kind(&example("cyclic_5.bertini"), StartChoice::Polyhedral, |h| {
             matches!(h, HomotopyKind::Generic { .. })
         });
-    slide, HomotopyKind::Slide { .. },
+    slide, HomotopyKind::MoveSlice { .. },
         of_kind(&katsura(4), StartChoice::Regeneration, |h| {
-            matches!(h, HomotopyKind::Slide { level, .. } if *level > 1)
+            matches!(h, HomotopyKind::MoveSlice { level, .. } if *level > 1)
         });
-    intersect, HomotopyKind::Intersect { .. },
+    intersect, HomotopyKind::ProductToEquation { .. },
         of_kind(&katsura(4), StartChoice::Regeneration, |h| {
-            matches!(h, HomotopyKind::Intersect { level, .. } if *level > 1)
+            matches!(h, HomotopyKind::ProductToEquation { level, .. } if *level > 1)
         });
     sections, HomotopyKind::Sections { .. }, sections_of_cubics();
 }

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// or change its line.
 const CIRCLES: [(&str, &[&str], &str); 1] = [(
     "common/continuation",
-    &["stage", "tracker/lockstep", "tracker/rooms"],
+    &["stage", "tracker/contexts", "tracker/lockstep"],
     "the tracker knows the stage, not a trait of paths (issue 19)",
 )];
 

@@ -29,7 +29,7 @@ const LONGER: [(&str, &str, &str); 14] = [
     ),
     (
         "common/continuation/src/tracker/lockstep.rs",
-        "attend",
+        "after_step",
         "what a lane decides; to be a file of its own",
     ),
     (

@@ -109,7 +109,7 @@ impl RegenerationSolve {
         if self.last {
             return false;
         }
-        let slid = matches!(self.stage.first().homotopy, HomotopyKind::Slide { .. });
+        let slid = matches!(self.stage.first().homotopy, HomotopyKind::MoveSlice { .. });
         let mut found = match slid {
             // The first form is the slice: there nothing moves.
             true => self.points.clone(),
@@ -219,13 +219,13 @@ fn open(
     let parameters = levels.parameters.clone();
     let order = levels.order.clone();
     let homotopy = match slide {
-        true => HomotopyKind::Slide {
+        true => HomotopyKind::MoveSlice {
             parameters,
             order,
             level,
             forms: levels.degrees[level as usize] - 1,
         },
-        false => HomotopyKind::Intersect {
+        false => HomotopyKind::ProductToEquation {
             parameters,
             order,
             level,

@@ -44,7 +44,7 @@ pub fn declared(text: &str) -> System {
     written(&format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n"))
 }
 
-/// All four paths.
+/// A stage that tracks the four paths of a total degree start.
 pub fn first_stage(homotopy: HomotopyKind) -> Stage {
     Stage {
         id: StageId(0),
@@ -58,9 +58,9 @@ pub fn first_stage(homotopy: HomotopyKind) -> Stage {
     }
 }
 
-/// What a path does.
+/// How a made path ends.
 #[derive(Clone, Copy)]
-pub enum Fate {
+pub enum SyntheticEnd {
     /// Ends regularly at this x.
     At(f64),
     /// Ends singularly at this x, after so many turns.
@@ -73,18 +73,18 @@ pub enum Fate {
     Hopeless,
 }
 
-/// All items of a stage: paths, each by its fate at the stage's attempt; singular points are triple ones, where that
+/// All items of a stage: paths, each with its end at the stage's attempt; singular points are triple ones, where that
 /// is asked.
-pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<ItemResult> {
+pub fn track(stage: &Stage, end_of: impl Fn(u64, u16) -> SyntheticEnd) -> Vec<ItemResult> {
     let items = stage.items().unwrap();
     (0..items)
         .map(|item| {
             let origin = stage.origin(item);
-            let (outcome, x) = match fate(origin, stage.attempt) {
-                Fate::At(x) => (PathOutcome::Regular, x),
-                Fate::Turns(x, _) | Fate::Jumps(x, _) => (PathOutcome::Singular, x),
-                Fate::Fails => (PathOutcome::Failed(Failure::StepTooSmall), 0.1),
-                Fate::Hopeless => (PathOutcome::Failed(Failure::KilledItsWorker), 0.1),
+            let (outcome, x) = match end_of(origin, stage.attempt) {
+                SyntheticEnd::At(x) => (PathOutcome::Regular, x),
+                SyntheticEnd::Turns(x, _) | SyntheticEnd::Jumps(x, _) => (PathOutcome::Singular, x),
+                SyntheticEnd::Fails => (PathOutcome::Failed(Failure::StepTooSmall), 0.1),
+                SyntheticEnd::Hopeless => (PathOutcome::Failed(Failure::KilledItsWorker), 0.1),
             };
             let coordinates = vec![Complex64::new(1.0, 0.0), Complex64::new(x, 0.0)];
             if stage.work == Work::LocalDimension {
@@ -101,15 +101,15 @@ pub fn track(stage: &Stage, fate: impl Fn(u64, u16) -> Fate) -> Vec<ItemResult> 
                 residual: 1e-16,
                 condition: 3.0,
                 accuracy: 1e-15,
-                winding_number: match fate(origin, stage.attempt) {
-                    Fate::Turns(_, turns) => Some(turns),
-                    Fate::Jumps(..) => Some(1),
-                    Fate::At(_) | Fate::Fails | Fate::Hopeless => None,
+                winding_number: match end_of(origin, stage.attempt) {
+                    SyntheticEnd::Turns(_, turns) => Some(turns),
+                    SyntheticEnd::Jumps(..) => Some(1),
+                    SyntheticEnd::At(_) | SyntheticEnd::Fails | SyntheticEnd::Hopeless => None,
                 },
-                boundary: match fate(origin, stage.attempt) {
-                    Fate::Turns(..) => Some(0.1 * origin as f64),
-                    Fate::Jumps(_, place) => Some(place),
-                    Fate::At(_) | Fate::Fails | Fate::Hopeless => None,
+                boundary: match end_of(origin, stage.attempt) {
+                    SyntheticEnd::Turns(..) => Some(0.1 * origin as f64),
+                    SyntheticEnd::Jumps(_, place) => Some(place),
+                    SyntheticEnd::At(_) | SyntheticEnd::Fails | SyntheticEnd::Hopeless => None,
                 }
                 .map(|place| {
                     Box::new(BoundaryKey {

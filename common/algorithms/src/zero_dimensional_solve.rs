@@ -46,7 +46,7 @@ impl ZeroDimensionalSolve {
             HomotopyKind::Toric | HomotopyKind::Generic { .. } => {
                 panic!("a polyhedral homotopy is planned as a polyhedral solve")
             }
-            HomotopyKind::Slide { .. } | HomotopyKind::Intersect { .. } => {
+            HomotopyKind::MoveSlice { .. } | HomotopyKind::ProductToEquation { .. } => {
                 panic!("a regeneration is planned as a regeneration solve")
             }
         };

@@ -84,8 +84,8 @@ impl AskedSystem {
             HomotopyKind::Toric => (Vec::new(), vec![Vec::new()]),
             HomotopyKind::StraightLine { parameters }
             | HomotopyKind::Generic { parameters }
-            | HomotopyKind::Slide { parameters, .. }
-            | HomotopyKind::Intersect { parameters, .. } => {
+            | HomotopyKind::MoveSlice { parameters, .. }
+            | HomotopyKind::ProductToEquation { parameters, .. } => {
                 let values = parameters.iter().map(|&z| exact(&mut out, z)).collect();
                 (values, vec![Vec::new()])
             }

@@ -41,8 +41,8 @@ pub fn parameters_at_targets(homotopy: &HomotopyKind, system: &System) -> Vec<Ve
     match homotopy {
         HomotopyKind::StraightLine { parameters }
         | HomotopyKind::Generic { parameters }
-        | HomotopyKind::Slide { parameters, .. }
-        | HomotopyKind::Intersect { parameters, .. } => {
+        | HomotopyKind::MoveSlice { parameters, .. }
+        | HomotopyKind::ProductToEquation { parameters, .. } => {
             vec![parameters.clone()]
         }
         // They end at another system.

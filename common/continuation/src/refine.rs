@@ -66,7 +66,7 @@ impl<S: Real> Job for Newton<'_, '_, '_, S> {
     }
 }
 
-/// Work space for looking closely at one point, in the arithmetic of the room.
+/// Work space for refining one point, in the arithmetic of the tracking context.
 pub(crate) struct Refiner<'a, S: Real> {
     homotopy: &'a Homotopy,
     context: S::Context,
@@ -121,7 +121,7 @@ impl<'a, S: Real> Refiner<'a, S> {
     }
 
     /// The same facts without moving the point.
-    pub(crate) fn look(&mut self, point: &[Complex64], target: u64) -> Report {
+    pub(crate) fn report(&mut self, point: &[Complex64], target: u64) -> Report {
         let mut copy = point.to_vec();
         self.newton(&mut copy, Complex64::default(), target, 0)
     }

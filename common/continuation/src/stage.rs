@@ -12,8 +12,8 @@ use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
 use crate::start_systems::total_degree::TotalDegree;
 use crate::tracker::boundary::Boundary;
+use crate::tracker::contexts;
 use crate::tracker::observer::{Recorder, StepEvent};
-use crate::tracker::rooms;
 use crate::tracker::settings::Settings;
 use crate::work::{Stage, Work};
 use cognate_numeric::lanes::dispatch::InstructionSet;
@@ -78,7 +78,7 @@ enum Points {
 
 /// The homotopy in projective patches, compiled when the first path needs it.
 #[derive(Debug)]
-struct Beyond {
+struct ProjectiveHomotopy {
     system: System,
     degrees: Degrees,
     start_system: Option<StartSystem>,
@@ -93,7 +93,7 @@ pub struct PreparedStage {
     homotopy: Homotopy,
     /// In random projective patches, for paths that leave the affine chart; `None` where all
     /// paths are tracked in such patches from the beginning.
-    beyond: Option<Beyond>,
+    projective: Option<ProjectiveHomotopy>,
     /// The equations that are asked, where combinations of them are tracked.
     asked: Option<AskedSystem>,
     points: Points,
@@ -157,13 +157,13 @@ impl<'a> Checked<'a> {
             HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
                 fits("parameters", parameters)?;
             }
-            HomotopyKind::Slide {
+            HomotopyKind::MoveSlice {
                 parameters,
                 order,
                 level,
                 ..
             }
-            | HomotopyKind::Intersect {
+            | HomotopyKind::ProductToEquation {
                 parameters,
                 order,
                 level,
@@ -230,8 +230,8 @@ impl<'a> Checked<'a> {
             HomotopyKind::Parameter { .. }
                 | HomotopyKind::Toric
                 | HomotopyKind::Generic { .. }
-                | HomotopyKind::Slide { .. }
-                | HomotopyKind::Intersect { .. }
+                | HomotopyKind::MoveSlice { .. }
+                | HomotopyKind::ProductToEquation { .. }
         );
         let exchange = stage.start_points.exchange();
         if exchange.is_some_and(|exchange| overdetermined || !exchange.fits(system)) {
@@ -441,7 +441,7 @@ impl PreparedStage {
             &sample(&checked.points, &checked.chart),
             stage.seed,
         );
-        let beyond = checked.affine.then(|| Beyond {
+        let projective = checked.affine.then(|| ProjectiveHomotopy {
             system: checked.system.into_owned(),
             degrees: checked.degrees,
             start_system: checked.start_system,
@@ -452,7 +452,7 @@ impl PreparedStage {
         Ok(Self {
             boundary: Boundary::new(homotopy.chart(), exchange, stage.seed),
             homotopy,
-            beyond,
+            projective,
             asked: checked.asked,
             points: checked.points,
             stage: stage.clone(),
@@ -488,18 +488,18 @@ impl PreparedStage {
 
     /// The homotopy in projective patches, for paths that left the affine chart; `None` where
     /// all paths begin in projective patches.
-    pub(crate) fn homotopy_beyond(&self) -> Option<&Homotopy> {
-        let beyond = self.beyond.as_ref()?;
-        Some(beyond.homotopy.get_or_init(|| {
-            let chart = Chart::new(&beyond.system, self.stage.seed, self.stage.attempt);
+    pub(crate) fn projective_homotopy(&self) -> Option<&Homotopy> {
+        let projective = self.projective.as_ref()?;
+        Some(projective.homotopy.get_or_init(|| {
+            let chart = Chart::new(&projective.system, self.stage.seed, self.stage.attempt);
             let begins = sample(&self.points, &chart);
             Homotopy::new(
-                &beyond.system,
-                &beyond.degrees,
+                &projective.system,
+                &projective.degrees,
                 &self.stage.homotopy,
-                beyond.start_system.as_ref(),
+                projective.start_system.as_ref(),
                 chart,
-                &beyond.first_chart,
+                &projective.first_chart,
                 &begins,
                 self.stage.seed,
             )
@@ -507,8 +507,8 @@ impl PreparedStage {
     }
 
     /// Whether paths may leave the chart where they begin.
-    pub(crate) fn has_beyond(&self) -> bool {
-        self.beyond.is_some()
+    pub(crate) fn has_projective_homotopy(&self) -> bool {
+        self.projective.is_some()
     }
 
     /// By which paths are known where they enter the endgame.
@@ -528,7 +528,7 @@ impl PreparedStage {
     pub(crate) fn item(&self, item: u64) -> (u64, u64) {
         let origin = self.stage.origin(item);
         match self.stage.homotopy {
-            HomotopyKind::Parameter { .. } | HomotopyKind::Slide { .. } => {
+            HomotopyKind::Parameter { .. } | HomotopyKind::MoveSlice { .. } => {
                 (origin, origin / self.starts)
             }
             // Its cell is found by the path.
@@ -573,7 +573,7 @@ impl PreparedStage {
     ) -> Vec<PathResult> {
         assert!(items.end <= self.items, "a chunk lies within its stage");
         let first = items.start;
-        let mut results = rooms::track(self, set, items, width, None);
+        let mut results = contexts::track(self, set, items, width, None);
         self.hold_against_asked(first, &mut results);
         results
     }
@@ -592,7 +592,7 @@ impl PreparedStage {
         assert!(item < self.items, "the item lies within the stage");
         let mut recorder = Recorder::default();
         let set = InstructionSet::detect();
-        let mut results = rooms::track(self, set, item..item + 1, 1, Some(&mut recorder));
+        let mut results = contexts::track(self, set, item..item + 1, 1, Some(&mut recorder));
         self.hold_against_asked(item, &mut results);
         (results.remove(0), recorder.0)
     }

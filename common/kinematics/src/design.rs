@@ -12,7 +12,7 @@ pub struct Design {
     pub positions: Vec<Linkage>,
     /// The largest change of a link's length between them, relative to the size of the task.
     pub error: f64,
-    /// What it is worth.
+    /// Assessment of the linkage.
     pub assessment: Assessment,
 }
 

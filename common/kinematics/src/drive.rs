@@ -23,7 +23,7 @@ enum Reach {
 /// What driving a linkage from one side does at given positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// Which side is driven.
+    /// The side of the linkage that is driven.
     pub driver: Side,
     /// The driver can turn all the way round.
     pub turns_round: bool,

@@ -80,7 +80,7 @@ impl Lengths {
         [self.ground, self.sides[0], self.coupler, self.sides[1]]
     }
 
-    /// Its type.
+    /// Grashof type of the linkage.
     pub fn mobility(&self) -> Mobility {
         let around = self.around();
         let least = around.iter().copied().fold(f64::INFINITY, f64::min);
@@ -131,7 +131,7 @@ impl Mobility {
 }
 
 impl Linkage {
-    /// Its lengths.
+    /// Lengths of the links.
     pub fn lengths(&self) -> Lengths {
         let between = |p: Complex64, q: Complex64| modulus(p - q);
         Lengths {

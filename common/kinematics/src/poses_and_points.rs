@@ -49,12 +49,12 @@ impl Mixture {
         ((2..=4).contains(&poses) && points == mixture.points()).then_some(mixture)
     }
 
-    /// How many poses.
+    /// Number of given poses.
     pub fn poses(self) -> usize {
         self.poses
     }
 
-    /// How many points.
+    /// Number of given points.
     pub fn points(self) -> usize {
         10 - 2 * self.poses
     }
@@ -234,12 +234,12 @@ impl PosesAndPoints {
         })
     }
 
-    /// How many of each.
+    /// Numbers of given poses and points.
     pub fn mixture(&self) -> Mixture {
         self.mixture
     }
 
-    /// Where they are.
+    /// Places of the given poses and points.
     pub fn places(&self) -> &[Complex64] {
         &self.places
     }

@@ -131,7 +131,7 @@ const MAP_0F38: u8 = 2;
 #[derive(Debug)]
 pub struct Encoder {
     set: VectorSet,
-    /// What is there so far.
+    /// Bytes that are encoded so far.
     pub code: Vec<u8>,
 }
 

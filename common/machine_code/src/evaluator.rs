@@ -98,7 +98,7 @@ impl Evaluator {
         Self { interpreter, code }
     }
 
-    /// What it evaluates.
+    /// The interpreter of the same program.
     pub fn interpreter(&self) -> &Interpreter {
         &self.interpreter
     }

@@ -14,11 +14,11 @@ pub(crate) type Value = u32;
 pub(crate) enum Place {
     /// Part 0 (real) or 1 (imaginary) of a number of one of the caller's arrays.
     Number {
-        /// Which array.
+        /// The caller's array, by the register of its address.
         base: Base,
-        /// Which number.
+        /// Index of the number in the array.
         index: u32,
-        /// Which part.
+        /// Real part (0) or imaginary part (1).
         part: u8,
     },
     /// One of the constants, the same in all lanes.
@@ -66,7 +66,7 @@ pub(crate) enum Step {
 }
 
 impl Step {
-    /// What it reads.
+    /// Values that the instruction reads.
     pub(crate) fn operands(&self) -> &[Value] {
         match self {
             Self::Compute(Operation::Fused(_), operands, _) => operands,
@@ -105,7 +105,7 @@ impl Routine {
         value
     }
 
-    /// What stands in memory.
+    /// The value of this place in memory.
     pub(crate) fn at(&mut self, place: Place) -> Value {
         if let Some(&value) = self.known.get(&place) {
             return value;

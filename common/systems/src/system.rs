@@ -63,7 +63,7 @@ pub struct System {
     pub scaling: Scaling,
 }
 
-/// Why a system is none.
+/// Why a system is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SystemError {
     /// There is nothing to solve for.

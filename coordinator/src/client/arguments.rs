@@ -46,7 +46,7 @@ Exit codes: 0 solved, 1 solved but something is not settled, 2 bad input,
             3 the service could not be reached or gave up, 4 cancelled, 130 interrupted"
 )]
 pub struct Arguments {
-    /// What to do.
+    /// The subcommand.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -248,7 +248,7 @@ Examples:
   cognate solve family.bertini --start-solutions solutions.jsonl \\
                 --start-parameters start.json --target-parameters wanted.json")]
 pub struct Solve {
-    /// What is solved.
+    /// The file, its format, and what of the answer is known.
     #[command(flatten)]
     pub problem: ProblemArguments,
     /// Local worker processes
@@ -257,10 +257,10 @@ pub struct Solve {
     /// Threads of each worker [default: cores / workers]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
-    /// Where the answer goes.
+    /// Files and format of the answer.
     #[command(flatten)]
     pub output: OutputArguments,
-    /// What is seen meanwhile.
+    /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
 }
@@ -354,7 +354,7 @@ pub struct Decompose {
     /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
     #[arg(help_heading = "Problem")]
     pub file: PathBuf,
-    /// Which components.
+    /// The components of a decomposition that are meant.
     #[command(flatten)]
     pub components: ComponentArguments,
     /// Values of the parameters: Bertini's format or JSON, one set
@@ -375,7 +375,7 @@ pub struct Decompose {
     /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
     #[arg(long, help_heading = "Problem")]
     pub exact: bool,
-    /// Who does it.
+    /// A coordinator of the command's own, or one that runs.
     #[command(flatten)]
     pub service: OwnOrRunning,
     /// How the answer is shown
@@ -384,7 +384,7 @@ pub struct Decompose {
     /// Also write what `cognate member` and others read, and Bertini's input, witness_data and main_data, here
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
-    /// What is seen meanwhile.
+    /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
 }
@@ -404,7 +404,7 @@ impl Decompose {
         }
     }
 
-    /// Where the answer goes.
+    /// Files and format of the answer.
     pub fn output(&self) -> OutputArguments {
         OutputArguments {
             format: self.format,
@@ -559,7 +559,7 @@ pub struct SynthesisArguments {
     /// Proofs that the linkages are there, that they differ, that they are real
     #[arg(long)]
     pub certify: bool,
-    /// Who does it.
+    /// A coordinator of the command's own, or one that runs.
     #[command(flatten)]
     pub service: OwnOrRunning,
     /// How the linkages are shown
@@ -629,7 +629,7 @@ Examples:
   cognate path system.bertini --index 17            how path 17 ends
   cognate path system.bertini --index 17 --trace    every step, and a drawing in path_17.svg")]
 pub struct TracePath {
-    /// What is solved.
+    /// The file, its format, and what of the answer is known.
     #[command(flatten)]
     pub problem: ProblemArguments,
     /// The path's number, as results show it
@@ -748,7 +748,7 @@ pub struct FleetSlurm {
     /// The program, as the nodes see it [default: this one]
     #[arg(long, value_name = "FILE")]
     pub program: Option<PathBuf>,
-    /// Which coordinator.
+    /// The coordinator that is asked.
     #[command(flatten)]
     pub service: ServiceArguments,
     /// The coordinator's address, as the nodes see it [default: the same]
@@ -769,16 +769,16 @@ Examples:
   cognate submit system.bertini
   job=$(cognate submit system.bertini) && cognate watch $job && cognate results $job")]
 pub struct Submit {
-    /// What is solved.
+    /// The file, its format, and what of the answer is known.
     #[command(flatten)]
     pub problem: ProblemArguments,
     /// All irreducible components instead of isolated solutions, as `cognate decompose` finds them
     #[arg(long, help_heading = "Components")]
     pub decompose: bool,
-    /// Which components.
+    /// The components of a decomposition that are meant.
     #[command(flatten)]
     pub components: ComponentArguments,
-    /// Which coordinator.
+    /// The coordinator that is asked.
     #[command(flatten)]
     pub service: ServiceArguments,
     /// Chosen by the caller: the same id sent twice is one job
@@ -792,10 +792,10 @@ pub struct Submit {
 /// `cognate watch`.
 #[derive(Clone, Debug, Args)]
 pub struct Watch {
-    /// Which job.
+    /// The job that is meant.
     #[command(flatten)]
     pub job: OneJob,
-    /// What is seen meanwhile.
+    /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
 }
@@ -805,7 +805,7 @@ pub struct Watch {
 pub struct OneJob {
     /// The job's id, as `submit` printed it
     pub job: String,
-    /// Which coordinator.
+    /// The coordinator that is asked.
     #[command(flatten)]
     pub service: ServiceArguments,
     /// How the answer is shown
@@ -823,10 +823,10 @@ Examples:
 pub struct Results {
     /// The job's id, as `submit` printed it
     pub job: String,
-    /// Which coordinator.
+    /// The coordinator that is asked.
     #[command(flatten)]
     pub service: ServiceArguments,
-    /// Where the answer goes.
+    /// Files and format of the answer.
     #[command(flatten)]
     pub output: OutputArguments,
 }
@@ -834,7 +834,7 @@ pub struct Results {
 /// `cognate jobs`, `cognate workers`.
 #[derive(Clone, Debug, Args)]
 pub struct Listing {
-    /// Which coordinator.
+    /// The coordinator that is asked.
     #[command(flatten)]
     pub service: ServiceArguments,
     /// How the answer is shown

@@ -43,7 +43,7 @@ pub enum PresetName {
     Reckless,
 }
 
-/// Where the answer goes.
+/// Files and format of the answer.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputArguments {

@@ -16,9 +16,9 @@ use std::time::Duration;
 pub struct ConfigFile {
     /// Addresses to listen on.
     pub listen: Option<Vec<String>>,
-    /// What remembers.
+    /// Address of the ledger: a file of SQLite, or a PostgreSQL database.
     pub ledger: Option<String>,
-    /// Where results are kept.
+    /// Folder or bucket of the results.
     pub results: Option<String>,
     /// Serve addresses beyond this machine without asking anybody who they are.
     pub insecure: Option<bool>,
@@ -26,11 +26,11 @@ pub struct ConfigFile {
     pub token_file: Option<PathBuf>,
     /// The own certificate chain.
     pub tls_certificate: Option<PathBuf>,
-    /// Its private key.
+    /// File of the private key that belongs to the certificate.
     pub tls_key: Option<PathBuf>,
-    /// Whose certificates callers must have.
+    /// File of the authorities that sign the certificates of callers.
     pub tls_client_ca: Option<PathBuf>,
-    /// Where metrics are read.
+    /// Address at which metrics are served.
     pub metrics: Option<String>,
     /// Workers on this host may use shared memory.
     pub shared_memory: Option<bool>,
@@ -38,7 +38,7 @@ pub struct ConfigFile {
     pub shared_memory_least_free_mib: Option<u64>,
     /// Times and limits.
     rules: RulesTable,
-    /// How large chunks are.
+    /// Sizes of chunks.
     chunks: ChunksTable,
 }
 

@@ -34,9 +34,9 @@ pub enum ClientError {
     File {
         /// "cannot read" or "cannot write".
         action: &'static str,
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// The operating system's error.
         source: std::io::Error,
     },
     /// What a file or an option says is wrong.
@@ -58,7 +58,7 @@ pub enum ClientError {
         "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
     )]
     Unreachable {
-        /// Where it was looked for.
+        /// Address at which a coordinator was expected.
         address: String,
         /// What the connection said.
         reason: String,

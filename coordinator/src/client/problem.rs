@@ -17,7 +17,7 @@ use std::path::Path;
 /// A submission, and what a person should know about it.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// What is sent.
+    /// The submission that is sent to the coordinator.
     pub submission: Submission,
     /// What is solved, in a word: the file's name.
     pub name: String,

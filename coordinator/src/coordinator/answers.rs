@@ -29,9 +29,9 @@ const LONGEST: Duration = Duration::from_secs(1);
 /// One path of a finished job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassifiedPath {
-    /// Its last result.
+    /// Result of the last attempt at the path.
     pub result: PathResult,
-    /// Its class.
+    /// Class of the path's end.
     pub verdict: Verdict,
     /// The solution that it ended at, by its index among all solutions.
     pub solution: Option<u64>,

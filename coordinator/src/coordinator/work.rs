@@ -37,7 +37,7 @@ pub struct Pull {
 /// What a worker found out about a chunk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Who reports.
+    /// The worker that reports.
     pub by: Speaker,
     /// Lease under which the chunk was done.
     pub lease: LeaseId,

@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 const HERE: &str = "the steward is back before the step ends";
 
-/// What a step did.
+/// Whether a step of driving a job changed anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driven {
     /// The step did nothing: chunks are with workers, or wait for them.

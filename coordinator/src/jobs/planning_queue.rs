@@ -102,7 +102,7 @@ impl PlanningQueue {
     /// than a moment, and must answer the same both times.
     ///
     /// # Panics
-    /// Where the work does.
+    /// When `work` panics.
     pub async fn plan<T: Send + 'static>(
         &self,
         work: impl Fn() -> T + Send + Sync + 'static,
@@ -127,7 +127,7 @@ impl PlanningQueue {
     /// Does work that cannot be interrupted off the async executor: reading a file, whose size bounds it.
     ///
     /// # Panics
-    /// Where the work does.
+    /// When `work` panics.
     pub async fn read<T: Send + 'static>(
         &self,
         is_large: bool,

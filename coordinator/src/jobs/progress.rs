@@ -5,7 +5,7 @@ use crate::ledger::identity::JobId;
 use crate::ledger::rows::{JobRow, JobState, Outcomes, StageRow};
 use cognate_continuation::work::StageId;
 
-/// How far a job is.
+/// Progress of a job, with its open stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JobProgress {
     /// The job.

@@ -10,7 +10,7 @@ use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::work::StageId;
 use serde::{Deserialize, Serialize};
 
-/// How far a job is.
+/// State of a job, from submission to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum JobState {
@@ -143,7 +143,7 @@ pub struct Advance {
     pub snapshot: Option<Digest>,
 }
 
-/// How a job ends.
+/// The end of a job: with an answer, or with a reason why there is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobEnd {
     /// With solutions and a summary, both objects.
@@ -163,9 +163,9 @@ pub enum JobEnd {
 /// Items and chunks of one kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Count {
-    /// Items.
+    /// Number of items: paths, points or branches.
     pub items: u64,
-    /// Chunks.
+    /// Number of chunks.
     pub chunks: u64,
 }
 
@@ -427,7 +427,7 @@ impl Holder {
 /// Whether a lease stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// It stands.
+    /// The lease is valid.
     Held {
         /// Name of the worker that has the chunk.
         worker: WorkerId,
@@ -494,7 +494,7 @@ pub enum GiveBack {
 pub struct Expired {
     /// The lease.
     pub lease: LeaseId,
-    /// Who had it.
+    /// The worker that had the lease.
     pub worker: WorkerId,
     /// Suspicions against the chunk, this one included.
     pub suspicions: u32,

@@ -37,7 +37,7 @@ pub struct DecompositionSummary {
     pub warnings: Vec<String>,
 }
 
-/// What was decomposed.
+/// The problem that was decomposed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DecomposedProblem {
     /// Name of the problem, usually that of its file.
@@ -129,7 +129,7 @@ pub struct EvidenceBlock {
     pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: Option<f64>,
-    /// What is not clear.
+    /// Reasons why this part of the answer is not settled.
     pub doubts: Vec<Doubt>,
 }
 
@@ -150,7 +150,7 @@ pub struct DimensionBlock {
     pub failed: u64,
     /// Whether all components of this dimension are found.
     pub complete: Completeness,
-    /// What is not clear.
+    /// Reasons why this part of the answer is not settled.
     pub doubts: Vec<Doubt>,
 }
 

@@ -56,7 +56,7 @@ pub enum StoreError {
     Folder {
         /// The folder.
         folder: String,
-        /// What the system said.
+        /// The operating system's error.
         error: std::io::Error,
     },
 }
@@ -91,7 +91,7 @@ pub struct RecordKind(pub &'static [u8; 8]);
 /// File that says that a folder holds results. A folder that is mounted too late has none, and what is
 /// not found there is not lost.
 pub const MARKER: &str = "cognate-results";
-/// What stands in it.
+/// Text of the marker file.
 const MARKED: &str = "Results of cognate. This file stays as long as they do: a coordinator takes a \
                       folder without it for one that is not mounted.\n";
 

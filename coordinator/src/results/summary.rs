@@ -36,13 +36,13 @@ pub struct LargeAnswer {
 pub struct Finished<'a> {
     /// The job.
     pub job: &'a JobRow,
-    /// How it was planned.
+    /// The plan that the job was solved by.
     pub planned: &'a Planned,
-    /// Its stages.
+    /// Stages of the job, in the order in which they were opened.
     pub stages: &'a [StageRow],
     /// What workers did for it.
     pub workers: &'a [Contribution],
-    /// When it ended.
+    /// Time at which the job ended.
     pub now: LedgerTime,
 }
 
@@ -80,7 +80,7 @@ pub struct Summary {
     pub warnings: Vec<String>,
 }
 
-/// What was solved.
+/// The problem that was solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProblemBlock {
     /// Name of the problem, usually that of its file.
@@ -110,7 +110,7 @@ pub struct MonodromyBlock {
     pub parameters: BTreeMap<String, Complex64>,
 }
 
-/// How long it took.
+/// Wall and CPU time of the job, in seconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeBlock {
     /// From submission to the end.
@@ -123,7 +123,7 @@ pub struct TimeBlock {
     pub paths_per_second: f64,
 }
 
-/// What one worker did.
+/// Share of one worker in the job.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorkerBlock {
     /// Name of the worker.

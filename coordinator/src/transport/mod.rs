@@ -30,7 +30,7 @@ pub enum ListenError {
     Bind {
         /// The address that was to be listened at.
         address: ListenAddress,
-        /// What the system said.
+        /// The operating system's error.
         source: std::io::Error,
     },
     /// Anybody could come in.

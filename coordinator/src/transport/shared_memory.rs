@@ -44,7 +44,7 @@ type Active = ActiveRequest<Ipc, [u8], (), [u8], ()>;
 
 /// A listener in shared memory that is open.
 // In the order of dropping: ports before their node, the node before the place.
-pub struct SharedMemoryDoor {
+pub struct SharedMemoryListener {
     server: Server<Ipc, [u8], (), [u8], ()>,
     listener: Listener<Ipc>,
     bell: Arc<Notifier<Ipc>>,
@@ -52,7 +52,7 @@ pub struct SharedMemoryDoor {
     place: Arc<Place>,
 }
 
-impl SharedMemoryDoor {
+impl SharedMemoryListener {
     /// Opens one, unless less than `least_free` bytes are free in /dev/shm or the library refuses.
     pub fn open(least_free: u64) -> Result<Self, Unusable> {
         // The library ends itself with a panic where it finds its own files in disorder.

@@ -385,15 +385,15 @@ enum Row {
     Accepted,
 }
 
-/// The coordinator's books, kept as the ledger keeps them.
-struct Books {
+/// The rows of a stage's chunks, kept as the ledger keeps them.
+struct ChunkRows {
     rows: Vec<(Row, u64)>,
     lasts: Duration,
     accepted: u64,
     stale: u64,
 }
 
-impl Books {
+impl ChunkRows {
     fn named(chunk: usize, epoch: u64) -> LeaseId {
         LeaseId {
             epoch,
@@ -500,7 +500,7 @@ struct Tally {
 fn live(seed: u64, trouble: bool, tally: &mut Tally) {
     let mut random = RandomStream::new(seed, Purpose::Test, 0);
     let chunks = 1 + random.below(12) as usize;
-    let mut books = Books {
+    let mut rows = ChunkRows {
         rows: vec![(Row::Ready, 0); chunks],
         lasts: milliseconds(400 + random.below(2000)),
         accepted: 0,
@@ -553,9 +553,9 @@ fn live(seed: u64, trouble: bool, tally: &mut Tally) {
                 Command::CancelPull => assert!(drained),
                 Command::Exit(_) => {
                     assert!(drained, "seed {seed}: only a drained worker ends");
-                    assert_eq!(books.accepted, chunks as u64, "seed {seed}");
-                    assert!(books.rows.iter().all(|(row, _)| *row == Row::Accepted));
-                    tally.stale += books.stale;
+                    assert_eq!(rows.accepted, chunks as u64, "seed {seed}");
+                    assert!(rows.rows.iter().all(|(row, _)| *row == Row::Accepted));
+                    tally.stale += rows.stale;
                     return;
                 }
                 call => {
@@ -581,11 +581,11 @@ fn live(seed: u64, trouble: bool, tally: &mut Tally) {
         // What runs is leased: nobody else can have got it, by any clock.
         for (lease, end) in &tracking {
             assert!(
-                books.holds(lease) || *end <= now,
+                rows.holds(lease) || *end <= now,
                 "seed {seed}: {lease} runs though it is another's"
             );
         }
-        if !drained && books.accepted == chunks as u64 && !troubled(now) {
+        if !drained && rows.accepted == chunks as u64 && !troubled(now) {
             drained = true;
             session.handle(Input::Drain, now);
             continue;
@@ -604,7 +604,7 @@ fn live(seed: u64, trouble: bool, tally: &mut Tally) {
             // The process is frozen: it wakes late, and everything has gone on without it.
             now = now + milliseconds(random.below(4000));
         }
-        books.expire(now);
+        rows.expire(now);
         while let Some(entry) = future.first_entry() {
             let when = entry.key().0;
             if when > now {
@@ -626,7 +626,7 @@ fn live(seed: u64, trouble: bool, tally: &mut Tally) {
                     let answer = if outage(when) {
                         failure(&call)
                     } else {
-                        books.answer(&call, when)
+                        rows.answer(&call, when)
                     };
                     // A reply can be lost although the call was done.
                     let lost_reply = troubled(when) && random.below(8) == 0;

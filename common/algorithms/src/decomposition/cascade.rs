@@ -69,13 +69,13 @@ impl Cascade {
         let (parameters, level) = (Vec::new(), self.level as u32);
         let order = (0..problem.variables() as u32).collect();
         let homotopy = match self.sliding {
-            true => HomotopyKind::Slide {
+            true => HomotopyKind::MoveSlice {
                 parameters,
                 order,
                 level,
                 forms: degree - 1,
             },
-            false => HomotopyKind::Intersect {
+            false => HomotopyKind::ProductToEquation {
                 parameters,
                 order,
                 level,

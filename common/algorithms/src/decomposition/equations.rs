@@ -9,7 +9,7 @@
 
 use super::deflated::{Deflations, PureSet, doubles};
 use super::job::{Job, StageSystem};
-use super::junk::Sieve;
+use super::junk::JunkFilter;
 use super::problem::{Problem, REFINED};
 use super::superset::Superset;
 use cognate_continuation::homotopies::HomotopyKind;
@@ -63,7 +63,7 @@ enum Phase {
     /// The sets that are still to be cut; the last is open, where it is said.
     Cutting { left: Vec<Cut>, open: bool },
     /// What came out is sifted.
-    Sifting(Box<Sieve>),
+    Sifting(Box<JunkFilter>),
 }
 
 /// Equation by equation.
@@ -141,16 +141,16 @@ impl Equations {
                         self.taken = last;
                         return None;
                     }
-                    let sieve = Sieve::new(self.take_supersets(0), true);
+                    let filter = JunkFilter::new(self.take_supersets(0), true);
                     self.sets.clear();
-                    self.phase = Phase::Sifting(Box::new(sieve));
+                    self.phase = Phase::Sifting(Box::new(filter));
                 }
-                Phase::Sifting(sieve) => {
+                Phase::Sifting(filter) => {
                     let made = (&*problem, deflations);
-                    if let Some(job) = sieve.advance(made, done.take(), &mut self.sets) {
+                    if let Some(job) = filter.advance(made, done.take(), &mut self.sets) {
                         return Some(job);
                     }
-                    for dimension in sieve.dimensions() {
+                    for dimension in filter.dimensions() {
                         let number = dimension.number as usize;
                         add(&mut self.lost, number, [0, unclear(&dimension)]);
                     }
@@ -237,7 +237,7 @@ fn add(lost: &mut BTreeMap<usize, [u64; 2]>, dimension: usize, more: [u64; 2]) {
     known[1] += more[1];
 }
 
-/// Points of a dimension of which a sieve does not know what they are.
+/// Points of a dimension of which the junk filter does not know what they are.
 fn unclear(dimension: &Dimension) -> u64 {
     let points = |doubt: &Doubt| match doubt {
         Doubt::Junk { points } | Doubt::NotDeflated { points } | Doubt::Asked { points } => *points,
@@ -253,13 +253,13 @@ fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut) -> Jo
     let (parameters, order) = (Vec::new(), (0..n as u32).collect());
     cut.sliding = !cut.sliding && cut.degree > 1;
     let homotopy = match cut.sliding {
-        true => HomotopyKind::Slide {
+        true => HomotopyKind::MoveSlice {
             parameters,
             order,
             level,
             forms: cut.degree - 1,
         },
-        false => HomotopyKind::Intersect {
+        false => HomotopyKind::ProductToEquation {
             parameters,
             order,
             level,

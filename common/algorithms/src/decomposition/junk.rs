@@ -1,4 +1,4 @@
-//! The sieve: points of a superset that lie on sets of higher dimension are left out.
+//! The junk filter: points of a superset that lie on sets of higher dimension are left out.
 //!
 //! A regular point is isolated on its slice, and no junk. Of a singular one the dual space of all
 //! equations on the slice says whether it is isolated (Bates, Hauenstein, Peterson, Sommese 2009); unless it
@@ -60,9 +60,9 @@ enum Asking {
     },
 }
 
-/// Dimension by dimension.
+/// Tells junk from witness points, dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Sieve {
+pub(super) struct JunkFilter {
     supersets: VecDeque<Superset>,
     /// Several paths may come to a reduced point: sets that meet there were cut one by one.
     shared: bool,
@@ -74,7 +74,7 @@ pub(super) struct Sieve {
     dimensions: Vec<Dimension>,
 }
 
-impl Sieve {
+impl JunkFilter {
     /// `shared`: whether several paths may come to a reduced point.
     pub fn new(supersets: Vec<Superset>, shared: bool) -> Self {
         Self {

@@ -39,7 +39,7 @@ pub use costs::DecompositionCosts;
 use deflated::{Deflations, PureSet};
 use equations::{Equations, Prefixes};
 use job::{Job, StageSystem};
-use junk::Sieve;
+use junk::JunkFilter;
 pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
@@ -58,7 +58,7 @@ enum Step {
     /// Dimension by dimension.
     Slices(Slices),
     /// Dimension by dimension, highest first: what is junk and what is multiple.
-    Sieve(Sieve),
+    JunkFilter(JunkFilter),
     /// Set by set: components.
     Split(Split),
     /// All is known.
@@ -191,9 +191,9 @@ impl DecompositionSolve {
                 state.paths.add(&paths);
                 slices.advance(made, done.as_ref())
             }
-            Step::Sieve(sieve) => {
+            Step::JunkFilter(filter) => {
                 state.paths.add(&paths);
-                sieve.advance(made, done.as_ref(), &mut state.sets)
+                filter.advance(made, done.as_ref(), &mut state.sets)
             }
             Step::Split(split) => {
                 state.paths_of_loops.add(&paths);
@@ -207,20 +207,20 @@ impl DecompositionSolve {
         let (state, problem) = (&mut self.state, &*self.problem);
         match &mut state.step {
             Step::Cascade(cascade) => {
-                state.step = Step::Sieve(Sieve::new(cascade.supersets(problem), false));
+                state.step = Step::JunkFilter(JunkFilter::new(cascade.supersets(problem), false));
                 return;
             }
             Step::Equations(equations) => {
-                state.step = Step::Sieve(Sieve::new(equations.supersets(problem), true));
+                state.step = Step::JunkFilter(JunkFilter::new(equations.supersets(problem), true));
                 return;
             }
             Step::Slices(slices) => {
-                state.step = Step::Sieve(Sieve::new(slices.supersets(), false));
+                state.step = Step::JunkFilter(JunkFilter::new(slices.supersets(), false));
                 return;
             }
-            Step::Sieve(sieve) => {
+            Step::JunkFilter(filter) => {
                 let asked = |number: usize| problem.asked.contains(&(number as u32));
-                state.dimensions = sieve.dimensions();
+                state.dimensions = filter.dimensions();
                 state.dimensions.retain(|d| asked(d.number as usize));
                 state.sets.retain(|set| asked(set.dimension));
             }
@@ -424,7 +424,7 @@ impl Solve for DecompositionSolve {
                 Step::Cascade(cascade) => cascade.description(&self.problem),
                 Step::Equations(equations) => equations.description(&self.problem),
                 Step::Slices(slices) => slices.description(&self.problem),
-                Step::Sieve(_) => "telling junk from witness points".into(),
+                Step::JunkFilter(_) => "telling junk from witness points".into(),
                 Step::Split(_) => "telling components apart".into(),
                 Step::Done(_) => "done".into(),
             },

@@ -199,13 +199,13 @@ impl RealCurves {
         let n = with.problem.variables() as u32;
         let (parameters, order, level) = (Vec::new(), (0..n).collect(), n - 1);
         let homotopy = match forms {
-            Some(forms) => HomotopyKind::Slide {
+            Some(forms) => HomotopyKind::MoveSlice {
                 parameters,
                 order,
                 level,
                 forms,
             },
-            None => HomotopyKind::Intersect {
+            None => HomotopyKind::ProductToEquation {
                 parameters,
                 order,
                 level,

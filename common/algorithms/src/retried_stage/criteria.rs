@@ -63,8 +63,8 @@ impl Criteria {
             HomotopyKind::StraightLine { parameters }
             | HomotopyKind::PathVariable { parameters }
             | HomotopyKind::Generic { parameters }
-            | HomotopyKind::Slide { parameters, .. }
-            | HomotopyKind::Intersect { parameters, .. } => parameters,
+            | HomotopyKind::MoveSlice { parameters, .. }
+            | HomotopyKind::ProductToEquation { parameters, .. } => parameters,
             HomotopyKind::Parameter { targets, .. } => &targets[target],
             HomotopyKind::Toric | HomotopyKind::Sections { .. } => &[],
         }

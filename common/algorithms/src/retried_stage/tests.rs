@@ -3,7 +3,7 @@
 use crate::any_algorithm::{AnyAlgorithm, AnySolve, RestoreError};
 use crate::parameter_solve::ParameterSolve;
 use crate::run_locally::drive;
-use crate::synthetic::{Fate, first_stage, system, track};
+use crate::synthetic::{SyntheticEnd, first_stage, system, track};
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use crate::{Next, PathAlgorithm};
 use cognate_continuation::homotopies::HomotopyKind;
@@ -28,12 +28,12 @@ fn solve() -> AnyAlgorithm {
 /// Runs it; returns the stages that it opened and what it found.
 fn run(
     algorithm: &mut AnyAlgorithm,
-    fate: impl Fn(u64, u16) -> Fate,
+    end_of: impl Fn(u64, u16) -> SyntheticEnd,
 ) -> (Vec<Stage>, Vec<SolutionSet>) {
     let mut stages = Vec::new();
     let done: Result<(), Infallible> = drive(algorithm, &mut |opening| {
         stages.push(opening.stage.clone());
-        Ok(track(&opening.stage, &fate))
+        Ok(track(&opening.stage, &end_of))
     });
     assert_eq!(done, Ok(()));
     assert!(algorithm.progress().done);
@@ -42,7 +42,7 @@ fn run(
 
 #[test]
 fn clean_paths_are_tracked_once() {
-    let (stages, sets) = run(&mut solve(), |path, _| Fate::At(0.1 * path as f64));
+    let (stages, sets) = run(&mut solve(), |path, _| SyntheticEnd::At(0.1 * path as f64));
     assert_eq!(stages.len(), 1);
     assert_eq!((sets[0].paths.total, sets[0].paths.finite), (4, 4));
     assert_eq!(sets[0].counts.real, Some(4));
@@ -53,9 +53,9 @@ fn clean_paths_are_tracked_once() {
 fn what_fails_or_crosses_is_tracked_again_with_the_same_gamma() {
     // Paths 0 and 2 meet once; path 3 fails twice.
     let (stages, sets) = run(&mut solve(), |path, attempt| match (path, attempt) {
-        (2, 0) => Fate::At(0.0),
-        (3, 0 | 1) => Fate::Fails,
-        _ => Fate::At(0.1 * path as f64),
+        (2, 0) => SyntheticEnd::At(0.0),
+        (3, 0 | 1) => SyntheticEnd::Fails,
+        _ => SyntheticEnd::At(0.1 * path as f64),
     });
     let selected: Vec<_> = stages[1..]
         .iter()
@@ -80,9 +80,9 @@ fn what_fails_or_crosses_is_tracked_again_with_the_same_gamma() {
 fn a_turn_that_is_no_permutation_is_made_again() {
     // Paths 0 and 1 exchange places in a turn, but path 1 says that it needs three.
     let (stages, sets) = run(&mut solve(), |path, attempt| match (path, attempt) {
-        (1, 0) => Fate::Turns(0.5, 3),
-        (0 | 1, _) => Fate::Turns(0.5, 2),
-        _ => Fate::At(0.1 * path as f64),
+        (1, 0) => SyntheticEnd::Turns(0.5, 3),
+        (0 | 1, _) => SyntheticEnd::Turns(0.5, 2),
+        _ => SyntheticEnd::At(0.1 * path as f64),
     });
     let again = stages.iter().filter(|stage| stage.attempt == 1);
     let again: Vec<_> = again.map(|stage| stage.start_points.clone()).collect();
@@ -99,8 +99,8 @@ fn a_turn_that_is_no_permutation_is_made_again() {
     assert_eq!(singular.cycles, [2]);
     // One that never fits is named.
     let (_, sets) = run(&mut solve(), |path, _| match path {
-        0 => Fate::Turns(0.5, 2),
-        _ => Fate::At(0.1 * path as f64),
+        0 => SyntheticEnd::Turns(0.5, 2),
+        _ => SyntheticEnd::At(0.1 * path as f64),
     });
     let named = |warning: &String| warning.contains("winding numbers do not fit");
     assert!(sets[0].warnings.iter().any(named), "{:?}", sets[0].warnings);
@@ -111,8 +111,8 @@ fn a_point_that_is_known_stays_where_another_is_asked_again() {
     // Three paths to one point, as many as it has functionals; one to another, which is tracked again.
     let mut algorithm = solve();
     let (stages, _) = run(&mut algorithm, |path, _| match path {
-        3 => Fate::Turns(0.9, 1),
-        _ => Fate::Turns(0.5, 3),
+        3 => SyntheticEnd::Turns(0.9, 1),
+        _ => SyntheticEnd::Turns(0.5, 3),
     });
     let work: Vec<(Work, Option<u64>)> = stages.iter().map(|s| (s.work, s.items())).collect();
     let (track, look) = (Work::Track, Work::LocalDimension);
@@ -129,11 +129,11 @@ fn a_point_that_is_known_stays_where_another_is_asked_again() {
 #[test]
 fn a_path_that_became_another_one_is_found_where_both_end() {
     // Four paths to one point; path 2 had jumped onto path 1 before.
-    let fate = |path: u64, attempt: u16| match (path, attempt) {
-        (2, 0) => Fate::Jumps(0.5, 0.1 + 1e-7),
-        _ => Fate::Jumps(0.5, 0.1 * path as f64),
+    let end_of = |path: u64, attempt: u16| match (path, attempt) {
+        (2, 0) => SyntheticEnd::Jumps(0.5, 0.1 + 1e-7),
+        _ => SyntheticEnd::Jumps(0.5, 0.1 * path as f64),
     };
-    let (stages, sets) = run(&mut solve(), fate);
+    let (stages, sets) = run(&mut solve(), end_of);
     let again = stages.iter().filter(|stage| stage.attempt == 1);
     let again: Vec<_> = again.map(|stage| stage.start_points.clone()).collect();
     let [StartPoints::Selected { indices, .. }] = again.as_slice() else {
@@ -145,7 +145,7 @@ fn a_path_that_became_another_one_is_found_where_both_end() {
     assert_eq!((paths.singular, paths.failed, paths.retracked), (4, 0, 6));
     assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 1));
     // One that stays there is named.
-    let (_, sets) = run(&mut solve(), |path, _| fate(path, 0));
+    let (_, sets) = run(&mut solve(), |path, _| end_of(path, 0));
     let paths = &sets[0].paths;
     assert_eq!((paths.singular, paths.failed, paths.total), (3, 1, 4));
     assert_eq!((paths.crossings_found, paths.crossings_resolved), (1, 0));
@@ -155,10 +155,10 @@ fn a_path_that_became_another_one_is_found_where_both_end() {
 #[test]
 fn what_does_not_come_apart_is_accounted_for() {
     let (stages, sets) = run(&mut solve(), |path, _| match path {
-        1 => Fate::At(0.0),
-        2 => Fate::Hopeless,
-        3 => Fate::Fails,
-        _ => Fate::At(0.1 * path as f64),
+        1 => SyntheticEnd::At(0.0),
+        2 => SyntheticEnd::Hopeless,
+        3 => SyntheticEnd::Fails,
+        _ => SyntheticEnd::At(0.1 * path as f64),
     });
     assert_eq!(stages.len(), 4);
     assert_eq!(
@@ -186,8 +186,8 @@ fn every_target_has_its_own_set() {
     )));
     // Equal endpoints of different targets are no crossing; paths 8 and 9 are one.
     let (stages, sets) = run(&mut algorithm, |path, attempt| match (path, attempt) {
-        (9, 0) => Fate::At(0.0),
-        _ => Fate::At(0.1 * (path % 4) as f64),
+        (9, 0) => SyntheticEnd::At(0.0),
+        _ => SyntheticEnd::At(0.1 * (path % 4) as f64),
     });
     assert_eq!(stages.len(), 2);
     assert_eq!(stages[1].items(), Some(2));
@@ -205,11 +205,11 @@ fn every_target_has_its_own_set() {
 
 #[test]
 fn a_restored_solve_goes_on_to_the_same_answer() {
-    let fate = |path: u64, attempt: u16| match (path, attempt) {
-        (0, 0) | (1, 0..=2) => Fate::Fails,
-        _ => Fate::At(0.1 * path as f64),
+    let end_of = |path: u64, attempt: u16| match (path, attempt) {
+        (0, 0) | (1, 0..=2) => SyntheticEnd::Fails,
+        _ => SyntheticEnd::At(0.1 * path as f64),
     };
-    let (_, expected) = run(&mut solve(), fate);
+    let (_, expected) = run(&mut solve(), end_of);
     // A new process before every step.
     let mut algorithm = solve();
     let mut open = Vec::new();
@@ -222,7 +222,7 @@ fn a_restored_solve_goes_on_to_the_same_answer() {
             Next::Open(opening) => open.push(opening.stage),
             Next::Wait => {
                 let stage = open.pop().unwrap();
-                let results = track(&stage, fate);
+                let results = track(&stage, end_of);
                 algorithm.absorb(stage.id, &mut results.into_iter());
             }
             Next::Done => break,

@@ -49,7 +49,7 @@ pub enum HomotopyKind {
     /// A level of a regeneration (see `start_systems::slices`): on the first `level` equations
     /// and on the slices after the level's own, that one moves to each other form of the level.
     /// Item number i starts at start point `i % starts` and goes to form `1 + i / starts`.
-    Slide {
+    MoveSlice {
         /// Values of the system's parameters, if it has any.
         parameters: Vec<Complex64>,
         /// The equations in the order in which they are taken.
@@ -59,8 +59,8 @@ pub enum HomotopyKind {
         /// Number of forms besides the slice: the degree of the next equation, less one.
         forms: u32,
     },
-    /// There, from the product of the level's forms to the next equation.
-    Intersect {
+    /// On the same equations and slices, from the product of the level's forms to the next equation.
+    ProductToEquation {
         /// Values of the system's parameters, if it has any.
         parameters: Vec<Complex64>,
         /// The equations in the order in which they are taken.
@@ -87,12 +87,12 @@ impl HomotopyKind {
     pub fn targets(&self) -> u64 {
         match self {
             Self::Parameter { targets, .. } => targets.len() as u64,
-            Self::Slide { forms, .. } => u64::from(*forms),
+            Self::MoveSlice { forms, .. } => u64::from(*forms),
             Self::StraightLine { .. }
             | Self::PathVariable { .. }
             | Self::Toric
             | Self::Generic { .. }
-            | Self::Intersect { .. }
+            | Self::ProductToEquation { .. }
             | Self::Sections { .. } => 1,
         }
     }
@@ -104,8 +104,8 @@ impl HomotopyKind {
             Self::Parameter { .. }
             | Self::PathVariable { .. }
             | Self::Toric
-            | Self::Slide { .. }
-            | Self::Intersect { .. }
+            | Self::MoveSlice { .. }
+            | Self::ProductToEquation { .. }
             | Self::Sections { .. } => false,
         }
     }
@@ -113,8 +113,8 @@ impl HomotopyKind {
     /// Whether the paths end at solutions of the system, rather than of one on the way to it.
     pub fn ends_at_the_system(&self) -> bool {
         match self {
-            Self::Toric | Self::Slide { .. } | Self::Sections { .. } => false,
-            Self::Intersect { order, level, .. } => order.len() == *level as usize + 1,
+            Self::Toric | Self::MoveSlice { .. } | Self::Sections { .. } => false,
+            Self::ProductToEquation { order, level, .. } => order.len() == *level as usize + 1,
             Self::StraightLine { .. }
             | Self::Parameter { .. }
             | Self::PathVariable { .. }

@@ -248,8 +248,8 @@ impl Homotopy {
         let parameter_nodes: Vec<NodeId> = match kind {
             HomotopyKind::StraightLine { parameters }
             | HomotopyKind::Generic { parameters }
-            | HomotopyKind::Slide { parameters, .. }
-            | HomotopyKind::Intersect { parameters, .. } => {
+            | HomotopyKind::MoveSlice { parameters, .. }
+            | HomotopyKind::ProductToEquation { parameters, .. } => {
                 parameters.iter().map(|&z| exact(&mut out, z)).collect()
             }
             HomotopyKind::Toric => Vec::new(),
@@ -285,8 +285,8 @@ impl Homotopy {
         let at_start: Vec<Complex64> = match kind {
             HomotopyKind::StraightLine { .. }
             | HomotopyKind::Generic { .. }
-            | HomotopyKind::Slide { .. }
-            | HomotopyKind::Intersect { .. } => Vec::new(),
+            | HomotopyKind::MoveSlice { .. }
+            | HomotopyKind::ProductToEquation { .. } => Vec::new(),
             HomotopyKind::Toric => toric
                 .iter()
                 .flat_map(|toric| toric.generic().coefficients())
@@ -325,7 +325,7 @@ impl Homotopy {
                     _ => both,
                 })
             }
-            (HomotopyKind::Intersect { parameters, .. }, _) => level.map(|level| {
+            (HomotopyKind::ProductToEquation { parameters, .. }, _) => level.map(|level| {
                 let degree = degrees.total[level.next()];
                 let product = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
                     vec![level.product(out, &coordinates[0], degree)]
@@ -384,14 +384,14 @@ impl Homotopy {
             HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
             HomotopyKind::PathVariable { .. } => (None, vec![one], vec![vec![zero]]),
             HomotopyKind::Toric => (None, at_start.clone(), vec![at_start.clone()]),
-            HomotopyKind::Slide { .. } => {
+            HomotopyKind::MoveSlice { .. } => {
                 let level = level.expect("it is a level");
                 let moving = Level::moving_form(&mut out, &coordinates[0]);
                 equations = level.rows(&mut out, &coordinates[0], &equations, moving);
                 let (slice, forms) = level.ends();
                 (None, slice, forms)
             }
-            HomotopyKind::Intersect { .. } => {
+            HomotopyKind::ProductToEquation { .. } => {
                 let level = level.expect("it is a level");
                 let degree = degrees.total[level.next()];
                 let mut start = [level.product(&mut out, &coordinates[0], degree)];

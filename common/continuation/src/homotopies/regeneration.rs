@@ -20,13 +20,13 @@ impl<'a> Level<'a> {
     /// The level of a homotopy that is one of a regeneration.
     pub(crate) fn of(kind: &'a HomotopyKind, seed: u64) -> Option<Self> {
         let (order, level, slides) = match kind {
-            HomotopyKind::Slide {
+            HomotopyKind::MoveSlice {
                 order,
                 level,
                 forms,
                 ..
             } => (order, level, Some(*forms)),
-            HomotopyKind::Intersect { order, level, .. } => (order, level, None),
+            HomotopyKind::ProductToEquation { order, level, .. } => (order, level, None),
             _ => return None,
         };
         Some(Self {

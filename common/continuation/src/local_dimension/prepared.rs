@@ -59,9 +59,11 @@ impl PreparedLocalDimension {
         let (given, targets) = match &stage.homotopy {
             HomotopyKind::StraightLine { parameters }
             | HomotopyKind::Generic { parameters }
-            | HomotopyKind::Intersect { parameters, .. }
+            | HomotopyKind::ProductToEquation { parameters, .. }
             | HomotopyKind::PathVariable { parameters } => (std::slice::from_ref(parameters), 1),
-            HomotopyKind::Toric | HomotopyKind::Slide { .. } | HomotopyKind::Sections { .. } => {
+            HomotopyKind::Toric
+            | HomotopyKind::MoveSlice { .. }
+            | HomotopyKind::Sections { .. } => {
                 return Err(misfit("a homotopy on the way ends at another system"));
             }
             HomotopyKind::Parameter { targets, .. } => (targets.as_slice(), targets.len() as u64),

@@ -1,7 +1,7 @@
 //! Batch: where the paths of all lanes are, where they were, and where they go next.
 
 use super::digits::Digits;
-use super::survey::Series;
+use super::taylor_probe::Series;
 use crate::predictor::hermite::{POINTS, weights};
 use cognate_numeric::scalar::{Complex, Mask, Real};
 use num_complex::Complex64;

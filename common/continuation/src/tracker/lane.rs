@@ -74,13 +74,13 @@ pub(crate) struct Lane {
     pub climbs: u32,
     /// Bits of the arithmetic in which it last began at its start point.
     pub began_with: u32,
-    /// Accepted steps in this room.
+    /// Accepted steps in this tracking context.
     pub steps_here: u32,
     /// Rejections since the last accepted step that only noise explains.
     pub starved: u32,
     /// Second Newton correction of the last of these rejections.
     pub last_rejected: f64,
-    /// Where the turns around 0 began in this room: t and the point.
+    /// Where the turns around 0 began in this tracking context: t and the point.
     pub first_turn: Option<(f64, Vec<Digits>)>,
     /// The same of the last turns whose first point stood firmly.
     pub last_turn: Option<(f64, Vec<Digits>)>,
@@ -110,7 +110,7 @@ impl Lane {
         self.arrive(bits);
     }
 
-    /// The path comes into a room of this arithmetic.
+    /// The path comes into a tracking context of this arithmetic.
     pub fn arrive(&mut self, bits: u32) {
         self.phase = Phase::Starting;
         self.highest_bits = self.highest_bits.max(bits);

@@ -4,19 +4,19 @@
 //! Every lane has its own t and step, a rejected lane only shrinks its step, and
 //! a lane whose path has ended takes the next start point with a step of length
 //! 0. So there is no divergence, and no lane ever looks at another: the bits of
-//! a path are those of the same path alone (W = 1 is a width). What a room
-//! (a chart and an arithmetic) cannot do, another may: see `rooms`.
+//! a path are those of the same path alone (W = 1 is a width). What a tracking
+//! context (a chart and an arithmetic) cannot do, another may: see `contexts`.
 
 use super::batch::Batch;
+use super::contexts::{Ended, HandedOffPath, Handoff, Queue, TrackingContext};
 use super::digits::Digits;
 use super::far_out;
 use super::lane::{Lane, Phase};
 use super::limits::{Limits, MOST_ROUNDS, rounds};
 use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
-use super::rooms::{Departure, Door, Ended, Room, Waiting};
 use super::settings::Settings;
-use super::survey::{Series, Surveyor, View};
+use super::taylor_probe::{Estimate, Series, TaylorProbe};
 use crate::chart::{LEAST_NORM, norm};
 use crate::endgames::cauchy::distance;
 use crate::endgames::circle::VERTICES;
@@ -73,16 +73,16 @@ pub(super) const ENDGAME_BITS: u32 = 212;
 /// This part of all steps that a path may take is enough for its turns in doubles.
 const LABOUR: u32 = 8;
 
-/// Where a path enters a room.
+/// The point from which a path is tracked in a context.
 enum Entry {
     Start(Vec<Complex64>),
-    Arrival(Vec<Digits>),
+    HandedOff(Vec<Digits>),
 }
 
-/// All lanes of one room.
+/// All lanes of one tracking context.
 pub(super) struct Lockstep<'a, R: Real> {
     pub(super) stage: &'a PreparedStage,
-    pub(super) room: Room<'a>,
+    pub(super) tracking: TrackingContext<'a>,
     pub(super) context: R::Context,
     pub(super) settings: Settings,
     pub(super) on_the_way: Limits,
@@ -95,11 +95,11 @@ pub(super) struct Lockstep<'a, R: Real> {
     pub(super) dp: Vec<Complex<R>>,
     pub(super) refiner: Refiner<'a, R::Single>,
     /// In robust mode.
-    pub(super) surveyor: Option<Surveyor<'a, R::Single>>,
-    /// Where each lane's path goes on, as its last look showed; in robust mode, on the way.
+    pub(super) probe: Option<TaylorProbe<'a, R::Single>>,
+    /// Where each lane's path goes on, as its last Taylor series showed; in robust mode, on the way.
     pub(super) series: Vec<Option<Series>>,
     pub(super) circle: Vec<Complex64>,
-    pub(super) waiting: Waiting,
+    pub(super) queue: Queue,
     pub(super) ended: Ended,
     pub(super) observer: Option<&'a mut dyn Observer>,
     pub(super) point: Vec<Complex64>,
@@ -157,26 +157,26 @@ fn accumulate<R: Real>(
 impl<'a, R: Real> Lockstep<'a, R> {
     #[inline(always)]
     pub(super) fn new(
-        room: Room<'a>,
+        tracking: TrackingContext<'a>,
         context: R::Context,
-        waiting: Waiting,
+        queue: Queue,
         observer: Option<&'a mut dyn Observer>,
     ) -> Self {
-        let homotopy = room.homotopy;
+        let homotopy = tracking.homotopy;
         let n = homotopy.dimension();
         let parameters = homotopy.parameter_count();
-        let settings = room.settings();
+        let settings = tracking.settings();
         assert!(
-            room.bits <= DOUBLE_DOUBLE || R::WIDTH == 1,
+            tracking.bits <= DOUBLE_DOUBLE || R::WIDTH == 1,
             "numbers of MPFR have one lane"
         );
         Self {
-            stage: room.stage,
+            stage: tracking.stage,
             context,
-            on_the_way: Limits::on_the_way(room.bits, &settings),
-            around_zero: Limits::around_zero(room.bits, &settings),
+            on_the_way: Limits::on_the_way(tracking.bits, &settings),
+            around_zero: Limits::around_zero(tracking.bits, &settings),
             batch: Batch::new(context, n, parameters, settings.predictor_tolerance),
-            surveyor: (settings.reach > 0.0).then(|| Surveyor::new(homotopy, context)),
+            probe: (settings.reach > 0.0).then(|| TaylorProbe::new(homotopy, context)),
             settings,
             series: vec![None; R::WIDTH],
             lanes: vec![Lane::default(); R::WIDTH],
@@ -186,8 +186,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
             dp: vec![Complex::zero(context); parameters],
             refiner: Refiner::new(homotopy, context),
             circle: roots_of_unity(VERTICES),
-            room,
-            waiting,
+            tracking,
+            queue,
             ended: Ended::default(),
             observer,
             point: Vec::with_capacity(n),
@@ -209,23 +209,23 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// Puts the next path into a lane, if there is one.
     pub(super) fn refill(&mut self, lane: usize) {
-        let homotopy = self.room.homotopy;
+        let homotopy = self.tracking.homotopy;
         loop {
             let path = &mut self.lanes[lane];
-            let (t, exchanges, entry) = if let Some(item) = self.waiting.items.next() {
+            let (t, exchanges, entry) = if let Some(item) = self.queue.items.next() {
                 let (origin, target) = self.stage.item(item);
                 path.begin(item, origin, target);
                 let entry = self.stage.start_point(origin).map(Entry::Start);
                 (Complex64::new(1.0, 0.0), 0.0, entry)
-            } else if let Some(departure) = self.waiting.departures.pop_front() {
-                *path = departure.lane;
-                let entry = departure.point.map(Entry::Arrival);
-                (departure.t, departure.exchanges, entry)
+            } else if let Some(handed_off) = self.queue.handed_off.pop_front() {
+                *path = handed_off.lane;
+                let entry = handed_off.point.map(Entry::HandedOff);
+                (handed_off.t, handed_off.exchanges, entry)
             } else {
                 path.phase = Phase::Idle;
                 return;
             };
-            path.arrive(self.room.bits);
+            path.arrive(self.tracking.bits);
             self.series[lane] = None;
             let target = path.target;
             self.batch.exchanges.set_lane(lane, exchanges);
@@ -239,7 +239,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             if let Some(entry) = entry {
                 match entry {
                     Entry::Start(point) => self.batch.write(lane, t, &point),
-                    Entry::Arrival(point) => {
+                    Entry::HandedOff(point) => {
                         self.batch.write_digits(self.context, lane, t, &point);
                     }
                 }
@@ -258,7 +258,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     #[inline(always)]
     fn step(&mut self) {
         let settings = &self.settings;
-        let n = self.room.homotopy.dimension();
+        let n = self.tracking.homotopy.dimension();
         let control = |v: f64| R::Control::from_f64((), v);
 
         // Where to: a step of length h towards the target, or the target itself.
@@ -294,7 +294,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             &std::array::from_fn(|k| counts[k].and(moving)),
         );
         let next = batch.slot(POINTS);
-        let fine = self.room.bits > DOUBLE;
+        let fine = self.tracking.bits > DOUBLE;
         let mut candidate = std::mem::take(&mut batch.x[next]);
         let mut candidate_tangent = std::mem::take(&mut batch.tangent[next]);
         let context = self.context;
@@ -318,7 +318,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             }
             candidate[i].set(&sum);
         }
-        if self.surveyor.is_some() {
+        if self.probe.is_some() {
             for (lane, series) in self.series.iter().enumerate() {
                 if let Some(series) = series.as_ref().filter(|_| moving.lane(lane)) {
                     batch.extrapolate(self.context, lane, series, tried.lane(lane), &mut candidate);
@@ -332,7 +332,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
         // Newton; then Newton and tangent from one factorisation.
         let around = around_zero::<R>(&self.lanes);
-        let homotopy = self.room.homotopy;
+        let homotopy = self.tracking.homotopy;
         homotopy.path().at(
             self.context,
             &t,
@@ -341,7 +341,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             &mut self.p,
             &mut self.dp,
         );
-        let rounds = rounds(self.room.bits);
+        let rounds = rounds(self.tracking.bits);
         let mut corrections: [R::Control; MOST_ROUNDS] = std::array::from_fn(|_| control(0.0));
         let mut size = control(0.0);
         for (round, correction) in corrections.iter_mut().enumerate().take(rounds) {
@@ -462,14 +462,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
         batch.advance(candidate, candidate_tangent, &t, moved);
 
-        // What only single paths know: a glance at each, and more where something happened.
+        // Decisions that are made lane by lane: accept, change precision, enter the endgame.
         for lane in 0..R::WIDTH {
             if self.lanes[lane].phase == Phase::Idle {
                 continue;
             }
             let path = &mut self.lanes[lane];
             path.evaluations += rounds as u32;
-            path.effort += u64::from((self.room.bits / DOUBLE_DOUBLE).max(1));
+            path.effort += u64::from((self.tracking.bits / DOUBLE_DOUBLE).max(1));
             let step = Step {
                 accepted: accepted.lane(lane),
                 arrived: accepted.lane(lane) && reaches.lane(lane),
@@ -513,17 +513,17 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     accepted: step.accepted,
                     predictor_error: step.predictor_error,
                     correction: step.correction,
-                    precision_bits: self.room.bits,
+                    precision_bits: self.tracking.bits,
                     point: homotopy.endpoint(&point),
                 };
                 observer.step(path.origin, event);
             }
-            self.attend(lane, &step);
+            self.after_step(lane, &step);
         }
     }
 
     /// Decides how one path goes on after a step.
-    fn attend(&mut self, lane: usize, step: &Step) {
+    fn after_step(&mut self, lane: usize, step: &Step) {
         let settings = &self.settings;
         let phase = self.lanes[lane].phase;
         let t = self.batch.t(lane);
@@ -578,10 +578,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
                     self.series[lane] = None;
                     self.lanes[lane].phase = Phase::Arriving;
                     self.batch.refine(lane);
-                } else if self.room.beyond && (step.size > FAR || at_end) {
-                    self.leave(lane, t, Door::Beyond);
+                } else if self.tracking.projective && (step.size > FAR || at_end) {
+                    self.hand_off(lane, t, Handoff::Projective);
                 } else if step.accepted
-                    && self.room.down
+                    && self.tracking.down
                     && self.lanes[lane].may_go_down()
                     && t.re > 10.0 * settings.endgame_radius
                 {
@@ -589,7 +589,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
                         .read_here(lane, &mut self.point, &mut self.tangent);
                     let target = self.lanes[lane].target;
                     if self.refiner.condition_at(&self.point, t, target) <= TAME {
-                        self.leave(lane, t, Door::Down);
+                        self.hand_off(lane, t, Handoff::Down);
                     } else {
                         self.lanes[lane].steps_here = 0;
                     }
@@ -619,8 +619,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 }
                 // Back to the last point before 0, from where the turns begin.
                 let before = self.batch.step_back(lane);
-                if self.room.beyond {
-                    return self.leave(lane, before, Door::Beyond);
+                if self.tracking.projective {
+                    return self.hand_off(lane, before, Handoff::Projective);
                 }
                 if before.re > settings.endgame_boundary {
                     let boundary = Complex64::new(settings.endgame_boundary, 0.0);
@@ -663,7 +663,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     /// In robust mode the next step of a path stays away from singularities and from other paths; one
     /// that has come too near to another is taken back.
     fn comes_too_near(&mut self, lane: usize, step: Option<&Step>) -> bool {
-        let Some(surveyor) = &mut self.surveyor else {
+        let Some(probe) = &mut self.probe else {
             return false;
         };
         let (context, t) = (self.context, self.batch.t(lane));
@@ -674,12 +674,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .collect();
         let path = &mut self.lanes[lane];
         path.evaluations += TERMS as u32;
-        let View {
+        let Estimate {
             radius,
-            apart,
+            separation,
             series,
-        } = surveyor.look(&point, t, path.target);
-        let limit = APART * apart;
+        } = probe.estimate(&point, t, path.target);
+        let limit = APART * separation;
         // How far apart paths are is known where they were before: they may have come closer.
         if step.is_some_and(|step| step.predictor_error > limit) {
             path.rejections += 1;
@@ -706,7 +706,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// Whether points have more digits than doubles.
     pub(super) fn fine(&self) -> bool {
-        self.room.bits > DOUBLE
+        self.tracking.bits > DOUBLE
     }
 
     /// A path has ended at `self.point`; the lane takes the next one.
@@ -729,14 +729,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
         self.refill(lane);
     }
 
-    /// In this room there is no going on: elsewhere there may be.
+    /// A path that cannot go on in this tracking context is handed to another one, or fails.
     pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
-        let door = if self.room.beyond {
-            Door::Beyond
-        } else if self.room.up
-            && (why != Failure::EndgameUnsettled || self.room.bits < ENDGAME_BITS)
+        let handoff = if self.tracking.projective {
+            Handoff::Projective
+        } else if self.tracking.up
+            && (why != Failure::EndgameUnsettled || self.tracking.bits < ENDGAME_BITS)
         {
-            Door::Up
+            Handoff::Up
         } else {
             return self.fail_and_refill(lane, t, why);
         };
@@ -744,16 +744,16 @@ impl<'a, R: Real> Lockstep<'a, R> {
         // steps became too short, those at this radius; else all, at radii where there is less noise.
         let path = &mut self.lanes[lane];
         let (first, last) = (path.first_turn.take(), path.last_turn.take());
-        let begin = match (door, why) {
-            (Door::Up, Failure::StepTooSmall) => last.or(first),
+        let begin = match (handoff, why) {
+            (Handoff::Up, Failure::StepTooSmall) => last.or(first),
             _ => first,
         };
         match begin {
             Some((radius, point)) => {
                 path.cauchy.forget();
-                self.depart(lane, Complex64::new(radius, 0.0), point, door);
+                self.hand_off_from(lane, Complex64::new(radius, 0.0), point, handoff);
             }
-            None => self.leave(lane, t, door),
+            None => self.hand_off(lane, t, handoff),
         }
     }
 
@@ -767,18 +767,18 @@ impl<'a, R: Real> Lockstep<'a, R> {
             _ => false,
         };
         let most = u64::from(self.settings.max_steps / LABOUR);
-        in_endgame && self.room.bits == DOUBLE && self.room.up && path.effort > most
+        in_endgame && self.tracking.bits == DOUBLE && self.tracking.up && path.effort > most
     }
 
     /// A path that came up a rung from where fewer digits had lost it follows its whole way on
     /// this one.
     fn begins_again(&mut self, lane: usize) -> bool {
-        let (bits, path) = (self.room.bits, &self.lanes[lane]);
+        let (bits, path) = (self.tracking.bits, &self.lanes[lane]);
         if bits == DOUBLE || path.began_with >= bits {
             return false;
         }
         let start = self.stage.start_point(path.origin);
-        let Some(start) = start.and_then(|start| self.beyond(start)) else {
+        let Some(start) = start.and_then(|start| self.projective_point(start)) else {
             return false;
         };
         self.lanes[lane].begin_again(bits);
@@ -789,45 +789,51 @@ impl<'a, R: Real> Lockstep<'a, R> {
         true
     }
 
-    /// A point of the chart where paths begin in the one beyond, if there is one; `None` where
+    /// A point of the chart where paths begin in the projective patch, if there is one; `None` where
     /// that misses it.
-    fn beyond(&self, point: Vec<Complex64>) -> Option<Vec<Complex64>> {
-        match self.stage.homotopy_beyond() {
-            Some(beyond) => {
+    fn projective_point(&self, point: Vec<Complex64>) -> Option<Vec<Complex64>> {
+        match self.stage.projective_homotopy() {
+            Some(projective) => {
                 let coordinates = self.stage.homotopy().chart().homogeneous(&point);
-                beyond.chart().point(&coordinates)
+                projective.chart().point(&coordinates)
             }
             None => Some(point),
         }
     }
 
-    /// The path goes on in another room from where it is.
-    fn leave(&mut self, lane: usize, t: Complex64, door: Door) {
+    /// The path goes on in another tracking context from where it is.
+    fn hand_off(&mut self, lane: usize, t: Complex64, handoff: Handoff) {
         let point = self.batch.digits(lane);
         self.lanes[lane].cauchy.forget();
-        self.depart(lane, t, point, door);
+        self.hand_off_from(lane, t, point, handoff);
     }
 
-    /// The path goes on in another room from this point of this one's chart.
-    pub(super) fn depart(&mut self, lane: usize, t: Complex64, point: Vec<Digits>, door: Door) {
-        let point = match door {
-            Door::Beyond => {
+    /// The path goes on in another tracking context from this point of this one's chart.
+    pub(super) fn hand_off_from(
+        &mut self,
+        lane: usize,
+        t: Complex64,
+        point: Vec<Digits>,
+        handoff: Handoff,
+    ) {
+        let point = match handoff {
+            Handoff::Projective => {
                 let rounded: Vec<Complex64> = point.iter().map(Digits::rounded).collect();
-                let there = self.beyond(rounded);
+                let there = self.projective_point(rounded);
                 there.map(|point| point.into_iter().map(Digits::from).collect())
             }
-            Door::Up | Door::Down => Some(point),
+            Handoff::Up | Handoff::Down => Some(point),
         };
         let mut path = self.lanes[lane].clone();
-        if door == Door::Up {
+        if handoff == Handoff::Up {
             path.climbs += 1;
         }
-        self.ended.departures.push(Departure {
+        self.ended.handed_off.push(HandedOffPath {
             lane: path,
             t,
             point,
             exchanges: self.batch.exchanges.lane(lane),
-            door,
+            handoff,
         });
         self.refill(lane);
     }
@@ -888,7 +894,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     /// Normalised homogeneous coordinates of where a path ends. A regular point far out is given with digits of its
     /// own: those that doubles have there are digits of its largest coordinate.
     fn endpoint(&self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
-        let homotopy = self.room.homotopy;
+        let homotopy = self.tracking.homotopy;
         if outcome != PathOutcome::Regular {
             return homotopy.endpoint(&self.point);
         }

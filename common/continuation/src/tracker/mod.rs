@@ -5,6 +5,7 @@
 
 mod batch;
 pub(crate) mod boundary;
+pub(crate) mod contexts;
 mod digits;
 mod far_out;
 pub(crate) mod lane;
@@ -12,7 +13,6 @@ mod limits;
 pub mod lockstep;
 pub mod observer;
 pub mod outcome;
-pub(crate) mod rooms;
 pub mod settings;
-mod survey;
+mod taylor_probe;
 mod turns;

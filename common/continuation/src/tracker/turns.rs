@@ -3,11 +3,11 @@
 //! `endgames::cauchy` says where to; here the path is taken there, and what it shows there is handed
 //! back: the point, its homogenising coordinates and their valuations.
 
+use super::contexts::Handoff;
 use super::digits::Digits;
 use super::lane::Phase;
 use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
-use super::rooms::Door;
 use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
 use crate::endgames::circle::VERTICES;
@@ -30,7 +30,10 @@ impl<R: Real> Lockstep<'_, R> {
             .read_here(lane, &mut self.point, &mut self.tangent);
         let homogenizing = self.homogenizing(lane, false);
         self.batch.drop_anchor(lane);
-        let digits = [self.fine(), self.room.up && self.room.bits < ENDGAME_BITS];
+        let digits = [
+            self.fine(),
+            self.tracking.up && self.tracking.bits < ENDGAME_BITS,
+        ];
         let path = &mut self.lanes[lane];
         let begin = (t.re, self.batch.digits(lane));
         if step.last[1] <= FIRM {
@@ -40,13 +43,13 @@ impl<R: Real> Lockstep<'_, R> {
         let next = path
             .cauchy
             .begin(t.re, &self.point, step.last[1], &homogenizing, digits);
-        self.obey(lane, next);
+        self.follow_endgame(lane, next);
     }
 
     /// Whether a step that reached a vertex leaves no more error there than the point had where the turn
     /// began.
     pub(super) fn is_sample(&self, lane: usize, step: &Step) -> bool {
-        let rounding = unit_roundoff(self.room.bits.min(ENDGAME_BITS));
+        let rounding = unit_roundoff(self.tracking.bits.min(ENDGAME_BITS));
         step.left() <= self.lanes[lane].cauchy.noise().max(2.0 * rounding)
     }
 
@@ -66,13 +69,13 @@ impl<R: Real> Lockstep<'_, R> {
             &valuations,
             &self.settings,
         );
-        self.obey(lane, next);
+        self.follow_endgame(lane, next);
     }
 
     /// Whether a path that has come past the boundary of the endgame runs to infinity like a power of t
     /// already: turns tell more there than further in, where coordinates are of very different sizes.
     pub(super) fn in_endgame_zone(&mut self, lane: usize, step: &Step, t: Complex64) -> bool {
-        if self.room.beyond || !step.accepted || t.re > self.settings.endgame_boundary {
+        if self.tracking.projective || !step.accepted || t.re > self.settings.endgame_boundary {
             return false;
         }
         let due = |(before, _): &(f64, Vec<Complex64>)| t.re <= ZONE * before;
@@ -91,7 +94,7 @@ impl<R: Real> Lockstep<'_, R> {
     }
 
     /// Carries out what the endgame wants.
-    pub(super) fn obey(&mut self, lane: usize, next: cauchy::Next) {
+    pub(super) fn follow_endgame(&mut self, lane: usize, next: cauchy::Next) {
         let settings = &self.settings;
         let target = self.lanes[lane].target;
         match next {
@@ -148,11 +151,11 @@ impl<R: Real> Lockstep<'_, R> {
                 // perturbation by the unit roundoff takes a double point apart by its square root). Deflated
                 // equations tell; where they did not the path is tracked again, and the next rung tells.
                 let again = self.stage.attempt() > 0;
-                if !regular && again && self.room.bits == DOUBLE && self.room.up {
+                if !regular && again && self.tracking.bits == DOUBLE && self.tracking.up {
                     let path = &mut self.lanes[lane];
                     let begin = path.last_turn.take().or(path.first_turn.take());
                     let (radius, point) = begin.expect("turns begin somewhere");
-                    self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
+                    self.hand_off_from(lane, Complex64::new(radius, 0.0), point, Handoff::Up);
                     return;
                 }
                 let outcome = if regular {
@@ -160,7 +163,7 @@ impl<R: Real> Lockstep<'_, R> {
                 } else {
                     self.point.clear();
                     self.point.extend_from_slice(&settled.endpoint);
-                    report = self.refiner.look(&self.point, target);
+                    report = self.refiner.report(&self.point, target);
                     report.accuracy = settled.accuracy;
                     PathOutcome::Singular
                 };
@@ -191,7 +194,7 @@ impl<R: Real> Lockstep<'_, R> {
                 let path = &mut self.lanes[lane];
                 let begin = path.last_turn.take().or(path.first_turn.take());
                 let (radius, point) = begin.expect("turns begin somewhere");
-                self.depart(lane, Complex64::new(radius, 0.0), point, Door::Up);
+                self.hand_off_from(lane, Complex64::new(radius, 0.0), point, Handoff::Up);
             }
             cauchy::Next::Unsettled => {
                 let t = self.batch.t(lane);
@@ -219,7 +222,7 @@ impl<R: Real> Lockstep<'_, R> {
     /// Values of the homogenising coordinates at `self.point`, where the lane's path is; above doubles with
     /// all its digits. With `back`, at the point less its tangent.
     fn homogenizing(&self, lane: usize, back: bool) -> Vec<Homogenizing> {
-        let homotopy = self.room.homotopy;
+        let homotopy = self.tracking.homotopy;
         if self.fine() {
             let context = self.context;
             let both = self.batch.here().iter().zip(self.batch.tangent_here());

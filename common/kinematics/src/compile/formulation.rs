@@ -20,7 +20,7 @@ pub enum Problem {
 /// A question about a mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
-    /// What is given.
+    /// The kinematic problem.
     pub problem: Problem,
     /// The joints that drive it, instead of the file's.
     pub inputs: Option<Vec<String>>,
@@ -40,11 +40,11 @@ pub enum Target {
 /// The family that a mechanism belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Family {
-    /// Its name.
+    /// Name of the family.
     pub name: String,
     /// Solutions of a general member, where that is known.
     pub expected: Option<u64>,
-    /// Who says so.
+    /// Source of the number of solutions.
     pub source: &'static str,
     /// Coordinates of the equations.
     pub representation: &'static str,
@@ -53,7 +53,7 @@ pub struct Family {
 /// Known solutions of a general member.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownMember {
-    /// Its parameters.
+    /// Parameters of the known member.
     pub parameters: Vec<Complex64>,
     /// Its solutions, point after point.
     pub points: Vec<Complex64>,

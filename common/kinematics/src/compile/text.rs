@@ -257,13 +257,13 @@ impl TextPose {
         Self { rotation, position }
     }
 
-    /// Where a point goes.
+    /// Image of a point.
     pub fn point(&self, p: &[String; 3]) -> [String; 3] {
         let turned = self.direction(p);
         std::array::from_fn(|i| sum(&[turned[i].clone(), self.position[i].clone()]))
     }
 
-    /// Where a direction goes.
+    /// Image of a direction.
     pub fn direction(&self, d: &[String; 3]) -> [String; 3] {
         std::array::from_fn(|i| dot(&self.rotation[i], d))
     }

@@ -54,13 +54,13 @@ impl MechanismError {
 /// A value and the byte at which it stands.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    /// What it is.
+    /// Kind of the value.
     pub kind: Kind,
     /// First byte in the file.
     pub at: usize,
 }
 
-/// What a value is.
+/// Kinds of values in a mechanism's file.
 #[derive(Clone, Debug)]
 pub enum Kind {
     /// Nothing.
@@ -102,7 +102,7 @@ fn short(text: &str) -> String {
 pub struct Document<'a> {
     /// The file's name, for messages.
     pub file: &'a str,
-    /// Its text.
+    /// Text of the file.
     pub text: &'a str,
 }
 

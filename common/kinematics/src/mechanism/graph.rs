@@ -9,7 +9,7 @@ use super::{Body, Framework, Joint, JointKind, LegKind, Linkage, Mechanism, Plat
 pub struct Edge {
     /// The joint's name.
     pub name: String,
-    /// Its type.
+    /// Type of the joint.
     pub kind: JointKind,
     /// The two links, by number.
     pub links: [usize; 2],

@@ -110,9 +110,9 @@ pub struct Side {
 /// A joint between two links.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its name.
+    /// Name of the joint.
     pub name: String,
-    /// Its type.
+    /// Type of the joint.
     pub kind: JointKind,
     /// The two links, by number.
     pub links: [usize; 2],
@@ -176,7 +176,7 @@ pub struct Leg {
     pub name: String,
     /// The type as written: `SPS`, `RSS`, ...
     pub word: String,
-    /// What it is.
+    /// Kind of the leg.
     pub kind: LegKind,
     /// The point of the platform, in the platform's coordinates.
     pub to: Vector,
@@ -216,7 +216,7 @@ pub struct Platform {
 pub struct Bar {
     /// The two points, by number.
     pub between: [usize; 2],
-    /// Its length.
+    /// Length of the bar.
     pub length: Number,
 }
 
@@ -286,17 +286,17 @@ pub struct Limits {
 pub struct Mechanism {
     /// The file's name, for messages.
     pub file: String,
-    /// Its own name.
+    /// Name of the mechanism.
     pub name: String,
-    /// Where it moves.
+    /// In space, in a plane or about a point.
     pub space: Space,
     /// Whether angles of files and tables are in degrees.
     pub degrees: bool,
-    /// What it is made of.
+    /// Links and joints, a chain, a platform or a framework.
     pub body: Body,
     /// The joints or legs that drive it.
     pub inputs: Vec<String>,
-    /// What is wanted.
+    /// The link, or the point of one, that is asked for.
     pub output: Option<Output>,
     /// Limits of joints.
     pub limits: Vec<Limits>,

@@ -19,7 +19,7 @@ pub type Vector3 = [Complex64; 3];
 pub struct Pose {
     /// The rotation's matrix by rows.
     pub rotation: [[Complex64; 3]; 3],
-    /// Where the origin goes.
+    /// Image of the origin.
     pub position: Vector3,
 }
 
@@ -174,13 +174,13 @@ impl Pose {
         }
     }
 
-    /// Where a point goes.
+    /// Image of a point.
     pub fn point(&self, p: Vector3) -> Vector3 {
         let turned = self.direction(p);
         std::array::from_fn(|i| turned[i] + self.position[i])
     }
 
-    /// Where a direction goes.
+    /// Image of a direction.
     pub fn direction(&self, d: Vector3) -> Vector3 {
         std::array::from_fn(|i| (0..3).map(|k| self.rotation[i][k] * d[k]).sum())
     }

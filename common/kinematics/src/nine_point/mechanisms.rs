@@ -10,14 +10,14 @@ use crate::assessment::Assessment;
 pub struct Mechanism {
     /// Where its links are when the coupler point is at each of the nine.
     pub realization: Realization,
-    /// What it is worth.
+    /// Assessment of the mechanism.
     pub assessment: Assessment,
 }
 
 /// A coupler curve through the nine points, and the linkages that draw it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Its class.
+    /// Index of the curve's symmetry class.
     pub class: usize,
     /// How many classes end here: 1, or more where the solution is singular.
     pub classes: usize,

@@ -106,19 +106,19 @@ fn homotopy(m: &v1::Homotopy) -> Result<HomotopyKind, ProtocolError> {
         Kind::Generic(h) => HomotopyKind::Generic {
             parameters: values("generic.parameters", &h.parameters)?,
         },
-        Kind::Slide(h) => {
+        Kind::MoveSlice(h) => {
             within_limit("slide.order", h.order.len(), sizes::EQUATIONS)?;
             degrees("slide.forms", &[h.forms], 1)?;
-            HomotopyKind::Slide {
+            HomotopyKind::MoveSlice {
                 parameters: values("slide.parameters", &h.parameters)?,
                 order: h.order.clone(),
                 level: h.level,
                 forms: h.forms,
             }
         }
-        Kind::Intersect(h) => {
+        Kind::ProductToEquation(h) => {
             within_limit("intersect.order", h.order.len(), sizes::EQUATIONS)?;
-            HomotopyKind::Intersect {
+            HomotopyKind::ProductToEquation {
                 parameters: values("intersect.parameters", &h.parameters)?,
                 order: h.order.clone(),
                 level: h.level,

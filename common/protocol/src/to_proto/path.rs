@@ -70,22 +70,22 @@ fn homotopy(homotopy: &HomotopyKind) -> v1::Homotopy {
             HomotopyKind::Generic { parameters } => Kind::Generic(v1::Generic {
                 parameters: complexes(parameters),
             }),
-            HomotopyKind::Slide {
+            HomotopyKind::MoveSlice {
                 parameters,
                 order,
                 level,
                 forms,
-            } => Kind::Slide(v1::Slide {
+            } => Kind::MoveSlice(v1::MoveSlice {
                 parameters: complexes(parameters),
                 order: order.clone(),
                 level: *level,
                 forms: *forms,
             }),
-            HomotopyKind::Intersect {
+            HomotopyKind::ProductToEquation {
                 parameters,
                 order,
                 level,
-            } => Kind::Intersect(v1::Intersect {
+            } => Kind::ProductToEquation(v1::ProductToEquation {
                 parameters: complexes(parameters),
                 order: order.clone(),
                 level: *level,

@@ -286,7 +286,7 @@ impl Draw {
         let (order, level) = (vec![1, 0], 1);
         Stage {
             homotopy: match self.below(3) {
-                0 => HomotopyKind::Slide {
+                0 => HomotopyKind::MoveSlice {
                     parameters,
                     order,
                     level,
@@ -298,7 +298,7 @@ impl Draw {
                     start: vec![self.complex(), self.complex()],
                     target: vec![self.complex(), self.complex()],
                 },
-                _ => HomotopyKind::Intersect {
+                _ => HomotopyKind::ProductToEquation {
                     parameters,
                     order,
                     level,

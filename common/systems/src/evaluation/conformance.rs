@@ -19,9 +19,9 @@ use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision, Real};
 pub struct Case {
     /// For messages.
     pub name: String,
-    /// Its expressions.
+    /// Expressions of the case's system.
     pub expressions: Expressions,
-    /// Its equations.
+    /// Equations of the case's system, as nodes of the expressions.
     pub equations: Vec<NodeId>,
     /// Number of variables.
     pub variables: usize,
@@ -581,7 +581,7 @@ fn both<R: Real, E: Evaluate<R>>(
 /// The naive reference, bit for bit.
 ///
 /// # Panics
-/// Where a bit differs.
+/// When a bit of a value or derivative differs.
 pub fn check_against_reference<R: Real, E: Evaluate<R>>(compile: Compile<E>, context: R::Context) {
     for case in cases() {
         let evaluator = case.compile(compile);
@@ -597,7 +597,7 @@ pub fn check_against_reference<R: Real, E: Evaluate<R>>(compile: Compile<E>, con
 /// Every lane on every instruction set gives the bits of `Lanes<16>` on plain code.
 ///
 /// # Panics
-/// Where a bit differs.
+/// When a bit of a value or derivative differs.
 pub fn check_width<R, E>(compile: Compile<E>)
 where
     R: Real<Context = ()>,

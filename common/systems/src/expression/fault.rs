@@ -27,7 +27,7 @@ impl Span {
 pub struct Fault {
     /// The part of the text that is wrong.
     pub span: Span,
-    /// What is wrong there.
+    /// The fault at this place.
     pub problem: Problem,
 }
 
@@ -67,7 +67,7 @@ pub enum Problem {
     Expected {
         /// What would have been right here.
         expected: String,
-        /// What stands here.
+        /// The text that stands in this place.
         found: String,
     },
     /// A name that was never declared.
@@ -83,7 +83,7 @@ pub enum Problem {
     ReservedName {
         /// The name.
         name: String,
-        /// What it stands for.
+        /// Meaning of the reserved name.
         meaning: &'static str,
     },
     /// A function that is declared but never defined.
@@ -113,7 +113,7 @@ pub enum Problem {
     NotConstant(&'static str),
     /// A limit was passed.
     Limit {
-        /// Which one.
+        /// The limit that is exceeded.
         limit: Limit,
         /// How large the input is.
         found: String,

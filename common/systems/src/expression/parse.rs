@@ -43,9 +43,9 @@ pub enum Operation {
 /// A step and the place of its own sign in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// What is done.
+    /// The operation.
     pub operation: Operation,
-    /// Where the text says so.
+    /// Place of the operation in the text.
     pub span: Span,
 }
 

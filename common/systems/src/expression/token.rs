@@ -7,7 +7,7 @@ use winnow::error::EmptyError;
 use winnow::prelude::*;
 use winnow::token::{any, one_of, take_while};
 
-/// What a token is.
+/// Kinds of tokens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenKind<'a> {
     /// A number without a sign: `12`, `1.5`, `.5e-3`.
@@ -25,9 +25,9 @@ pub enum TokenKind<'a> {
 /// A token and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token<'a> {
-    /// What it is.
+    /// Kind of the token.
     pub kind: TokenKind<'a>,
-    /// Where it stands.
+    /// Place of the token in the text.
     pub span: Span,
 }
 

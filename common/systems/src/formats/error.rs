@@ -3,7 +3,7 @@
 use crate::expression::fault::{Fault, Problem, Span};
 use std::fmt;
 
-/// Where an error is.
+/// Place of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The file's name, as it was given.
@@ -89,7 +89,7 @@ const EXCERPT_AFTER: usize = 40;
 pub struct Source<'a> {
     /// The file's name.
     pub name: &'a str,
-    /// Its text.
+    /// Text of the line.
     pub text: &'a str,
 }
 

@@ -15,7 +15,7 @@ use winnow::token::{any, one_of, take, take_while};
 /// A string, and how its characters map to the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text<'a> {
-    /// What it says.
+    /// Text of the string, without escapes.
     pub text: Cow<'a, str>,
     /// The first byte within the quotes.
     pub start: usize,
@@ -42,7 +42,7 @@ impl Text<'_> {
     }
 }
 
-/// What a value is.
+/// Kinds of JSON values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind<'a> {
     /// `null`.
@@ -62,9 +62,9 @@ pub enum Kind<'a> {
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Value<'a> {
-    /// What it is.
+    /// Kind of the value.
     pub kind: Kind<'a>,
-    /// Where it stands.
+    /// Place of the value in the file.
     pub span: Span,
 }
 

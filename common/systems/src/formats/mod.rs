@@ -135,7 +135,7 @@ pub struct Warning {
     pub file: String,
     /// The line, from 1.
     pub line: usize,
-    /// What is not followed.
+    /// What of the file is not followed, in words.
     pub message: String,
 }
 
@@ -169,7 +169,7 @@ pub struct Problem {
     pub settings: FileSettings,
     /// The notation it was in.
     pub format: Format,
-    /// What is not followed.
+    /// One warning for each thing in the file that is not followed.
     pub warnings: Vec<Warning>,
 }
 

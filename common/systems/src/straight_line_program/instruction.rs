@@ -161,7 +161,7 @@ pub enum Operand {
 /// One operation in a list where every assignment makes a new value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
-    /// What is computed.
+    /// The operation.
     pub operation: Operation,
     /// From what; for a sum in the order of [`Terms`], a multiple's constant first.
     pub operands: Vec<Operand>,

@@ -81,11 +81,11 @@ pub enum Target {
 /// Consecutive instructions of one operation and target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// What they compute.
+    /// The operation of all instructions of the run.
     pub operation: Operation,
-    /// Where to.
+    /// Where the results are written.
     pub target: Target,
-    /// How many they are.
+    /// Number of instructions in the run.
     pub length: u32,
     /// Place of the operation in [`FREQUENT`], or the length of that list.
     pub arm: u8,

@@ -12,9 +12,9 @@ pub enum FixError {
     /// Too few or too many.
     #[error("the system has {expected} parameters, but {found} values were given")]
     Count {
-        /// How many there are.
+        /// Number of parameters of the system.
         expected: usize,
-        /// How many were given.
+        /// Number of values that were given.
         found: usize,
     },
     /// A denominator becomes 0.

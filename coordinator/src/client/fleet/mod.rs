@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 pub struct Fleet {
     /// Where the backlog is asked for.
     pub target: Target,
-    /// Where workers run.
+    /// The cluster in which workers run.
     pub slurm: Slurm,
-    /// How many, how fast.
+    /// Least and largest number of workers, and the time in which the backlog is to be done.
     pub wishes: Wishes,
     /// Between two looks.
     pub pause: Duration,
@@ -104,7 +104,7 @@ struct State {
     patience: Patience,
 }
 
-/// What there is to do.
+/// Work that is left: unfinished jobs, and their items without a result.
 fn backlog(jobs: &[v1::JobOverview]) -> Backlog {
     let unfinished = |job: &&v1::JobOverview| {
         matches!(job.state(), v1::JobState::Queued | v1::JobState::Running)

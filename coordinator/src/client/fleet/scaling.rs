@@ -15,7 +15,7 @@ pub struct Wishes {
     pub finish_within: Duration,
 }
 
-/// What there is to do.
+/// Work that is left: unfinished jobs, and their items without a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Backlog {
     /// Jobs that have not ended.
@@ -38,16 +38,16 @@ pub enum TaskState {
 /// One worker in the batch system.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Task {
-    /// Its name there.
+    /// Identifier of the task in the cluster's queue.
     pub id: String,
-    /// Where it is.
+    /// State of the task.
     pub state: TaskState,
 }
 
 /// What is seen at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
-    /// What there is to do.
+    /// Work that is left: unfinished jobs, and their items without a result.
     pub backlog: Backlog,
     /// Items that one worker does in a second, where that is known.
     pub rate: Option<f64>,
@@ -55,7 +55,7 @@ pub struct Look<'a> {
     pub tasks: &'a [Task],
 }
 
-/// What to do.
+/// What is done next: workers are submitted or withdrawn, or nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
     /// So many more.

@@ -87,9 +87,9 @@ impl Position {
 /// The answer for one target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetAnswer {
-    /// What was given.
+    /// The given joint values, or the given pose.
     pub target: Target,
-    /// Its paths.
+    /// Paths of the solve, by how they ended.
     pub counts: Counts,
     /// Its positions: real ones first, in the order of their joint values.
     pub positions: Vec<Position>,

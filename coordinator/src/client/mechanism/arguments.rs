@@ -83,7 +83,7 @@ pub struct MechanismAnswer {
 /// `cognate mechanism info`.
 #[derive(Clone, Debug, Args)]
 pub struct MechanismInfo {
-    /// Which mechanism.
+    /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
     /// How the answer is shown
@@ -117,7 +117,7 @@ pub enum EquationsFormat {
 /// `cognate mechanism equations`.
 #[derive(Clone, Debug, Args)]
 pub struct MechanismEquations {
-    /// Which mechanism.
+    /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
     /// What is given
@@ -145,7 +145,7 @@ pub enum Notation {
 /// `cognate mechanism convert`.
 #[derive(Clone, Debug, Args)]
 pub struct MechanismConvert {
-    /// Which mechanism.
+    /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
     /// The notation wanted
@@ -161,7 +161,7 @@ Examples:
   cognate mechanism inverse arm.json --pose \"0.4 0.1 0.5 1 0 0 0\" --format json
   cognate mechanism inverse iiwa.urdf --poses poses.json --lock joint_3=0.3")]
 pub struct MechanismInverse {
-    /// Which mechanism.
+    /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
     /// Poses: JSON, or CSV with a header x,y,z,qw,qx,qy,qz; - is standard input
@@ -188,7 +188,7 @@ Examples:
   cognate mechanism forward stephenson.json --input D0 --set D0=0.1
   cognate mechanism forward framework.json")]
 pub struct MechanismForward {
-    /// Which mechanism.
+    /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
     /// Values of the inputs: JSON, or CSV with their names as header; - is standard input

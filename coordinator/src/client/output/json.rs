@@ -44,7 +44,7 @@ pub fn submitted(job: &str, warnings: &[String]) -> String {
     format!("{answer}\n")
 }
 
-/// Where a job stands.
+/// State and progress of a job, as JSON.
 pub fn progress(p: &v1::JobProgress, exit: u8) -> String {
     let stages: Vec<Value> = p
         .stages

@@ -18,11 +18,11 @@ pub struct Shown<'a> {
     pub mechanism: &'a Mechanism,
     /// The bytes of its file.
     pub content: &'a [u8],
-    /// What was asked.
+    /// The question: forward or inverse kinematics, or all positions.
     pub problem: Problem,
     /// The answer.
     pub answer: &'a Answer,
-    /// How long it took.
+    /// From reading the file to the answer, in seconds.
     pub wall_seconds: f64,
     /// Angles are shown in degrees.
     pub degrees: bool,

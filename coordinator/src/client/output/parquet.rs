@@ -10,9 +10,9 @@ use std::io::{self, Write};
 /// Values of one column of a row group; absent ones are `None`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Whole numbers.
+    /// A column of whole numbers.
     Int(Vec<i64>),
-    /// Whole numbers, some of them absent.
+    /// A column of whole numbers, some of them absent.
     OptionalInt(Vec<Option<i64>>),
     /// Doubles.
     Double(Vec<f64>),

@@ -20,7 +20,7 @@ pub struct SetArguments {
     /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t)]
     pub preset: PresetName,
-    /// Who does it.
+    /// A coordinator of the command's own, or one that runs.
     #[command(flatten)]
     pub service: OwnOrRunning,
     /// How the answer is shown
@@ -29,7 +29,7 @@ pub struct SetArguments {
     /// Also write summary.json here, points as samples.csv, real curves as curve.json and curve.svg
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
-    /// What is seen meanwhile.
+    /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
 }
@@ -39,7 +39,7 @@ fn id(text: &str) -> Result<ComponentId, String> {
 }
 
 impl SetArguments {
-    /// Where the answer goes.
+    /// Files and format of the answer.
     pub fn output(&self) -> OutputArguments {
         OutputArguments {
             format: self.format,

@@ -16,7 +16,7 @@ use cognate_protocol::submission::{Options, SettingsChoice, Source, StartKind, S
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
-/// What is asked for.
+/// The synthesis problem that is asked.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sister {
     /// A body in five poses.
@@ -38,7 +38,7 @@ pub struct Dyad {
     pub certified: bool,
 }
 
-/// What was found.
+/// Linkages that were found, and their counts.
 #[derive(Clone, Debug, Default)]
 pub struct Found {
     /// The real dyads; of timed points the drivers, then the partners of each. None of angles and of

@@ -34,7 +34,7 @@ use std::collections::BTreeMap;
 pub struct How {
     /// Seed of everything random.
     pub seed: Option<u64>,
-    /// How cautiously.
+    /// Preset of the tracker's settings.
     pub preset: PresetName,
     /// In which arithmetic.
     pub precision: PrecisionChoice,
@@ -47,9 +47,9 @@ pub struct How {
 /// One job of a synthesis.
 #[derive(Clone, Debug)]
 pub struct Round {
-    /// What it was for.
+    /// What the solve was made for, in words.
     pub purpose: &'static str,
-    /// What came of it.
+    /// Counts and warnings of the solve.
     pub summary: Summary,
 }
 

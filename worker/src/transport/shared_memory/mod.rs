@@ -40,7 +40,7 @@ pub enum CallError {
 type Pending = PendingResponse<Ipc, [u8], (), [u8], ()>;
 
 /// A call that waits for its answer.
-struct Waiting {
+struct PendingCall {
     pending: Pending,
     answer: oneshot::Sender<Result<Response, CallError>>,
 }
@@ -65,7 +65,7 @@ struct Inner {
 #[derive(Default)]
 struct Table {
     next: u64,
-    calls: HashMap<u64, Waiting>,
+    calls: HashMap<u64, PendingCall>,
 }
 
 impl SharedMemory {
@@ -195,7 +195,7 @@ impl Inner {
             }
             let number = table.next;
             table.next += 1;
-            let waiting = Waiting {
+            let waiting = PendingCall {
                 pending,
                 answer: sender,
             };

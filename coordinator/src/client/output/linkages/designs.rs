@@ -21,9 +21,9 @@ const NOTHING: f64 = 1e-13;
 pub struct Designs {
     /// What people call the file.
     pub name: String,
-    /// What was asked for.
+    /// The synthesis problem that was asked.
     pub sister: Sister,
-    /// What there is.
+    /// The linkages that were found, and their counts.
     pub found: Found,
     /// From reading the file to here.
     pub elapsed: Duration,

@@ -11,7 +11,7 @@ const PAGE: &str = include_str!("page.html");
 
 /// What the page says, and what it shows.
 pub struct Content<'a> {
-    /// Its title.
+    /// Title of the page.
     pub title: &'a str,
     /// `[[x, y], ...]`, where all curves have them in common.
     pub points: Value,

@@ -1,4 +1,4 @@
-//! Surveyor: where a path goes, and how far it may go without coming near another, from its Taylor
+//! Taylor probe: where a path goes, and how far it may go without coming near another, from its Taylor
 //! series at a point.
 //!
 //! Where x(t) has its nearest singularity two paths meet or one leaves for infinity, and a step that
@@ -29,13 +29,13 @@ const DIRECTIONS: usize = 2;
 /// Where the denominator of a Pade approximant is below this, the Taylor polynomial serves.
 const NEAR_POLE: f64 = 0.25;
 
-/// What one look shows.
+/// What the Taylor series at one point shows.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct View {
+pub(super) struct Estimate {
     /// Distance in t to the nearest singularity of the path.
     pub radius: f64,
     /// Distance to the nearest other path at this t, relative to the largest coordinate.
-    pub apart: f64,
+    pub separation: f64,
     /// Where the path goes.
     pub series: Series,
 }
@@ -63,8 +63,8 @@ impl Series {
     }
 }
 
-/// Work space for looking around from points of paths, in the arithmetic of the room.
-pub(super) struct Surveyor<'a, S: Real> {
+/// Work space for Taylor series at points of paths, in the arithmetic of the tracking context.
+pub(super) struct TaylorProbe<'a, S: Real> {
     homotopy: &'a Homotopy,
     context: S::Context,
     scratch: <Interpreter as Evaluate<S>>::Scratch,
@@ -74,23 +74,23 @@ pub(super) struct Surveyor<'a, S: Real> {
     work: Matrix<S>,
 }
 
-/// One look, compiled for the instruction set.
-struct Look<'r, 'a, 'p, S: Real> {
-    surveyor: &'r mut Surveyor<'a, S>,
+/// One estimate, compiled for the instruction set.
+struct EstimateJob<'r, 'a, 'p, S: Real> {
+    probe: &'r mut TaylorProbe<'a, S>,
     point: &'p [Complex<S>],
     t: Complex64,
     target: u64,
 }
 
-impl<S: Real> Job for Look<'_, '_, '_, S> {
-    type Output = View;
+impl<S: Real> Job for EstimateJob<'_, '_, '_, S> {
+    type Output = Estimate;
     #[inline(always)]
-    fn run(self) -> View {
-        self.surveyor.survey(self.point, self.t, self.target)
+    fn run(self) -> Estimate {
+        self.probe.estimate_inlined(self.point, self.t, self.target)
     }
 }
 
-impl<'a, S: Real> Surveyor<'a, S> {
+impl<'a, S: Real> TaylorProbe<'a, S> {
     pub fn new(homotopy: &'a Homotopy, context: S::Context) -> Self {
         let n = homotopy.dimension();
         Self {
@@ -103,10 +103,10 @@ impl<'a, S: Real> Surveyor<'a, S> {
         }
     }
 
-    /// What is to be seen from a point of a path that goes on along the real axis.
-    pub fn look(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> View {
-        dispatch_single(Look {
-            surveyor: self,
+    /// The estimate at a point of a path that goes on along the real axis.
+    pub fn estimate(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> Estimate {
+        dispatch_single(EstimateJob {
+            probe: self,
             point,
             t,
             target,
@@ -114,7 +114,7 @@ impl<'a, S: Real> Surveyor<'a, S> {
     }
 
     #[inline(always)]
-    fn survey(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> View {
+    fn estimate_inlined(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> Estimate {
         let parameters = self.parameters(t, target);
         let now: Vec<Complex<S>> = parameters.iter().map(|p| term(p, 0)).collect();
         let (program, scratch) = (self.homotopy.program(), &mut self.scratch);
@@ -163,9 +163,9 @@ impl<'a, S: Real> Surveyor<'a, S> {
             bent = all;
         }
         let here: Vec<Complex64> = point.iter().map(|z| z.lane(0)).collect();
-        View {
+        Estimate {
             radius,
-            apart: 1.0 / (bent * norm(&here)),
+            separation: 1.0 / (bent * norm(&here)),
             series,
         }
     }
@@ -302,21 +302,21 @@ mod tests {
         PreparedStage::new(&system, &stage, &|_| Some(points.clone())).unwrap()
     }
 
-    fn seen<S: Real>(stage: &PreparedStage, context: S::Context) -> View {
+    fn seen<S: Real>(stage: &PreparedStage, context: S::Context) -> Estimate {
         let start = stage.start_point(0).unwrap();
         let point: Vec<Complex<S>> = start
             .iter()
             .map(|z| Complex::from_f64(context, z.re, z.im))
             .collect();
-        let mut surveyor = Surveyor::<S>::new(stage.homotopy(), context);
-        surveyor.look(&point, Complex64::new(1.0, 0.0), 0)
+        let mut probe = TaylorProbe::<S>::new(stage.homotopy(), context);
+        probe.estimate(&point, Complex64::new(1.0, 0.0), 0)
     }
 
     #[test]
     fn singularities_and_neighbours_are_where_they_are() {
         let stage = square_roots();
         let found = seen::<f64>(&stage, ());
-        assert!((found.apart - 2.0).abs() < 1e-12, "{found:?}");
+        assert!((found.separation - 2.0).abs() < 1e-12, "{found:?}");
         // p(t) = a + phi(t) b is 0 at phi = -a/b, and phi = gamma t / (1 + (gamma - 1) t).
         let gamma = stage.homotopy().path().arc.unwrap();
         let (mut a, mut b) = stage.homotopy().ends(0);
@@ -336,7 +336,7 @@ mod tests {
             seen::<MultiplePrecision>(&stage, 212),
         ] {
             assert!((other.radius / found.radius - 1.0).abs() < 1e-9);
-            assert!((other.apart / found.apart - 1.0).abs() < 1e-9);
+            assert!((other.separation / found.separation - 1.0).abs() < 1e-9);
         }
     }
 }
