@@ -2,6 +2,7 @@
 //! far out its solutions may lie.
 
 use cognate_continuation::tracker::settings::Settings;
+use cognate_systems::expression::Node;
 use cognate_systems::system::System;
 use cognate_systems::units::{Fit, fit};
 use num_complex::Complex64;
@@ -10,12 +11,16 @@ use std::borrow::Cow;
 /// Powers of two by which the exact coefficients of one equation differ from which on its solutions may lie further
 /// out than those of ordinary systems. Of 239 published systems the largest range is 2^30.
 const WIDE_RANGE: f64 = 40.0;
+/// A fraction with a larger denominator was rounded, as a decimal with more digits was.
+const LARGEST_DENOMINATOR: u32 = 100_000_000;
 /// Ranges are told apart up to here: a double holds its inverse.
 const WIDEST_RANGE: f64 = 900.0;
 
 /// What was seen of the coefficients at the values of the parameters where the paths begin and end.
 pub(crate) struct Coefficients {
     fit: Fit,
+    /// Whether they are integers and fractions that somebody chose.
+    chosen: bool,
 }
 
 impl Coefficients {
@@ -37,6 +42,8 @@ impl Coefficients {
         }
         Self {
             fit: fit(system, &parameters),
+            chosen: system.parameters.is_empty()
+                && system.expressions.nodes().iter().all(is_chosen),
         }
     }
 
@@ -51,15 +58,30 @@ impl Coefficients {
         }
     }
 
-    /// Other settings, with the least detail of exact coefficients in the system's units, where these differ by many orders
-    /// of magnitude: solutions so far out are found, or doubted, that count as infinite otherwise.
+    /// Other settings, where coefficients are exact. Where they differ by many orders of magnitude, too, with the least
+    /// detail that they have in the system's units: solutions so far out are found, or doubted, that count as infinite
+    /// otherwise.
     pub fn resolved(&self, settings: &Settings) -> Option<Settings> {
         let range = self.fit.coefficient_range.min(WIDEST_RANGE);
-        let wide = settings.data_accuracy == 0.0 && range > WIDE_RANGE;
-        wide.then(|| Settings {
+        let exact = settings.data_accuracy == 0.0;
+        let data_accuracy = match range > WIDE_RANGE {
+            true => f64::from_bits((1023 - range as u64) << 52),
+            false => 0.0,
+        };
+        (exact && (self.chosen || range > WIDE_RANGE)).then(|| Settings {
             exact_data: true,
-            data_accuracy: f64::from_bits((1023 - range as u64) << 52),
+            data_accuracy,
             ..settings.clone()
         })
+    }
+}
+
+/// Whether a node is no number that was rounded.
+fn is_chosen(node: &Node) -> bool {
+    match node {
+        Node::Constant(number) => [&number.re, &number.im]
+            .into_iter()
+            .all(|part| *part.denom() <= LARGEST_DENOMINATOR),
+        _ => true,
     }
 }

@@ -47,11 +47,21 @@ fn largest<S: Real>(matrix: &Matrix<S>, column: usize) -> f64 {
     largest.sqrt()
 }
 
+/// Where Newton's method begins.
+#[derive(Clone, Copy)]
+enum Begin<'p> {
+    /// At the point that is given.
+    Given,
+    /// So far beside where the last run led.
+    BesideLast(&'p [Complex64]),
+}
+
 /// One run of Newton's method, compiled for the instruction set: it stands apart from the
 /// lockstep loop, which would otherwise contain it many times.
 struct Newton<'r, 'a, 'p, S: Real> {
     refiner: &'r mut Refiner<'a, S>,
     point: &'p mut [Complex64],
+    begin: Begin<'p>,
     t: Complex64,
     target: u64,
     most: u32,
@@ -62,7 +72,7 @@ impl<S: Real> Job for Newton<'_, '_, '_, S> {
     #[inline(always)]
     fn run(self) -> Report {
         self.refiner
-            .iterate(self.point, self.t, self.target, self.most)
+            .iterate(self.point, self.begin, self.t, self.target, self.most)
     }
 }
 
@@ -112,7 +122,24 @@ impl<'a, S: Real> Refiner<'a, S> {
 
     /// Newton steps at t = 0 until they no longer shrink; `point` is replaced where they converge.
     pub(crate) fn refine(&mut self, point: &mut [Complex64], target: u64) -> Report {
-        self.newton(point, Complex64::default(), target, self.rounds)
+        self.newton(
+            point,
+            Begin::Given,
+            Complex64::default(),
+            target,
+            self.rounds,
+        )
+    }
+
+    /// The same from a place that is `by` away from where the last run led, with the digits of this arithmetic.
+    pub(crate) fn refine_beside_last(
+        &mut self,
+        point: &mut [Complex64],
+        by: &[Complex64],
+        target: u64,
+    ) -> Report {
+        let begin = Begin::BesideLast(by);
+        self.newton(point, begin, Complex64::default(), target, self.rounds)
     }
 
     /// The point where the last Newton step led, with the digits of this arithmetic.
@@ -123,19 +150,27 @@ impl<'a, S: Real> Refiner<'a, S> {
     /// The same facts without moving the point.
     pub(crate) fn report(&mut self, point: &[Complex64], target: u64) -> Report {
         let mut copy = point.to_vec();
-        self.newton(&mut copy, Complex64::default(), target, 0)
+        self.newton(&mut copy, Begin::Given, Complex64::default(), target, 0)
     }
 
     /// Condition number of the Jacobian at a point of the path.
     pub(crate) fn condition_at(&mut self, point: &[Complex64], t: Complex64, target: u64) -> f64 {
         let mut copy = point.to_vec();
-        self.newton(&mut copy, t, target, 0).condition
+        self.newton(&mut copy, Begin::Given, t, target, 0).condition
     }
 
-    fn newton(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {
+    fn newton<'p>(
+        &mut self,
+        point: &'p mut [Complex64],
+        begin: Begin<'p>,
+        t: Complex64,
+        target: u64,
+        most: u32,
+    ) -> Report {
         dispatch_single(Newton {
             refiner: self,
             point,
+            begin,
             t,
             target,
             most,
@@ -160,7 +195,14 @@ impl<'a, S: Real> Refiner<'a, S> {
     }
 
     #[inline(always)]
-    fn iterate(&mut self, point: &mut [Complex64], t: Complex64, target: u64, most: u32) -> Report {
+    fn iterate(
+        &mut self,
+        point: &mut [Complex64],
+        begin: Begin<'_>,
+        t: Complex64,
+        target: u64,
+        most: u32,
+    ) -> Report {
         let n = point.len();
         let context = self.context;
         let native = |z: Complex64| Complex::<S>::from_f64(context, z.re, z.im);
@@ -171,8 +213,17 @@ impl<'a, S: Real> Refiner<'a, S> {
         self.homotopy
             .path()
             .at::<S>(context, &t, &a, &b, &mut self.p, &mut self.dp);
-        for (x, z) in self.x.iter_mut().zip(&*point) {
-            *x = native(*z);
+        match begin {
+            Begin::Given => {
+                for (x, z) in self.x.iter_mut().zip(&*point) {
+                    *x = native(*z);
+                }
+            }
+            Begin::BesideLast(by) => {
+                for (x, z) in self.x.iter_mut().zip(by) {
+                    x.add(&native(*z));
+                }
+            }
         }
         let mut report = Report::unknown();
         let mut last = f64::INFINITY;

@@ -218,7 +218,7 @@ impl Cauchy {
     }
 
     /// The mean over the samples of the present turns.
-    fn mean(&self) -> Vec<Complex64> {
+    pub(crate) fn mean(&self) -> Vec<Complex64> {
         let samples = f64::from(self.turns * VERTICES);
         self.sum.iter().map(|s| s / samples).collect()
     }

@@ -4,21 +4,27 @@
 //! solution of norm 10^20 from one at infinity, where turns around 0 would have to be smaller than any number.
 
 use super::settings::Settings;
+use crate::chart::norm;
+use crate::endgames::cauchy::generic_form;
 use crate::homotopies::Homotopy;
-use crate::refine::Refiner;
+use crate::refine::{Refiner, Report};
 use cognate_numeric::precision::{DOUBLE_DOUBLE, rungs, unit_roundoff};
 use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
 use num_complex::Complex64;
 
-/// A homogenising coordinate that is at most this part of the largest is 0, unless coefficients are exact and differ by
-/// many orders of magnitude: rounded coefficients have such solutions where exact ones have infinity.
+/// A homogenising coordinate that is at most this part of the largest is 0, unless coefficients are exact: rounded
+/// coefficients have such solutions where exact ones have infinity.
 const WITHIN_DATA: f64 = 1e-13;
 /// Within this factor of that, nothing tells.
 const BAND: f64 = 10.0;
-/// With those such a coordinate may be the square of how small coefficients are, and is known to be 0 within this.
+/// With exact ones such a coordinate may be the square of how small they are, and is known to be 0 within this.
 const EXACT: f64 = 1e-22;
 /// No smaller than this.
 const LEAST: f64 = 1e-290;
+/// A start beside a solution is this part of its homogenising coordinate away from it.
+const BESIDE: f64 = 1e-6;
+/// And has led to the same solution where coordinates differ by no more than this part of the homogenising one.
+const SAME: f64 = 1e-10;
 /// Errors are at most so many times the last Newton correction.
 const MARGIN: f64 = 1e3;
 
@@ -31,9 +37,10 @@ pub(super) fn resolve(
     target: u64,
 ) -> Option<Vec<Complex64>> {
     let accuracy = settings.data_accuracy;
-    let (zero, least) = match settings.exact_data && accuracy > 0.0 {
-        true => (0.0, EXACT.min(accuracy * accuracy)),
-        false => (WITHIN_DATA, WITHIN_DATA),
+    let (zero, least) = match (settings.exact_data, accuracy > 0.0) {
+        (true, true) => (0.0, EXACT.min(accuracy * accuracy)),
+        (true, false) => (0.0, EXACT),
+        (false, _) => (WITHIN_DATA, WITHIN_DATA),
     };
     if least < LEAST {
         return None;
@@ -56,6 +63,50 @@ pub(super) fn resolve(
         }
         (finite || error <= least).then_some(coordinates)
     })
+}
+
+/// Where turns have led to infinity as far as the digits of doubles tell, on one sheet: an isolated solution there, so
+/// far out, with its normalised homogeneous coordinates, where Newton's method finds one from the mean of the turns with
+/// twice the digits.
+///
+/// On a set of solutions that goes to infinity it finds some point, and from beside that another one. At a multiple
+/// point it does not come to rest.
+pub(super) fn find_isolated(
+    homotopy: &Homotopy,
+    settings: &Settings,
+    mean: &[Complex64],
+    target: u64,
+) -> Option<(Report, Vec<Complex64>)> {
+    if !settings.exact_data {
+        return None;
+    }
+    let mut point = mean.to_vec();
+    let mut refiner =
+        Refiner::<DoubleDouble<f64>>::new(homotopy, ()).until(unit_roundoff(DOUBLE_DOUBLE));
+    let report = refiner.refine(&mut point, target);
+    let coordinates = homotopy.precise_endpoint((), refiner.last());
+    let y0 = homotopy.smallest_homogenizing(&coordinates);
+    let comes_to_rest = |report: &Report| report.converged && MARGIN * report.accuracy < SAME * y0;
+    if !comes_to_rest(&report) {
+        return None;
+    }
+    let found = refiner.last().to_vec();
+    let away = BESIDE * y0 * norm(&point);
+    let by: Vec<Complex64> = generic_form().take(found.len()).map(|z| z * away).collect();
+    // Where equations are far from linear a correction may exceed the one before it: a second run begins there.
+    refiner.refine_beside_last(&mut point, &by, target);
+    let none = vec![Complex64::default(); found.len()];
+    let again = refiner.refine_beside_last(&mut point, &none, target);
+    let differences = refiner.last().iter().zip(&found).map(|(z, found)| {
+        let mut difference = *z;
+        difference.sub(found);
+        difference.lane(0)
+    });
+    let same = differences
+        .fold(0.0f64, |most, z| most.max(z.norm_sqr()))
+        .sqrt()
+        <= SAME * y0 * norm(&point);
+    (comes_to_rest(&again) && same).then_some((report, coordinates))
 }
 
 /// A point whose homogenising coordinates are neither 0 nor not as far as is known.

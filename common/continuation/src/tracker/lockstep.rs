@@ -22,7 +22,7 @@ use crate::endgames::cauchy::distance;
 use crate::endgames::circle::VERTICES;
 use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
 use crate::predictor::hermite::{POINTS, weights};
-use crate::refine::Refiner;
+use crate::refine::{Refiner, Report};
 use crate::stage::PreparedStage;
 use crate::step_control::{largest_error, next_step};
 use cognate_machine_code::Evaluator;
@@ -104,6 +104,17 @@ pub(super) struct Lockstep<'a, R: Real> {
     pub(super) observer: Option<&'a mut dyn Observer>,
     pub(super) point: Vec<Complex64>,
     pub(super) tangent: Vec<Complex64>,
+}
+
+/// How a path has ended.
+pub(super) struct End {
+    pub outcome: PathOutcome,
+    /// Where, in t.
+    pub t: Complex64,
+    pub report: Report,
+    pub winding_number: Option<u32>,
+    /// Turns of each homogenising coordinate.
+    pub infinity_turns: Vec<i32>,
 }
 
 /// What one step showed in one lane.
@@ -714,18 +725,19 @@ impl<'a, R: Real> Lockstep<'a, R> {
         &mut self,
         lane: usize,
         outcome: PathOutcome,
-        report: crate::refine::Report,
+        report: Report,
         winding_number: Option<u32>,
         infinity_turns: Vec<i32>,
     ) {
-        self.record(
-            lane,
+        let endpoint = self.endpoint(self.lanes[lane].target, outcome);
+        let end = End {
             outcome,
-            Complex64::default(),
+            t: Complex64::default(),
             report,
             winding_number,
             infinity_turns,
-        );
+        };
+        self.record(lane, end, endpoint);
         self.refill(lane);
     }
 
@@ -847,32 +859,31 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     fn fail(&mut self, lane: usize, t: Complex64, why: Failure) {
-        let report = crate::refine::Report::unknown();
-        self.record(lane, PathOutcome::Failed(why), t, report, None, Vec::new());
+        let end = End {
+            outcome: PathOutcome::Failed(why),
+            t,
+            report: Report::unknown(),
+            winding_number: None,
+            infinity_turns: Vec::new(),
+        };
+        let endpoint = self.tracking.homotopy.endpoint(&self.point);
+        self.record(lane, end, endpoint);
     }
 
-    pub(super) fn record(
-        &mut self,
-        lane: usize,
-        outcome: PathOutcome,
-        t: Complex64,
-        report: crate::refine::Report,
-        winding_number: Option<u32>,
-        infinity_turns: Vec<i32>,
-    ) {
-        let endpoint = self.endpoint(self.lanes[lane].target, outcome);
+    /// A path has come to its end, at a point with these normalised homogeneous coordinates.
+    pub(super) fn record(&mut self, lane: usize, end: End, endpoint: Vec<Complex64>) {
         let path = &self.lanes[lane];
         let result = PathResult {
             origin: PathIndex(path.origin),
             attempt: self.stage.attempt(),
-            outcome,
+            outcome: end.outcome,
             endpoint: Coordinates::Double(endpoint),
-            t,
-            residual: report.residual,
-            condition: report.condition,
-            accuracy: report.accuracy,
-            winding_number,
-            infinity_turns,
+            t: end.t,
+            residual: end.report.residual,
+            condition: end.report.condition,
+            accuracy: end.report.accuracy,
+            winding_number: end.winding_number,
+            infinity_turns: end.infinity_turns,
             precision_bits: path.highest_bits,
             counts: Counts {
                 steps: path.steps,
@@ -885,7 +896,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             local_dimension: None,
             boundary: path
                 .boundary
-                .filter(|_| matches!(outcome, PathOutcome::Singular | PathOutcome::Diverging))
+                .filter(|_| matches!(end.outcome, PathOutcome::Singular | PathOutcome::Diverging))
                 .map(Box::new),
         };
         self.ended.results.push((path.item, result));

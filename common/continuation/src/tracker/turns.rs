@@ -5,8 +5,9 @@
 
 use super::contexts::Handoff;
 use super::digits::Digits;
+use super::far_out;
 use super::lane::Phase;
-use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
+use super::lockstep::{ENDGAME_BITS, End, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
 use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
@@ -181,13 +182,39 @@ impl<R: Real> Lockstep<'_, R> {
                 power_sum,
             } => {
                 let path = &self.lanes[lane];
-                let t = Complex64::new(path.cauchy.radius(), 0.0);
-                let report = Report {
-                    accuracy: power_sum.unwrap_or(f64::INFINITY),
-                    ..Report::unknown()
+                let homotopy = self.tracking.homotopy;
+                let far_out = match winding_number {
+                    Some(1) => {
+                        far_out::find_isolated(homotopy, settings, &path.cauchy.mean(), target)
+                    }
+                    _ => None,
                 };
-                let outcome = PathOutcome::Diverging;
-                self.record(lane, outcome, t, report, winding_number, infinity_turns);
+                let (end, endpoint) = match far_out {
+                    Some((report, endpoint)) => (
+                        End {
+                            outcome: PathOutcome::Regular,
+                            t: Complex64::default(),
+                            report,
+                            winding_number,
+                            infinity_turns: Vec::new(),
+                        },
+                        endpoint,
+                    ),
+                    None => (
+                        End {
+                            outcome: PathOutcome::Diverging,
+                            t: Complex64::new(path.cauchy.radius(), 0.0),
+                            report: Report {
+                                accuracy: power_sum.unwrap_or(f64::INFINITY),
+                                ..Report::unknown()
+                            },
+                            winding_number,
+                            infinity_turns,
+                        },
+                        homotopy.endpoint(&self.point),
+                    ),
+                };
+                self.record(lane, end, endpoint);
                 self.refill(lane);
             }
             cauchy::Next::Finer => {
