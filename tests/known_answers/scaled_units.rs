@@ -88,6 +88,31 @@ fn a_solution_as_far_out_as_a_coefficient_is_none_at_infinity() {
     }
 }
 
+/// Planted (kind "monomial map"): x y^3 has two values, y three; with this start turns take the solution near
+/// (1/3 10^6, 2), 10^15 out in the units of its system, for one at infinity.
+#[test]
+fn a_solution_that_turns_take_for_infinite_is_found() {
+    let system = written(
+        "variable_group x, y; function f, g; \
+         f = x^2*y^6 - 4000000000003/1500000*x*y^3 + 16/3; \
+         g = y^3 - 8*y^2 + 2500000021*y - 5000000018;",
+    );
+    for seed in [496_851_144, 1, 2] {
+        let (_, sets) = solve(&system, &options(seed, StartChoice::LinearProduct), &|_| {
+            None
+        });
+        let set = &sets[0];
+        let counts = (set.counts.nonsingular, set.counts.real);
+        assert_eq!(counts, (6, Some(2)), "seed {seed}: {:?}", set.paths);
+        let far = |point: &Vec<Complex64>| (point[0].re / 333_333.333_333_333_3 - 1.0).abs() < 1e-9;
+        assert!(
+            values(set).iter().any(far),
+            "seed {seed}: {:?}",
+            values(set)
+        );
+    }
+}
+
 /// x^2 + y^2 = 5 and x y = 2 have (1, 2), (2, 1) and their negatives.
 #[test]
 fn a_circle_and_a_hyperbola_meet_in_any_units() {
