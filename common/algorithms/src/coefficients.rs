@@ -8,9 +8,11 @@ use cognate_systems::units::{Fit, fit};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
-/// Powers of two by which the exact coefficients of one equation differ from which on its solutions may lie further
-/// out than those of ordinary systems. Of 239 published systems the largest range is 2^30.
-const WIDE_RANGE: f64 = 40.0;
+/// Powers of two by which the coefficients of one equation differ from which on its solutions may lie further out than
+/// those of ordinary systems, where they are chosen. Of 238 published systems eight have such ranges, 2^30 the largest.
+const WIDE_RANGE: f64 = 20.0;
+/// The same where they may have been rounded.
+const WIDE_RANGE_OF_ROUNDED: f64 = 40.0;
 /// A fraction with a larger denominator was rounded, as a decimal with more digits was.
 const LARGEST_DENOMINATOR: u32 = 100_000_000;
 /// Ranges are told apart up to here: a double holds its inverse.
@@ -64,11 +66,15 @@ impl Coefficients {
     pub fn resolved(&self, settings: &Settings) -> Option<Settings> {
         let range = self.fit.coefficient_range.min(WIDEST_RANGE);
         let exact = settings.data_accuracy == 0.0;
-        let data_accuracy = match range > WIDE_RANGE {
+        let wide = match self.chosen {
+            true => range > WIDE_RANGE,
+            false => range > WIDE_RANGE_OF_ROUNDED,
+        };
+        let data_accuracy = match wide {
             true => f64::from_bits((1023 - range as u64) << 52),
             false => 0.0,
         };
-        (exact && (self.chosen || range > WIDE_RANGE)).then(|| Settings {
+        (exact && (self.chosen || wide)).then(|| Settings {
             exact_data: true,
             data_accuracy,
             ..settings.clone()

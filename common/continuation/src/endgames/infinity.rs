@@ -28,6 +28,8 @@ const ALIASING: f64 = 10.0;
 /// Where several sheets end together, so far out, only their power sums show what is not 0: a power sum
 /// this small would be one of equations that have infinity to 20 digits.
 const LEAST_POWER_SUM: f64 = 1e-20;
+/// Values that double-doubles show, with the noise of turns.
+const SHOWN: f64 = 1e-28;
 /// Where more digits are wanted, aliasing errors that are expected to be this part of what they may be are small enough.
 const SMALL_ENOUGH: f64 = 0.01;
 /// A power sum that exceeds its estimated error by this factor is not 0.
@@ -75,13 +77,20 @@ impl Zero {
         };
         match accuracy > 0.0 {
             true => Self {
-                value: FARTHEST.min(accuracy * accuracy).max(1e-40),
+                value: Self::value(accuracy),
                 power_sum: LEAST_POWER_SUM
                     .min(accuracy * accuracy * accuracy)
                     .max(1e-60),
             },
             false => Self::EXACT,
         }
+    }
+
+    /// A coordinate may be a product of several coefficients: four, as far as double-doubles tell, and two as far as
+    /// any number does.
+    fn value(accuracy: f64) -> f64 {
+        let two = accuracy * accuracy;
+        FARTHEST.min(two).min((two * two).max(SHOWN)).max(1e-40)
     }
 
     /// With integers, fractions and short decimals.
