@@ -176,7 +176,7 @@ fn components_by_dimension() {
 
 fn read(file: &str) -> cognate_systems::formats::Problem {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../deploy/examples")
+        .join("../../deploy/examples")
         .join(file);
     let content = std::fs::read(&path).expect("the example is there");
     cognate_systems::formats::read(file, &content).expect("the example is well formed")
