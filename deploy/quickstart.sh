@@ -32,7 +32,7 @@ fi
 command -v cargo >/dev/null || fail "Rust is missing: see https://rustup.rs, then run this again"
 
 say "building (minutes the first time, seconds after that)"
-cargo build --release --quiet --package cognate-coordinator --bin cognate
+cargo build --release --quiet --package cognate-client --bin cognate
 cognate=${CARGO_TARGET_DIR:-target}/release/cognate
 
 # --- one coordinator, two workers, in a folder of their own ---------------------------------------

@@ -5,14 +5,12 @@ use crate::api::held_stream::StreamLimits;
 use crate::api::security::Security;
 use crate::chunks::leasing::Policy;
 use crate::transport::introduction::ConnectionLimits;
+use cognate_protocol::DEFAULT_ADDRESS;
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
-
-/// The address that a coordinator listens on unless told otherwise.
-pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7654";
 
 /// What a coordinator is told when it starts.
 #[derive(Clone, Debug)]

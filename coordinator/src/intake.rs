@@ -7,13 +7,13 @@ use crate::api::error::ApiError;
 use crate::api::visible;
 use crate::coordinator::NewProblem;
 use cognate_continuation::start_points::StoredPoints;
-use cognate_continuation::tracker::settings::Settings;
-use cognate_numeric::precision::{DOUBLE, rungs};
+use cognate_numeric::precision::DOUBLE;
+use cognate_protocol::file_settings::{MOST_BITS, arithmetic, of_file, precision_warning};
 use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartSolutions, Submission,
 };
 use cognate_protocol::{digest, from_proto, to_proto};
-use cognate_systems::formats::{self, FileSettings, PrecisionHint};
+use cognate_systems::formats::{self, FileSettings};
 use cognate_systems::system::System;
 
 /// Checks and resolves a submission.
@@ -98,50 +98,6 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
     })
 }
 
-/// The most bits that may be asked for.
-pub const MOST_BITS: u32 = 65_536;
-
-/// The arithmetic with at least so many bits: doubles, double-doubles, or exactly so many.
-fn arithmetic(bits: u32) -> u32 {
-    let mut rungs = rungs(bits.min(MOST_BITS), 0);
-    rungs.next().expect("there is a first rung")
-}
-
-/// What to say about a file that asks for more bits than there are.
-pub fn precision_warning(file: &FileSettings) -> Option<String> {
-    match file.precision {
-        Some(PrecisionHint::Bits(bits)) if bits > MOST_BITS => Some(format!(
-            "the file asks for {bits} bits; paths are tracked with {MOST_BITS} at most"
-        )),
-        _ => None,
-    }
-}
-
-/// What a file's settings mean here. Ours are tighter than what most files say, and looser ones
-/// would only lose paths: tolerances are taken where they are smaller.
-pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
-    let smaller = |asked: Option<f64>, ours: f64| asked.filter(|&a| (1e-300..ours).contains(&a));
-    let asked_bits = match file.precision {
-        Some(PrecisionHint::Bits(bits)) => Some(arithmetic(bits)),
-        _ => None,
-    };
-    SettingsChoice {
-        tolerance: smaller(file.tracking_tolerance, base.tolerance),
-        endgame_tolerance: smaller(
-            file.final_tolerance.or(file.endgame_tolerance),
-            base.endgame_tolerance,
-        ),
-        data_accuracy: Some(file.data_accuracy),
-        max_steps: file
-            .maximum_steps
-            .filter(|&steps| steps > 0)
-            .map(|steps| u32::try_from(steps).unwrap_or(u32::MAX).min(1_000_000_000)),
-        precision_bits: asked_bits,
-        max_precision_bits: asked_bits.map(|bits| bits.max(base.max_precision_bits)),
-        ..SettingsChoice::default()
-    }
-}
-
 /// What fits together; the rest is the planner's business.
 fn check_options(options: &Options) -> Result<(), ApiError> {
     if let PrecisionChoice::Bits(bits) = options.precision
@@ -176,7 +132,7 @@ pub fn check_points(points: &StoredPoints, system: &System) -> Result<(), ApiErr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate_continuation::tracker::settings::Preset;
+    use cognate_continuation::tracker::settings::{Preset, Settings};
     use cognate_protocol::submission::StartKind;
 
     fn text(content: &str, options: Options) -> Result<NewProblem, ApiError> {

@@ -1,4 +1,4 @@
-//! The server of paths and its command-line client.
+//! The server of paths.
 //!
 //! The life of a job:
 //! 1. A client's problem is checked ([`intake`]); [`jobs::planning`] finds how it is solved, or why not.
@@ -9,7 +9,7 @@
 //! 5. A worker reports: the results are written once, then the chunk's row, then it hears so.
 //! 6. A worker falls silent: its chunk goes to another; one that kills workers is split down.
 //! 7. A stage is complete: its results are absorbed in order ([`jobs::steward`]), the next opens.
-//! 8. The algorithm is done: solutions and [`results::summary`] are objects, then the last row.
+//! 8. The algorithm is done: solutions and summary are objects, then the last row.
 //! 9. Meanwhile clients watch [`jobs::progress`].
 //! 10. Whoever dies, another goes on from ledger and store to the same answer.
 #![forbid(unsafe_code)]
@@ -38,5 +38,3 @@ pub mod config;
 pub mod server;
 
 pub mod metrics;
-
-pub mod client;

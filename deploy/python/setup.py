@@ -34,7 +34,7 @@ def program() -> Path:
         )
     if not (REPOSITORY / "coordinator" / "Cargo.toml").is_file():
         raise SystemExit(f"{REPOSITORY}: the sources of the program are not here")
-    command = ["cargo", "build", "--release", "--locked", "-p", "cognate-coordinator", "--bin", "cognate"]
+    command = ["cargo", "build", "--release", "--locked", "-p", "cognate-client", "--bin", "cognate"]
     print(f"building the program by `{' '.join(command)}`; this takes minutes", file=sys.stderr, flush=True)
     subprocess.run(command, cwd=REPOSITORY, check=True)
     target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))

@@ -35,7 +35,7 @@ pub fn cognate() -> &'static Path {
         let folder = built();
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(cargo);
-        build.args(["build", "-p", "cognate-coordinator", "--bin", "cognate"]);
+        build.args(["build", "-p", "cognate-client", "--bin", "cognate"]);
         if folder.ends_with("release") {
             build.arg("--release");
         }

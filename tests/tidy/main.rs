@@ -183,7 +183,7 @@ fn only_the_edges_know_protobuf() {
     let edges = [
         "common/protocol/",
         "coordinator/src/api/",
-        "coordinator/src/client/",
+        "coordinator/client/",
         "coordinator/src/intake.rs",
         "coordinator/src/server.rs",
         "coordinator/src/transport/",
@@ -202,6 +202,24 @@ fn only_the_edges_know_protobuf() {
                 "use prost",
             ];
             offences.extend(uses(&file, &names));
+        }
+    }
+    check(offences);
+}
+
+#[test]
+fn the_client_knows_the_server_only_where_it_starts_one() {
+    let starts = [
+        "coordinator/client/src/commands/coordinator.rs",
+        "coordinator/client/src/commands/path.rs",
+        "coordinator/client/src/config_file.rs",
+        "coordinator/client/src/embedded.rs",
+    ];
+    let mut offences = Vec::new();
+    for file in sources() {
+        let is_client = file.path.starts_with("coordinator/client/");
+        if is_client && !starts.contains(&file.path.as_str()) {
+            offences.extend(uses(&file, &["cognate_coordinator"]));
         }
     }
     check(offences);
@@ -322,14 +340,15 @@ fn section<'a>(readme: &'a str, heading: &str) -> &'a str {
 }
 
 /// The order of the house: the line of the drawing that begins with `numeric`, then what stands below it:
-/// kinematics, the coordinator and the tests.
+/// kinematics, summaries, the coordinator, its client and the tests.
 fn drawn_order(readme: &str) -> Vec<String> {
     let line = readme
         .lines()
         .find(|line| line.trim_start().starts_with("numeric ◄"))
         .expect("README.md has the drawing, a line `numeric ◄ systems ◄ ...`");
     let mut order: Vec<String> = line.split('◄').map(|name| name.trim().to_owned()).collect();
-    order.extend(["kinematics", "coordinator", "tests"].map(str::to_owned));
+    let below = ["kinematics", "summary", "coordinator", "client", "tests"];
+    order.extend(below.map(str::to_owned));
     order
 }
 

@@ -12,11 +12,8 @@ use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
 use crate::start_systems::total_degree::TotalDegree;
 use crate::tracker::boundary::Boundary;
-use crate::tracker::contexts;
-use crate::tracker::observer::{Recorder, StepEvent};
 use crate::tracker::settings::Settings;
 use crate::work::{Stage, Work};
-use cognate_numeric::lanes::dispatch::InstructionSet;
 use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees, supports};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::{System, SystemError};
@@ -24,7 +21,6 @@ use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
 use num_complex::Complex64;
 use std::borrow::Cow;
-use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// Why a stage cannot be prepared.
@@ -553,48 +549,13 @@ impl PreparedStage {
         }
     }
 
-    /// Tracks the paths of these items, `width` (1, 8 or 16) at a time; results in item order.
-    ///
-    /// Pure: the same items give the same bits at every width, in every range, on every machine
-    /// with fused multiply-add.
-    ///
-    /// # Panics
-    /// When `items` reaches beyond the stage or `width` is none of the three.
-    pub fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
-        self.track_on(InstructionSet::detect(), items, width)
-    }
-
-    /// [`Self::track`] with one instruction set, for tests that compare them.
-    pub fn track_on(
-        &self,
-        set: InstructionSet,
-        items: Range<u64>,
-        width: usize,
-    ) -> Vec<PathResult> {
-        assert!(items.end <= self.items, "a chunk lies within its stage");
-        let first = items.start;
-        let mut results = contexts::track(self, set, items, width, None);
-        self.hold_against_asked(first, &mut results);
-        results
-    }
-
     /// Says of results, from item `first` on, how well they solve all equations that are asked.
-    fn hold_against_asked(&self, first: u64, results: &mut [PathResult]) {
+    pub(crate) fn hold_against_asked(&self, first: u64, results: &mut [PathResult]) {
         if let Some(asked) = &self.asked {
             for (item, result) in (first..).zip(results) {
                 result.asked = asked.fit(result, self.item(item).1);
             }
         }
-    }
-
-    /// Tracks one path again and keeps every step.
-    pub fn trace(&self, item: u64) -> (PathResult, Vec<StepEvent>) {
-        assert!(item < self.items, "the item lies within the stage");
-        let mut recorder = Recorder::default();
-        let set = InstructionSet::detect();
-        let mut results = contexts::track(self, set, item..item + 1, 1, Some(&mut recorder));
-        self.hold_against_asked(item, &mut results);
-        (results.remove(0), recorder.0)
     }
 }
 
@@ -650,6 +611,7 @@ mod tests {
     use crate::path_result::PathIndex;
     use crate::tracker::outcome::PathOutcome;
     use crate::work::StageId;
+    use cognate_numeric::lanes::dispatch::InstructionSet;
     use cognate_systems::named::{cyclic, griewank_osborne, katsura};
 
     fn stage(degrees: &[u32]) -> Stage {

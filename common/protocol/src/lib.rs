@@ -2,6 +2,7 @@
 //!
 //! [`v1`] is generated from `proto/`; [`from_proto`] checks every field on its
 //! way in, [`to_proto`] cannot fail. [`submission`] is what a client asks for, [`option_misfit`] what of it does not go together,
+//! [`file_settings`] what a file's settings mean for it,
 //! [`decoded_size`] what a message takes in memory, [`digest`] names a system by its content, [`records`] is the form in which
 //! results are stored and hashed.
 #![forbid(unsafe_code)]
@@ -9,6 +10,7 @@
 pub mod decoded_size;
 pub mod digest;
 pub mod error;
+pub mod file_settings;
 mod flat_result;
 pub mod from_proto;
 pub mod limits;
@@ -25,6 +27,9 @@ pub mod v1 {
 
 /// The encoded descriptor set of all messages and services, for reflection.
 pub const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/cognate.v1.bin"));
+
+/// The address that a coordinator listens on unless told otherwise.
+pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7654";
 
 /// Grows when coordinators and workers of two versions cannot work together.
 pub const PROTOCOL_VERSION: u32 = 2;

@@ -1,21 +1,22 @@
 //! What clients ask: progress, results, lists, explanations.
 
+use super::recorded::Recorded;
 use super::{Coordinator, CoordinatorError, job_row};
 use crate::jobs::planning::{Planned, STATE};
 use crate::jobs::progress::JobProgress;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
-use crate::results::AnySummary;
 use crate::results::answer::StoredAnswer;
 use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{StageId, Work};
-use cognate_solutions::classification::{Tolerances, Verdict, classify};
+use cognate_solutions::classification::Verdict;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_summary::AnySummary;
 use serde_json::json;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -346,27 +347,18 @@ fn classified(
     shape: &PointShape,
 ) -> Vec<ClassifiedPath> {
     let mut solution_of = HashMap::new();
-    let (mut failed, mut on_sets) = (HashSet::new(), HashSet::new());
     let mut number = 0;
     for set in sets {
         for solution in set.points() {
             solution_of.extend(solution.paths.iter().map(|&path| (path, number)));
             number += 1;
         }
-        failed.extend(set.failed.iter().map(|f| f.path));
-        on_sets.extend(set.on_positive_dimensional_sets.iter().copied());
     }
-    let tolerances = Tolerances::default();
+    let recorded = Recorded::new(sets);
     results
         .into_iter()
         .map(|result| ClassifiedPath {
-            verdict: if failed.contains(&result.origin.0) {
-                Verdict::Failed
-            } else if on_sets.contains(&result.origin.0) {
-                Verdict::PositiveDimensional
-            } else {
-                classify(&result, shape, &tolerances).verdict
-            },
+            verdict: recorded.verdict(&result, shape),
             solution: solution_of.get(&result.origin.0).copied(),
             result,
         })

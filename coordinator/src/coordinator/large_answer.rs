@@ -1,22 +1,22 @@
 //! The answer of a large job: what is not held is read again from its results, a chunk at a time.
 
 use super::answers::ClassifiedPath;
+use super::recorded::{Recorded, was_at_infinity};
 use super::{Coordinator, CoordinatorError};
 use crate::jobs::large_stage::{page, read};
 use crate::jobs::planning::STATE;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobRow;
-use crate::results::answer::StoredAnswer;
-use crate::results::summary::LargeAnswer;
+use crate::results::answer::{LargeAnswer, StoredAnswer};
 use cognate_algorithms::AnyAlgorithm;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
-use cognate_solutions::classification::{Tolerances, Verdict, classify};
+use cognate_solutions::classification::Verdict;
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::streamed::PathFilter;
 use futures::StreamExt;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
@@ -107,6 +107,7 @@ impl Coordinator {
             filters,
             again: self.tracked_again(job, first).await?,
             held: Held::new(answer),
+            exact: large.first().settings.exact_data,
             number: 0,
         };
         let mut from = 0;
@@ -194,17 +195,14 @@ struct Held {
     numbers: Vec<Option<u64>>,
     /// The solution of each path.
     solution_of: HashMap<u64, usize>,
-    failed: HashSet<u64>,
-    on_sets: HashSet<u64>,
+    recorded: Recorded,
 }
 
 impl Held {
     fn new(answer: LargeAnswer) -> Self {
+        let recorded = Recorded::new(&answer.sets);
         let mut solutions = Vec::new();
-        let (mut failed, mut on_sets) = (HashSet::new(), HashSet::new());
         for set in answer.sets {
-            failed.extend(set.failed.iter().map(|f| f.path));
-            on_sets.extend(set.on_positive_dimensional_sets.iter().copied());
             solutions.extend(set.solutions.into_iter().chain(set.undecided));
         }
         let ends = |(k, solution): (usize, &Solution)| -> Vec<(u64, usize)> {
@@ -214,8 +212,7 @@ impl Held {
             paths: answer.held,
             solution_of: solutions.iter().enumerate().flat_map(ends).collect(),
             numbers: vec![None; solutions.len()],
-            failed,
-            on_sets,
+            recorded,
             solutions,
         }
     }
@@ -228,6 +225,8 @@ struct AnswerStream {
     filters: Vec<PathFilter>,
     again: HashMap<u64, PathResult>,
     held: Held,
+    /// Whether the coefficients of the system count as exact.
+    exact: bool,
     /// How many solutions were named.
     number: u64,
 }
@@ -244,7 +243,11 @@ impl AnswerStream {
         let named = |solution| (u32::try_from(target).unwrap_or(u32::MAX), solution);
         let filter = &self.filters[target as usize];
         if self.held.paths.binary_search(&path).is_err() {
-            let (verdict, solution) = filter.answer(&result);
+            let (verdict, solution) = match self.exact || !was_at_infinity(&result, filter.shape())
+            {
+                true => filter.answer(&result),
+                false => (Verdict::AtInfinity, None),
+            };
             let number = solution.is_some().then(|| self.next_number());
             let path = ClassifiedPath {
                 verdict,
@@ -257,13 +260,11 @@ impl AnswerStream {
             };
         }
         let result = self.again.remove(&path).unwrap_or(result);
-        let verdict = if self.held.failed.contains(&path) {
-            Verdict::Failed
-        } else if self.held.on_sets.contains(&path) {
-            Verdict::PositiveDimensional
-        } else {
-            classify(&result, filter.shape(), &Tolerances::default()).verdict
-        };
+        let mut verdict = self.held.recorded.verdict(&result, filter.shape());
+        if verdict == Verdict::Finite && !self.held.solution_of.contains_key(&path) {
+            // Each path that is held and finite has its solution.
+            verdict = Verdict::AtInfinity;
+        }
         let at = self.held.solution_of.get(&path).copied();
         let mut begun = None;
         if let Some(at) = at

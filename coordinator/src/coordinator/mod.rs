@@ -10,6 +10,7 @@ pub mod conduct;
 mod error;
 mod large_answer;
 mod mixed_cells;
+mod recorded;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;

@@ -3,9 +3,9 @@
 use super::simulation::*;
 use super::*;
 use crate::ledger::rows::JobRow;
-use crate::results::AnySummary;
 use cognate_protocol::submission::{Asked, Decompose};
 use cognate_solutions::witness::Question;
+use cognate_summary::AnySummary;
 
 /// A double line, a parabola, and a circle.
 fn problem() -> NewProblem {

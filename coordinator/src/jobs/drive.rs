@@ -13,13 +13,13 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{ChunkId, Epoch, JobId, LeaseId};
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
-use crate::results::AnySummary;
 use crate::results::answer::StoredAnswer;
+use crate::results::finished::Finished;
 use crate::results::store::Store;
-use crate::results::summary::Finished;
 use cognate_algorithms::Opening;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, StageId};
+use cognate_summary::AnySummary;
 use cognate_systems::system::System;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -332,7 +332,7 @@ impl Drive {
             workers: &workers,
             now,
         };
-        let summary = AnySummary::new(&answer, &about);
+        let summary = AnySummary::new(&answer, &about.about());
         let solutions = StoredAnswer::put(answer, store).await?;
         let summary = store.put(summary.to_json().into()).await?;
         let end = JobEnd::Solved { solutions, summary };

@@ -1,14 +1,33 @@
 //! StoredAnswer: the answer of a finished job as it is kept, each kind as an object of a kind of its own.
 
-use super::decomposition::DECOMPOSITION;
-use super::question::ANSWER;
-use super::store::{Store, StoreError};
-use super::summary::{LARGE, LargeAnswer, SOLUTIONS};
+use super::store::{RecordKind, Store, StoreError};
 use cognate_algorithms::Answer;
 use cognate_algorithms::answer::IsolatedSolutions;
 use cognate_continuation::start_points::Digest;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::{self, Decomposition};
+use serde::{Deserialize, Serialize};
+
+/// Solution sets as objects.
+const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL04");
+
+/// Answers of large jobs as objects.
+const LARGE: RecordKind = RecordKind(b"CGNLRG03");
+
+/// Decompositions as objects.
+const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC03");
+
+/// Answers of components as objects.
+const ANSWER: RecordKind = RecordKind(b"CGNANS01");
+
+/// The answer of a job of which not all paths are held (see `solutions::streamed`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LargeAnswer {
+    /// The paths that are held, ascending. The ends of the others are read from their results.
+    pub held: Vec<u64>,
+    /// For each target the counts of all paths, and the solutions of those that are held.
+    pub sets: Vec<SolutionSet>,
+}
 
 /// What is read back of an answer.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Tracking contexts: a chart and an arithmetic each, and how paths are handed from one to another.
+//! The paths of a stage, tracked through all contexts that they need.
 //!
 //! Paths begin in the first context, in lanes of doubles. One that runs far out of
 //! the affine chart goes on in projective patches; one that lacks digits goes
@@ -6,12 +6,9 @@
 //! each time), and down again when it has passed the difficult place. What a
 //! path does is a function of the path alone, whichever paths are tracked with it.
 
-use super::digits::Digits;
-use super::lane::Lane;
 use super::lockstep::Lockstep;
-use super::observer::Observer;
-use super::settings::Settings;
-use crate::homotopies::Homotopy;
+use super::observer::{Observer, Recorder, StepEvent};
+use super::tracking_context::{Ended, HandedOffPath, Handoff, Queue, TrackingContext};
 use crate::path_result::PathResult;
 use crate::stage::PreparedStage;
 use cognate_numeric::lanes::Lanes;
@@ -21,90 +18,9 @@ use cognate_numeric::lanes::dispatch::{
 use cognate_numeric::lanes::double_doubles::DoubleDoubleLanes;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, rungs};
 use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
-use num_complex::Complex64;
 use std::collections::VecDeque;
 use std::marker::PhantomData;
 use std::ops::Range;
-
-/// Where a path that leaves its tracking context goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Handoff {
-    /// In projective patches, with as many digits.
-    Projective,
-    /// On the next rung of the ladder of precision.
-    Up,
-    /// On the rung below.
-    Down,
-}
-
-/// A path on its way from one tracking context to another.
-#[derive(Clone, Debug)]
-pub(super) struct HandedOffPath {
-    pub lane: Lane,
-    pub t: Complex64,
-    /// In the chart of the context where it goes; `None` where that chart misses it.
-    pub point: Option<Vec<Digits>>,
-    pub exchanges: f64,
-    pub handoff: Handoff,
-}
-
-/// Paths of one tracking context that wait for a lane.
-pub(super) struct Queue {
-    /// Items of the stage, whose paths begin at their start points.
-    pub items: Range<u64>,
-    /// Paths that other contexts handed over.
-    pub handed_off: VecDeque<HandedOffPath>,
-}
-
-impl Queue {
-    /// Number of paths that wait.
-    fn count(&self) -> u64 {
-        self.items.end - self.items.start + self.handed_off.len() as u64
-    }
-}
-
-/// How the paths of a tracking context ended there.
-#[derive(Default)]
-pub(super) struct Ended {
-    /// Results with the items whose paths they are of.
-    pub results: Vec<(u64, PathResult)>,
-    pub handed_off: Vec<HandedOffPath>,
-}
-
-/// Shortest step on the higher rungs, as a part of the way that is left: t is a double there too.
-const LEAST_STEP: f64 = 1e-15;
-
-/// A chart and an arithmetic, and where paths may be handed to from there.
-#[derive(Clone, Copy)]
-pub(super) struct TrackingContext<'a> {
-    pub stage: &'a PreparedStage,
-    pub homotopy: &'a Homotopy,
-    /// Bits of the arithmetic.
-    pub bits: u32,
-    /// Whether a path may go on in projective patches.
-    pub projective: bool,
-    /// Whether a path may go on on the next rung.
-    pub up: bool,
-    /// Whether a path may go on on the rung below.
-    pub down: bool,
-}
-
-impl TrackingContext<'_> {
-    /// The stage's settings as they are meant for this arithmetic: the endgame may go as much
-    /// further in as there are more digits, and steps may be as short as doubles can tell values of
-    /// t apart.
-    pub fn settings(&self) -> Settings {
-        let mut settings = self.stage.settings().clone();
-        if self.bits > DOUBLE {
-            settings.min_step = settings.min_step.min(LEAST_STEP);
-        }
-        let least = settings.endgame_min_radius;
-        for _ in 1..(self.bits / DOUBLE).min(4) {
-            settings.endgame_min_radius *= least;
-        }
-        settings
-    }
-}
 
 /// The work of one tracking context, in lanes of one scalar type.
 struct Work<'a, R: Real> {
@@ -187,8 +103,45 @@ fn work<'a>(
     }
 }
 
+impl PreparedStage {
+    /// Tracks the paths of these items, `width` (1, 8 or 16) at a time; results in item order.
+    ///
+    /// Pure: the same items give the same bits at every width, in every range, on every machine
+    /// with fused multiply-add.
+    ///
+    /// # Panics
+    /// When `items` reaches beyond the stage or `width` is none of the three.
+    pub fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
+        self.track_on(InstructionSet::detect(), items, width)
+    }
+
+    /// [`Self::track`] with one instruction set, for tests that compare them.
+    pub fn track_on(
+        &self,
+        set: InstructionSet,
+        items: Range<u64>,
+        width: usize,
+    ) -> Vec<PathResult> {
+        assert!(items.end <= self.items(), "a chunk lies within its stage");
+        let first = items.start;
+        let mut results = track(self, set, items, width, None);
+        self.hold_against_asked(first, &mut results);
+        results
+    }
+
+    /// Tracks one path again and keeps every step.
+    pub fn trace(&self, item: u64) -> (PathResult, Vec<StepEvent>) {
+        assert!(item < self.items(), "the item lies within the stage");
+        let mut recorder = Recorder::default();
+        let set = InstructionSet::detect();
+        let mut results = track(self, set, item..item + 1, 1, Some(&mut recorder));
+        self.hold_against_asked(item, &mut results);
+        (results.remove(0), recorder.0)
+    }
+}
+
 /// Tracks the paths of `items` through all contexts; results in item order.
-pub(crate) fn track(
+fn track(
     stage: &PreparedStage,
     set: InstructionSet,
     items: Range<u64>,

@@ -5,10 +5,9 @@
 //! a lane whose path has ended takes the next start point with a step of length
 //! 0. So there is no divergence, and no lane ever looks at another: the bits of
 //! a path are those of the same path alone (W = 1 is a width). What a tracking
-//! context (a chart and an arithmetic) cannot do, another may: see `contexts`.
+//! context (a chart and an arithmetic) cannot do, another may: see `tracking_context`.
 
 use super::batch::Batch;
-use super::contexts::{Ended, HandedOffPath, Handoff, Queue, TrackingContext};
 use super::digits::Digits;
 use super::far_out;
 use super::lane::{Lane, Phase};
@@ -17,6 +16,7 @@ use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
 use super::settings::Settings;
 use super::taylor_probe::{Estimate, Series, TaylorProbe};
+use super::tracking_context::{Ended, HandedOffPath, Handoff, Queue, TrackingContext};
 use crate::chart::{LEAST_NORM, norm};
 use crate::endgames::cauchy::distance;
 use crate::endgames::circle::VERTICES;

@@ -5,7 +5,7 @@
 
 mod batch;
 pub(crate) mod boundary;
-pub(crate) mod contexts;
+mod contexts;
 mod digits;
 mod far_out;
 pub(crate) mod lane;
@@ -15,4 +15,5 @@ pub mod observer;
 pub mod outcome;
 pub mod settings;
 mod taylor_probe;
+mod tracking_context;
 mod turns;

@@ -3,12 +3,12 @@
 //! `endgames::cauchy` says where to; here the path is taken there, and what it shows there is handed
 //! back: the point, its homogenising coordinates and their valuations.
 
-use super::contexts::Handoff;
 use super::digits::Digits;
 use super::far_out;
 use super::lane::Phase;
 use super::lockstep::{ENDGAME_BITS, End, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
+use super::tracking_context::Handoff;
 use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
 use crate::endgames::circle::VERTICES;

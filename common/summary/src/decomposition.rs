@@ -1,0 +1,308 @@
+//! DecompositionSummary: what a finished decomposition is in one JSON object, field by field as the contract
+//! has it.
+
+use super::about::{About, TimeBlock, WorkerBlock};
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::witness::{
+    Decomposition, Dimension, Doubt, Irreducible, TrackedPaths, Verification, WitnessSet,
+};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// More isolated points than these stand together, by multiplicity.
+const MOST_POINTS_LISTED: usize = 1000;
+
+/// A finished decomposition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DecompositionSummary {
+    /// Id of the job.
+    pub job: String,
+    /// The system, the method and the seed.
+    pub problem: DecomposedProblem,
+    /// Components and dimensions.
+    pub decomposition: DecompositionBlock,
+    /// Paths to the witness points, and those of loops.
+    pub paths: PathBlock,
+    /// Wall time and CPU time.
+    pub time: TimeBlock,
+    /// Workers and the number of items that each did.
+    pub workers: Vec<WorkerBlock>,
+    /// True when every claim is settled.
+    pub settled: bool,
+    /// What a person should know, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// The problem that was decomposed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DecomposedProblem {
+    /// Name of the problem, usually that of its file.
+    pub name: String,
+    /// Digest of the system.
+    pub digest: String,
+    /// Number of variables.
+    pub variables: u64,
+    /// Number of equations.
+    pub equations: u64,
+    /// How the witness superset is found: `equations`, `cascade` or `slices`.
+    pub method: String,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+/// Paths that were tracked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PathBlock {
+    /// Paths to the witness points, and those that ask whether a point is on a set of higher dimension.
+    #[serde(flatten)]
+    pub superset: TrackedPaths,
+    /// Paths along loops of the slices.
+    pub loops: TrackedPaths,
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DecompositionBlock {
+    /// Whether every claim is settled.
+    pub settled: bool,
+    /// Lowest and highest dimension that were asked.
+    pub asked: [u32; 2],
+    /// The components: by dimension, degree and multiplicity, largest first.
+    pub components: Vec<ComponentBlock>,
+    /// The dimensions that were asked.
+    pub by_dimension: BTreeMap<u32, DimensionBlock>,
+    /// Components inside others, of which only multiplicities tell: `not searched`.
+    pub embedded: String,
+    /// What a second way found; `null` where none was asked for.
+    pub verification: Option<Verification>,
+    /// What keeps the answer from being settled, in words; empty where it is.
+    pub unsettled: Vec<String>,
+}
+
+/// A component, or many isolated points of one multiplicity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ComponentBlock {
+    /// Its name, such as `1.3`; of many points, that of the first.
+    pub id: String,
+    /// Dimension; projective in homogeneous groups.
+    pub dimension: u32,
+    /// Degree.
+    pub degree: u64,
+    /// How many components the entry stands for.
+    pub count: u64,
+    /// Multiplicity as a scheme; `null` where it is not known.
+    pub multiplicity: Option<u64>,
+    /// Paths that came to each of its witness points.
+    pub tracked_multiplicity: u64,
+    /// Whether it is one component.
+    pub irreducible: Irreducible,
+    /// Rank of the Jacobian before each deflation; empty where the equations are regular.
+    pub deflation: Vec<u32>,
+    /// Degrees by groups of variables; not computed yet.
+    pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
+    /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
+    pub self_conjugate: Option<bool>,
+    /// Witness points that are proved; none yet.
+    pub certified: Option<u64>,
+    /// What the claims rest on.
+    pub evidence: EvidenceBlock,
+}
+
+/// What the claims about a component rest on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EvidenceBlock {
+    /// Sum of the second derivatives of the witness points over the sum of their lengths; `null` for a point.
+    pub trace_deviation: Option<f64>,
+    /// What rounding makes of it.
+    pub noise: Option<f64>,
+    /// The least such sum of points that are no component; `null` where none was tried.
+    pub smallest_wrong_union: Option<f64>,
+    /// Loops that were made.
+    pub loops: u32,
+    /// Precision of the derivatives, in bits; `null` for a point.
+    pub precision_bits: Option<u32>,
+    /// Least gap between singular values that were taken as not 0 and as 0.
+    pub rank_gap: Option<f64>,
+    /// Largest condition number of the witness points.
+    pub worst_condition: Option<f64>,
+    /// Reasons why this part of the answer is not settled.
+    pub doubts: Vec<Doubt>,
+}
+
+/// What the paths to one dimension came to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DimensionBlock {
+    /// Number of components.
+    pub components: u64,
+    /// Sum of their degrees.
+    pub degree: u64,
+    /// Paths that ended at solutions.
+    pub superset: u64,
+    /// ... and of these on sets of higher dimension.
+    pub junk: u64,
+    /// Paths that ended at solutions of combinations of the equations alone.
+    pub excess: u64,
+    /// Paths that failed on the way.
+    pub failed: u64,
+    /// Whether all components of this dimension are found.
+    pub complete: Completeness,
+    /// Reasons why this part of the answer is not settled.
+    pub doubts: Vec<Doubt>,
+}
+
+impl DecompositionBlock {
+    /// The answer as the contract has it.
+    pub fn new(found: &Decomposition) -> Self {
+        let mut unsettled = Vec::new();
+        for dimension in &found.dimensions {
+            let said = dimension.doubts.iter();
+            unsettled.extend(said.map(|doubt| format!("dimension {}: {doubt}", dimension.number)));
+        }
+        for set in &found.components {
+            let said = set.evidence.doubts.iter();
+            unsettled.extend(said.map(|doubt| format!("component {}: {doubt}", set.id)));
+        }
+        let settled = found.settled();
+        if !settled && unsettled.is_empty() {
+            unsettled.push("whether all components are found is not known".into());
+        }
+        Self {
+            settled,
+            asked: found.asked,
+            components: components(&found.components),
+            by_dimension: found
+                .dimensions
+                .iter()
+                .map(|dimension| (dimension.number, block(dimension, &found.components)))
+                .collect(),
+            embedded: "not searched".into(),
+            verification: found.verification.clone(),
+            unsettled,
+        }
+    }
+}
+
+/// A JSON number, where it is one.
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+fn components(sets: &[WitnessSet]) -> Vec<ComponentBlock> {
+    let points = sets.iter().filter(|set| set.dimension() == 0).count();
+    let mut blocks: Vec<ComponentBlock> = Vec::new();
+    for set in sets {
+        let block = component(set);
+        let together = |known: &&mut ComponentBlock| {
+            let of = |b: &ComponentBlock| (b.multiplicity, b.tracked_multiplicity, b.irreducible);
+            known.dimension == 0
+                && of(known) == of(&block)
+                && known.deflation == block.deflation
+                && known.evidence.doubts == block.evidence.doubts
+        };
+        let many = set.dimension() == 0 && points > MOST_POINTS_LISTED;
+        match blocks.iter_mut().find(|known| many && together(known)) {
+            Some(known) => {
+                known.count += 1;
+                let (a, b) = (&mut known.evidence, &block.evidence);
+                // Where one is not finite the worst is not, either.
+                a.worst_condition = a
+                    .worst_condition
+                    .zip(b.worst_condition)
+                    .map(|(x, y)| x.max(y));
+            }
+            None => blocks.push(block),
+        }
+    }
+    blocks
+}
+
+fn component(set: &WitnessSet) -> ComponentBlock {
+    let evidence = &set.evidence;
+    ComponentBlock {
+        id: set.id.to_string(),
+        dimension: set.dimension(),
+        degree: set.degree,
+        count: 1,
+        multiplicity: set.multiplicity.scheme,
+        tracked_multiplicity: set.multiplicity.tracked,
+        irreducible: set.irreducible,
+        deflation: set.deflation.clone(),
+        multidegree: None,
+        self_conjugate: set.self_conjugate,
+        certified: None,
+        evidence: EvidenceBlock {
+            trace_deviation: evidence.trace.and_then(|trace| finite(trace.deviation)),
+            noise: evidence.trace.and_then(|trace| finite(trace.noise)),
+            smallest_wrong_union: evidence.smallest_wrong_union.and_then(finite),
+            loops: evidence.loops,
+            precision_bits: evidence.trace.map(|trace| trace.precision_bits),
+            rank_gap: evidence.rank_gap.and_then(finite),
+            worst_condition: finite(evidence.worst_condition),
+            doubts: evidence.doubts.clone(),
+        },
+    }
+}
+
+fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
+    let own = sets
+        .iter()
+        .filter(|set| set.dimension() == dimension.number);
+    DimensionBlock {
+        components: own.count() as u64,
+        degree: dimension.degree,
+        superset: dimension.superset,
+        junk: dimension.junk,
+        excess: dimension.excess,
+        failed: dimension.failed,
+        complete: dimension.complete,
+        doubts: dimension.doubts.clone(),
+    }
+}
+
+impl DecompositionSummary {
+    /// The summary of a job that has found this.
+    pub fn new(about: &About, found: &Decomposition) -> Self {
+        Self {
+            job: about.job.clone(),
+            problem: DecomposedProblem {
+                name: about.name.clone(),
+                digest: about.digest.clone(),
+                variables: about.variables,
+                equations: about.equations,
+                method: found.method.name().into(),
+                seed: about.seed,
+            },
+            decomposition: DecompositionBlock::new(found),
+            paths: PathBlock {
+                superset: found.paths,
+                loops: found.paths_of_loops,
+            },
+            time: about.time.clone(),
+            workers: about.workers.clone(),
+            settled: found.settled(),
+            warnings: about.warnings.clone(),
+        }
+    }
+
+    /// What `explain` says of it.
+    pub fn lines(&self) -> Vec<String> {
+        let found = &self.decomposition;
+        let mut lines = Vec::new();
+        for (number, d) in found.by_dimension.iter().rev() {
+            lines.push(format!(
+                "dimension {number}: {} components of degree {} in all, complete: {}; {} paths to solutions, {} of \
+                 them on sets of higher dimension; {} failed on the way",
+                d.components,
+                d.degree,
+                d.complete.name(),
+                d.superset,
+                d.junk,
+                d.failed
+            ));
+        }
+        let unsettled = found.unsettled.iter();
+        lines.extend(unsettled.map(|doubt| format!("not settled: {doubt}")));
+        lines.extend(self.warnings.iter().map(|w| format!("warning: {w}")));
+        lines
+    }
+}

@@ -1,0 +1,843 @@
+//! What people type: every command and option of `cognate`, with its help.
+//!
+//! What is not in this version is refused here by name, so that nothing is half there in silence.
+
+pub use super::common_arguments::{
+    Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, ProgressForm,
+};
+use super::connection::Target;
+use super::error::ClientError;
+use super::mechanism::arguments::MechanismCommand;
+use super::sets::arguments as sets;
+use clap::builder::Styles;
+use clap::builder::styling::{AnsiColor, Effects};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use cognate_continuation::sharpening::MOST_DIGITS;
+use cognate_protocol::DEFAULT_ADDRESS;
+use cognate_protocol::file_settings::MOST_BITS;
+use cognate_protocol::option_misfit::any_of;
+use cognate_protocol::submission::{PrecisionChoice, StartKind};
+use cognate_solutions::witness::Method;
+use cognate_worker::transport::connect::CredentialFiles;
+use std::path::PathBuf;
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().effects(Effects::BOLD))
+    .usage(AnsiColor::Green.on_default().effects(Effects::BOLD))
+    .literal(AnsiColor::Cyan.on_default().effects(Effects::BOLD))
+    .placeholder(AnsiColor::Cyan.on_default());
+
+/// Finds all solutions of a system of polynomial equations, on as many machines as there are.
+#[derive(Debug, Parser)]
+#[command(
+    name = "cognate",
+    version,
+    styles = STYLES,
+    propagate_version = true,
+    max_term_width = 100,
+    after_help = "\
+Examples:
+  cognate solve system.bertini                solve here, with two local workers
+  cognate coordinator --ledger sqlite:jobs.db start the service
+  cognate worker --coordinator http://head:7654
+  cognate submit system.bertini | xargs cognate watch
+
+Exit codes: 0 solved, 1 solved but something is not settled, 2 bad input,
+            3 the service could not be reached or gave up, 4 cancelled, 130 interrupted"
+)]
+pub struct Arguments {
+    /// The subcommand.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve a system here: a coordinator and workers for this one problem
+    Solve(Solve),
+    /// What a file holds and what each start would cost; solves nothing
+    Info(Info),
+    /// A system in another notation
+    Convert(Convert),
+    /// Every irreducible component of every dimension, with its degree and multiplicity
+    Decompose(Decompose),
+    /// On which components points lie
+    Member(sets::Member),
+    /// Points of components
+    Sample(sets::Sample),
+    /// Dimension and degree of the images of components
+    Project(sets::Project),
+    /// Degrees of components by groups of variables
+    Multidegree(sets::Plain),
+    /// In how many directions points can be moved
+    Mobility(sets::Mobility),
+    /// Which witness points of components are proved
+    Certify(sets::Plain),
+    /// Loops, arcs and singular points of real curves
+    RealCurve(sets::RealCurve),
+    /// One path again, step by step
+    Path(TracePath),
+    /// Run the service that plans jobs and hands out their paths
+    Coordinator(Coordinator),
+    /// Run a worker that tracks paths for a coordinator
+    Worker(Worker),
+    /// Hand a system to a coordinator; prints the job's id
+    Submit(Submit),
+    /// Follow a job until it ends
+    Watch(Watch),
+    /// The results of a job
+    Results(Results),
+    /// How a job's numbers came about: stages, retries, reasons of failure
+    Explain(OneJob),
+    /// Stop a job
+    Cancel(OneJob),
+    /// All jobs of a coordinator
+    Jobs(Listing),
+    /// All workers of a coordinator
+    Workers(Listing),
+    /// From points to all linkages that pass them
+    #[command(subcommand)]
+    Synthesize(Synthesize),
+    /// Arms, platforms and linkages: from links and joints to all positions
+    #[command(subcommand)]
+    Mechanism(MechanismCommand),
+    /// As many workers in a batch system as the backlog asks for
+    #[command(subcommand)]
+    Fleet(Fleet),
+}
+
+/// A start, as typed.
+fn start(text: &str) -> Result<StartKind, String> {
+    let known = StartKind::ALL.into_iter();
+    let mut found = known.filter(|start| start.name() == text);
+    found
+        .next()
+        .ok_or_else(|| format!("expected {}", any_of(&StartKind::ALL)))
+}
+
+/// A probability that is neither 0 nor 1.
+fn probability(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(p) if p > 0.0 && p < 1.0 => Ok(p),
+        _ => Err("expected a probability between 0 and 1, such as 0.999".to_owned()),
+    }
+}
+
+/// An arithmetic, as typed.
+fn precision(text: &str) -> Result<PrecisionChoice, String> {
+    match text {
+        "adaptive" => Ok(PrecisionChoice::Adaptive),
+        "double" => Ok(PrecisionChoice::Double),
+        bits => match bits.parse::<u32>() {
+            Ok(bits) if bits > MOST_BITS => {
+                Err(format!("not in this version: at most {MOST_BITS} bits"))
+            }
+            Ok(bits) if bits > 0 => Ok(PrecisionChoice::Bits(bits)),
+            _ => Err("expected adaptive, double or a number of bits".into()),
+        },
+    }
+}
+
+/// What is solved and how: the options of everything that takes a system.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Problem")]
+pub struct ProblemArguments {
+    /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
+    pub file: PathBuf,
+    /// Where the paths begin
+    #[arg(
+        long,
+        value_parser = start,
+        default_value = StartKind::Auto.name(),
+        value_name = "auto|total-degree|multihomogeneous|linear-product|polyhedral|regeneration|monodromy|given"
+    )]
+    pub start: StartKind,
+    /// Known solutions to start from: our solutions.jsonl, Bertini's start format or PHCpack's list
+    #[arg(long, value_name = "FILE")]
+    pub start_solutions: Option<PathBuf>,
+    /// The parameters that the start solutions belong to: Bertini's format or JSON
+    #[arg(long, value_name = "FILE")]
+    pub start_parameters: Option<PathBuf>,
+    /// The parameters wanted, one set or many
+    #[arg(long, value_name = "FILE")]
+    pub target_parameters: Option<PathBuf>,
+    /// Variable groups instead of those in the file: "x,y;z,w"
+    #[arg(long, value_name = "GROUPS")]
+    pub groups: Option<String>,
+    /// Sets of variables for --start linear-product (JSON): a list for each equation, with as
+    /// many sets as its degree, whose product of linear forms has all of its monomials, as in
+    /// [[["x"], ["x", "y"]], [["x", "y"]]]
+    #[arg(long, value_name = "FILE")]
+    pub sets: Option<PathBuf>,
+    /// Pairs of variables that are conjugates at a real solution: "p~P,t1~T1"
+    #[arg(long, value_name = "PAIRS")]
+    pub conjugates: Option<String>,
+    /// Named sets of endpoints that are no answers (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub degenerate: Option<PathBuf>,
+    /// Seed of everything random; the same seed gives the same bits [default: made from the problem]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
+    pub precision: PrecisionChoice,
+    /// Generators of a symmetry group of the solutions (JSON): classes are counted, and
+    /// --start monodromy tracks one solution of each
+    #[arg(long, value_name = "FILE")]
+    pub symmetry: Option<PathBuf>,
+    /// Loops in a row without anything new after which --start monodromy ends [default: 5]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub idle_loops: Option<u32>,
+    /// Instead of idle loops: --start monodromy ends when, if loops permute the solutions at random, none
+    /// is missing with this probability, such as 0.999
+    #[arg(long, value_name = "PROBABILITY", value_parser = probability, conflicts_with = "idle_loops")]
+    pub confidence: Option<f64>,
+    /// How many solutions there are at generic parameters, where --start monodromy should know
+    #[arg(long, value_name = "N")]
+    pub expect: Option<u64>,
+    /// Proofs that there is exactly one solution in each box, that they differ, that they are real
+    #[arg(long)]
+    pub certify: bool,
+    /// Decimal digits of the solutions, found by Newton's method at their ends
+    /// [default: those of the paths' arithmetic]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_DIGITS)))]
+    pub digits: Option<u32>,
+    /// Also isolated singular solutions get their digits, by deflation
+    #[arg(long)]
+    pub deflate: bool,
+    /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit:
+    /// also solutions that rounding makes, near infinity, are followed to their ends
+    #[arg(long)]
+    pub exact: bool,
+    /// Let a trace test decide when --start monodromy has all solutions: it is a proof but for
+    /// rounding, where loops without anything new are only evidence
+    #[arg(long)]
+    pub trace_test: bool,
+}
+
+/// Which coordinator is asked.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Service")]
+pub struct ServiceArguments {
+    /// The coordinator's address: http://HOST:PORT or unix:PATH; of several, with commas between, the first that answers
+    #[arg(long, value_name = "URL", env = "COGNATE_COORDINATOR", default_value_t = format!("http://{DEFAULT_ADDRESS}"))]
+    pub coordinator: String,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
+}
+
+impl ServiceArguments {
+    /// Where calls go, with what they show.
+    pub fn target(&self) -> Result<Target, ClientError> {
+        Target::read(&self.coordinator, &self.credentials)
+    }
+}
+
+/// `cognate solve`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate solve system.bertini
+  cognate solve system.phc --workers 4 --format json > summary.json
+  cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
+  cognate solve family.bertini --start-solutions solutions.jsonl \\
+                --start-parameters start.json --target-parameters wanted.json")]
+pub struct Solve {
+    /// The file, its format, and what of the answer is known.
+    #[command(flatten)]
+    pub problem: ProblemArguments,
+    /// Local worker processes
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub workers: u32,
+    /// Threads of each worker [default: cores / workers]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+    /// Files and format of the answer.
+    #[command(flatten)]
+    pub output: OutputArguments,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
+}
+
+/// A range of dimensions, as typed: `1`, or `0..2` with both ends.
+fn dimensions(text: &str) -> Result<Dimensions, String> {
+    let read = |part: &str| part.parse::<u32>().ok();
+    let range = match text.split_once("..") {
+        Some((lowest, highest)) => read(lowest).zip(read(highest)),
+        None => read(text).map(|only| (only, only)),
+    };
+    let range = range.filter(|(lowest, highest)| lowest <= highest);
+    let (lowest, highest) = range
+        .ok_or_else(|| "expected a dimension such as 1, or a range such as 0..2".to_owned())?;
+    Ok(Dimensions { lowest, highest })
+}
+
+/// Dimensions of components, from the lowest to the highest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimensions {
+    /// The lowest.
+    pub lowest: u32,
+    /// The highest.
+    pub highest: u32,
+}
+
+/// Which components are wanted.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Components")]
+pub struct ComponentArguments {
+    /// Dimensions of the components that are wanted: D or D..E [default: all]
+    #[arg(long, value_name = "D|D..E", value_parser = dimensions)]
+    pub dimension: Option<Dimensions>,
+    /// Loops in a row that bring no witness points together before these stay apart [default: 12]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=200))]
+    pub loops: Option<u32>,
+    /// How witness points are found: equation by equation, by a cascade of combinations, or dimension by
+    /// dimension on slices; auto takes the equations, and the cascade where these leave doubts
+    #[arg(long, value_enum, default_value_t)]
+    pub method: MethodName,
+    /// Find the components a second way, too, and compare: what differs is not settled
+    #[arg(long)]
+    pub verify: bool,
+}
+
+impl ComponentArguments {
+    /// Whether any of them was typed.
+    pub fn are_given(&self) -> bool {
+        self.dimension.is_some()
+            || self.loops.is_some()
+            || self.method != MethodName::Auto
+            || self.verify
+    }
+}
+
+/// How witness points are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// By the equations, and by the cascade where these leave doubts
+    #[default]
+    Auto,
+    /// Each dimension by itself, on its slices
+    Slices,
+    /// General combinations of the equations, one after the other
+    Cascade,
+    /// The equations themselves, one after the other
+    Equations,
+}
+
+impl MethodName {
+    /// The way that is asked for; `None`: the coordinator chooses.
+    pub fn method(self) -> Option<Method> {
+        match self {
+            Self::Auto => None,
+            Self::Slices => Some(Method::Slices),
+            Self::Cascade => Some(Method::Cascade),
+            Self::Equations => Some(Method::Equations),
+        }
+    }
+}
+
+/// `cognate decompose`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate decompose twisted_cubic.bertini
+  cognate decompose system.bertini --verify
+  cognate decompose system.bertini --dimension 1..2 --format json | jq .decomposition.components
+  cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl")]
+pub struct Decompose {
+    /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
+    #[arg(help_heading = "Problem")]
+    pub file: PathBuf,
+    /// The components of a decomposition that are meant.
+    #[command(flatten)]
+    pub components: ComponentArguments,
+    /// Values of the parameters: Bertini's format or JSON, one set
+    #[arg(long, value_name = "FILE", help_heading = "Problem")]
+    pub target_parameters: Option<PathBuf>,
+    /// Variable groups instead of those in the file: "x,y;z,w"
+    #[arg(long, value_name = "GROUPS", help_heading = "Problem")]
+    pub groups: Option<String>,
+    /// Seed of everything random; the same seed gives the same bits [default: made from the problem]
+    #[arg(long, value_name = "N", help_heading = "Problem")]
+    pub seed: Option<u64>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t, help_heading = "Problem")]
+    pub preset: PresetName,
+    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision, help_heading = "Problem")]
+    pub precision: PrecisionChoice,
+    /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
+    #[arg(long, help_heading = "Problem")]
+    pub exact: bool,
+    /// A coordinator of the command's own, or one that runs.
+    #[command(flatten)]
+    pub service: OwnOrRunning,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+    /// Also write what `cognate member` and others read, and Bertini's input, witness_data and main_data, here
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
+}
+
+impl Decompose {
+    /// What is decomposed, as the options of a solve.
+    pub fn problem(&self) -> ProblemArguments {
+        ProblemArguments {
+            file: self.file.clone(),
+            target_parameters: self.target_parameters.clone(),
+            groups: self.groups.clone(),
+            seed: self.seed,
+            preset: self.preset,
+            precision: self.precision,
+            exact: self.exact,
+            ..ProblemArguments::default()
+        }
+    }
+
+    /// Files and format of the answer.
+    pub fn output(&self) -> OutputArguments {
+        OutputArguments {
+            format: self.format,
+            output: self.output.clone(),
+        }
+    }
+}
+
+/// `cognate synthesize`.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Synthesize {
+    /// Every four-bar linkage whose coupler point passes nine given points
+    NinePoint(NinePoint),
+    /// Every four-bar linkage that takes a body through five given poses
+    BodyGuidance(BodyGuidance),
+    /// Every four-bar linkage whose coupler point passes five given points at given angles of its crank
+    PathTiming(PathTiming),
+    /// Every four-bar linkage whose two sides turn together through five given pairs of angles
+    FunctionGeneration(FunctionGeneration),
+    /// Every four-bar linkage that takes a body through 2, 3 or 4 poses, and a point of it through 6, 4 or
+    /// 2 places
+    PosesAndPoints(PosesAndPoints),
+}
+
+impl Synthesize {
+    /// The options that all have.
+    pub fn common(&self) -> &SynthesisArguments {
+        match self {
+            Self::NinePoint(a) => &a.common,
+            Self::BodyGuidance(a) => &a.common,
+            Self::PathTiming(a) => &a.common,
+            Self::FunctionGeneration(a) => &a.common,
+            Self::PosesAndPoints(a) => &a.common,
+        }
+    }
+}
+
+/// How linkages are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum SynthesisFormat {
+    /// A table for people
+    #[default]
+    Table,
+    /// One JSON object on standard output, nothing else there
+    Json,
+    /// A row for each linkage
+    Csv,
+}
+
+/// `cognate synthesize nine-point`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize nine-point points.csv
+  cognate synthesize nine-point points.csv --certify --output linkages
+  cognate synthesize nine-point points.csv --format json | jq '.curves[0].linkages[0]'
+  cognate synthesize nine-point --targets many.csv --format json > many.jsonl
+
+points.csv has a header x,y and nine rows; any units. JSON: {\"points\": [[x, y], ...]}.")]
+pub struct NinePoint {
+    /// Nine points: CSV with a header x,y or JSON; - is standard input
+    #[arg(required_unless_present = "targets")]
+    pub file: Option<PathBuf>,
+    /// Many sets of nine points: CSV with a header x1,y1,...,x9,y9 (name before it, if wanted), or a
+    /// line of JSON for each; every set is answered on a line as soon as it is settled
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "output"])]
+    pub targets: Option<PathBuf>,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize body-guidance`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize body-guidance poses.csv
+  cognate synthesize body-guidance poses.csv --output linkages
+
+poses.csv has a header x,y,angle and five rows, angles in degrees. JSON: {\"poses\": [[x, y, angle], ...]}.")]
+pub struct BodyGuidance {
+    /// Five poses: CSV with a header x,y,angle (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize path-timing`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize path-timing points.csv
+  cognate synthesize path-timing points.csv --output linkages
+
+points.csv has a header x,y,angle and five rows: the point, and the crank's angle in degrees there, of which
+only the differences matter. JSON: {\"points\": [[x, y, angle], ...]}.")]
+pub struct PathTiming {
+    /// Five points with angles: CSV with a header x,y,angle (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize function-generation`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize function-generation angles.csv
+  cognate synthesize function-generation angles.csv --output linkages
+
+angles.csv has a header input,output and five rows, angles in degrees, of which only the differences matter.
+JSON: {\"angles\": [[input, output], ...]}. Lengths are in units of the ground link.")]
+pub struct FunctionGeneration {
+    /// Five pairs of angles: CSV with a header input,output (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// `cognate synthesize poses-and-points`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize poses-and-points positions.csv
+  cognate synthesize poses-and-points positions.csv --output linkages
+
+positions.csv has a header x,y,angle; the angle, in degrees, is left empty where the body's turn is free.
+4 poses with 2 points, 3 with 4, or 2 with 6, in any order. JSON: {\"positions\": [[x, y, angle], [x, y], ...]}.")]
+pub struct PosesAndPoints {
+    /// Poses and points: CSV with a header x,y,angle (degrees, empty at points) or JSON; - is standard input
+    pub file: PathBuf,
+    /// How, where, and what is shown.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// The options of every synthesis.
+#[derive(Clone, Debug, Args)]
+pub struct SynthesisArguments {
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
+    pub precision: PrecisionChoice,
+    /// Proofs that the linkages are there, that they differ, that they are real
+    #[arg(long)]
+    pub certify: bool,
+    /// A coordinator of the command's own, or one that runs.
+    #[command(flatten)]
+    pub service: OwnOrRunning,
+    /// How the linkages are shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: SynthesisFormat,
+    /// Also write summary.json, linkages.csv, linkages.html and a DXF drawing of each linkage here
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+}
+
+/// `cognate info`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate info system.bertini
+  cognate info system.bertini --decompose
+  cognate info system.bertini --groups \"x,y;z,w\" --format json")]
+pub struct Info {
+    /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
+    pub file: PathBuf,
+    /// Variable groups instead of those in the file: "x,y;z,w"
+    #[arg(long, value_name = "GROUPS")]
+    pub groups: Option<String>,
+    /// Sets of variables for the linear-product start instead of those that are found (JSON)
+    #[arg(long, value_name = "FILE")]
+    pub sets: Option<PathBuf>,
+    /// What each way to all irreducible components would cost, instead of each start
+    #[arg(long)]
+    pub decompose: bool,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// The notations that `cognate convert` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Notation {
+    /// Bertini-classic input
+    Bertini,
+    /// PHCpack's format
+    Phcpack,
+    /// Our own JSON
+    Json,
+}
+
+/// `cognate convert`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate convert system.bertini --to json
+  cognate convert system.phc --to bertini > system.bertini
+
+What a notation has no words for is refused, or named in a warning where it is only left out.
+Numbers are written as exact fractions.")]
+pub struct Convert {
+    /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
+    pub file: PathBuf,
+    /// The notation that is written to standard output
+    #[arg(long, value_enum, value_name = "NOTATION")]
+    pub to: Notation,
+}
+
+/// `cognate path`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate path system.bertini --index 17            how path 17 ends
+  cognate path system.bertini --index 17 --trace    every step, and a drawing in path_17.svg")]
+pub struct TracePath {
+    /// The file, its format, and what of the answer is known.
+    #[command(flatten)]
+    pub problem: ProblemArguments,
+    /// The path's number, as results show it
+    #[arg(long, value_name = "N")]
+    pub index: u64,
+    /// Every step as a table, and a drawing
+    #[arg(long)]
+    pub trace: bool,
+    /// Where the drawing goes [default: path_N.svg]
+    #[arg(long, value_name = "FILE", requires = "trace")]
+    pub svg: Option<PathBuf>,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `cognate coordinator`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate coordinator
+  cognate coordinator --listen unix:/run/cognate.sock --listen 127.0.0.1:7654 \\
+                      --ledger sqlite:/var/lib/cognate/ledger.db --results /var/lib/cognate/results
+
+It can be killed at any moment and started again on the same ledger: jobs go on.")]
+pub struct Coordinator {
+    /// Addresses to listen on: HOST:PORT or unix:PATH, one or several [default: 127.0.0.1:7654]
+    #[arg(long, value_name = "ADDR", num_args = 1..)]
+    pub listen: Vec<String>,
+    /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
+    #[arg(long, value_name = "URL")]
+    pub ledger: Option<String>,
+    /// Where results are kept [default: cognate-data/results]
+    #[arg(long, value_name = "DIR")]
+    pub results: Option<String>,
+    /// Settings as a file; options on the command line win
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Serve addresses beyond this machine without asking anybody who they are
+    #[arg(long)]
+    pub insecure: bool,
+    /// Where Prometheus reads metrics, by plain HTTP: HOST:PORT [default: nowhere]
+    #[arg(long, value_name = "ADDR")]
+    pub metrics: Option<String>,
+    /// A file with the own certificate chain (PEM): all TCP addresses then speak TLS
+    #[arg(long, value_name = "FILE", requires = "tls_key")]
+    pub tls_certificate: Option<PathBuf>,
+    /// A file with the private key (PEM)
+    #[arg(long, value_name = "FILE", requires = "tls_certificate")]
+    pub tls_key: Option<PathBuf>,
+    /// A file with the authority (PEM) whose certificates callers must have
+    #[arg(long, value_name = "FILE", requires = "tls_certificate")]
+    pub tls_client_ca: Option<PathBuf>,
+    /// A file with the tokens that TCP callers must have: lines of `client TOKEN` or `worker TOKEN`
+    #[arg(long, value_name = "FILE")]
+    pub token_file: Option<PathBuf>,
+}
+
+/// `cognate worker`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate worker --coordinator http://head:7654 --threads 16
+
+Workers join and leave at any moment; Ctrl-C gives back what is unfinished.")]
+pub struct Worker {
+    /// What the worker itself reads.
+    #[command(flatten)]
+    pub worker: cognate_worker::config::Arguments,
+}
+
+/// `cognate fleet`.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Fleet {
+    /// In Slurm
+    Slurm(FleetSlurm),
+}
+
+/// `cognate fleet slurm`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate fleet slurm --max 20 --coordinator https://head:7654 --token-file tokens
+  cognate fleet slurm --min 1 --max 200 --time 8:00:00 -- --partition=long --account=physics
+
+It submits arrays of workers and takes back those that have not begun and need not; workers that run
+end by themselves. It may be stopped and started again: what stands, Slurm knows.")]
+pub struct FleetSlurm {
+    /// So many workers even when there is nothing to do
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
+    pub min: u32,
+    /// Never more workers than these
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub max: u32,
+    /// Seconds in which the backlog is to be done
+    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub finish_within: u64,
+    /// Seconds between two looks
+    #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
+    pub every: u64,
+    /// One look, and what follows from it, and end: for cron
+    #[arg(long)]
+    pub once: bool,
+    /// How long a worker may run, as `sbatch --time` takes it; it stops pulling in time
+    #[arg(long, value_name = "TIME", default_value = "04:00:00")]
+    pub time: String,
+    /// Seconds without work after which a worker ends
+    #[arg(long, value_name = "SECONDS", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub idle_timeout: u64,
+    /// Name of the fleet's jobs in Slurm; two fleets of one user need two
+    #[arg(long, value_name = "NAME", default_value = "cognate-fleet")]
+    pub name: String,
+    /// Folder for the workers' logs, as the nodes see it
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub logs: PathBuf,
+    /// The program, as the nodes see it [default: this one]
+    #[arg(long, value_name = "FILE")]
+    pub program: Option<PathBuf>,
+    /// The coordinator that is asked.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// The coordinator's address, as the nodes see it [default: the same]
+    #[arg(long, value_name = "URL")]
+    pub for_workers: Option<String>,
+    /// The workers' token, as the nodes see it [default: the same file]
+    #[arg(long, value_name = "FILE")]
+    pub worker_token_file: Option<PathBuf>,
+    /// More arguments of `sbatch`, after `--`: partition, account, memory
+    #[arg(last = true, value_name = "SBATCH")]
+    pub sbatch: Vec<String>,
+}
+
+/// `cognate submit`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate submit system.bertini
+  job=$(cognate submit system.bertini) && cognate watch $job && cognate results $job")]
+pub struct Submit {
+    /// The file, its format, and what of the answer is known.
+    #[command(flatten)]
+    pub problem: ProblemArguments,
+    /// All irreducible components instead of isolated solutions, as `cognate decompose` finds them
+    #[arg(long, help_heading = "Components")]
+    pub decompose: bool,
+    /// The components of a decomposition that are meant.
+    #[command(flatten)]
+    pub components: ComponentArguments,
+    /// The coordinator that is asked.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// Chosen by the caller: the same id sent twice is one job
+    #[arg(long, value_name = "ID", help_heading = "Service")]
+    pub request_id: Option<String>,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}
+
+/// `cognate watch`.
+#[derive(Clone, Debug, Args)]
+pub struct Watch {
+    /// The job that is meant.
+    #[command(flatten)]
+    pub job: OneJob,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
+}
+
+/// `cognate watch`, `explain`, `cancel`.
+#[derive(Clone, Debug, Args)]
+pub struct OneJob {
+    /// The job's id, as `submit` printed it
+    pub job: String,
+    /// The coordinator that is asked.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}
+
+/// `cognate results`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate results JOB
+  cognate results JOB --format json | jq .paths
+  cognate results JOB --output here && jq -c .variables here/solutions.jsonl")]
+pub struct Results {
+    /// The job's id, as `submit` printed it
+    pub job: String,
+    /// The coordinator that is asked.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// Files and format of the answer.
+    #[command(flatten)]
+    pub output: OutputArguments,
+}
+
+/// `cognate jobs`, `cognate workers`.
+#[derive(Clone, Debug, Args)]
+pub struct Listing {
+    /// The coordinator that is asked.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}

@@ -1,0 +1,64 @@
+//! `cognate convert`: a system in another notation.
+
+use crate::arguments::{Convert, Notation};
+use crate::error::{ClientError, Exit};
+use crate::output;
+use crate::problem;
+use cognate_systems::formats::{self, Problem};
+use cognate_systems::system::System;
+
+/// Reads, checks and writes; solves nothing.
+pub fn run(a: &Convert) -> Result<Exit, ClientError> {
+    let read = problem::read_system(&a.file, None)?;
+    for warning in &read.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let name = problem::short_name(&a.file);
+    let Problem {
+        system, settings, ..
+    } = &read;
+    let written = match a.to {
+        Notation::Bertini => formats::bertini::write(system, settings),
+        Notation::Phcpack => formats::phcpack::write(system),
+        Notation::Json => formats::json::write(system),
+    };
+    let text = written.map_err(|e| ClientError::Input {
+        origin: name.clone(),
+        message: e.to_string(),
+    })?;
+    for what in left_out(system, a.to) {
+        eprintln!("warning: {name}: {what} left out, for which this notation has no words");
+    }
+    if settings.data_accuracy > 0.0 {
+        eprintln!(
+            "warning: {name}: its decimals count as rounded, to a relative {:.1e}; they are written as \
+             exact fractions",
+            settings.data_accuracy
+        );
+    }
+    output::print(&text)?;
+    Ok(Exit::Solved)
+}
+
+/// What of a system does not reach the text.
+fn left_out(system: &System, notation: Notation) -> Vec<&'static str> {
+    let grouped = system.groups.len() > 1 || system.groups.iter().any(|g| g.homogeneous);
+    let only_json = notation != Notation::Json;
+    let parts = [
+        (
+            grouped && notation == Notation::Phcpack,
+            "variable groups are",
+        ),
+        (
+            only_json && !system.conjugates.is_empty(),
+            "pairs of conjugates are",
+        ),
+        (
+            only_json && !system.degenerate.is_empty(),
+            "degenerate sets are",
+        ),
+        (only_json && !system.symmetry.is_empty(), "symmetries are"),
+    ];
+    let lost = parts.into_iter().filter(|(lost, _)| *lost);
+    lost.map(|(_, what)| what).collect()
+}

@@ -1,0 +1,164 @@
+//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve` and `certify`: what is asked of components that were found
+//! before. Each is a job, of a coordinator of its own or of a running one.
+
+use crate::commands::solve;
+use crate::connection::Connection;
+use crate::error::{ClientError, Exit};
+use crate::output::curve_svg;
+use crate::problem::Prepared;
+use crate::sets::arguments::{
+    Member, Mobility, Plain, Project, Ranges, RealCurve, Sample, SetArguments,
+};
+use crate::sets::{KnownSet, points};
+use cognate_continuation::tracker::settings::Preset;
+use cognate_protocol::submission::{Asked, Options, SettingsChoice, Source, Submission};
+use cognate_solutions::witness::Question;
+use cognate_solutions::witness::question::SampleWish;
+
+/// On which components points lie.
+pub async fn member(a: &Member) -> Result<Exit, ClientError> {
+    ask(&a.set, |set| {
+        let points = points::read(&a.points, &set.system.variables, a.accuracy)?;
+        Ok(Question::Member { points })
+    })
+    .await
+}
+
+/// Points of components.
+pub async fn sample(a: &Sample) -> Result<Exit, ClientError> {
+    ask(&a.set, |set| {
+        let variables = &set.system.variables;
+        let near = match &a.near {
+            None => None,
+            Some(path) => match points::read(path, variables, None)?.as_slice() {
+                [one] => Some(one.clone()),
+                several => {
+                    let message = format!("holds {} points; expected one", several.len());
+                    return Err(wrong("--near", &message));
+                }
+            },
+        };
+        let within = match &a.within {
+            None => Vec::new(),
+            Some(Ranges(ranges)) if ranges.len() == 1 => vec![ranges[0]; variables.len()],
+            Some(Ranges(ranges)) => ranges.clone(),
+        };
+        if !within.is_empty() && within.len() != variables.len() {
+            let message = format!("{} ranges; expected {}", within.len(), variables.len());
+            return Err(wrong("--box", &message));
+        }
+        Ok(Question::Sample(SampleWish {
+            count: a.count,
+            near,
+            real: a.real,
+            within,
+        }))
+    })
+    .await
+}
+
+/// Images of components.
+pub async fn project(a: &Project) -> Result<Exit, ClientError> {
+    ask(&a.set, |set| {
+        let variables = &set.system.variables;
+        let place = |name: &String| {
+            let place = variables.iter().position(|v| v == name.trim());
+            place.map(|place| place as u32).ok_or_else(|| {
+                let message = format!("`{name}`; expected some of {}", variables.join(", "));
+                wrong("--onto", &message)
+            })
+        };
+        let onto = a.onto.iter().map(place).collect::<Result<_, _>>()?;
+        Ok(Question::Project { onto })
+    })
+    .await
+}
+
+/// Degrees of components by groups of variables.
+pub async fn multidegree(a: &Plain) -> Result<Exit, ClientError> {
+    ask(&a.set, |_| Ok(Question::Multidegree)).await
+}
+
+/// Which witness points are proved.
+pub async fn certify(a: &Plain) -> Result<Exit, ClientError> {
+    ask(&a.set, |_| Ok(Question::Certify)).await
+}
+
+/// How points can be moved.
+pub async fn mobility(a: &Mobility) -> Result<Exit, ClientError> {
+    ask(&a.set, |set| {
+        let points = points::read(&a.points, &set.system.variables, a.accuracy)?;
+        let depth = a.depth;
+        Ok(Question::Mobility { points, depth })
+    })
+    .await
+}
+
+/// The real part of curves.
+pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
+    let samples = a.samples;
+    let axes = std::sync::Mutex::new(Vec::new());
+    let ended = ask(&a.set, |set| {
+        let own = curve_svg::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
+        *axes.lock().expect("one command has it") = own;
+        Ok(Question::RealCurve { samples })
+    })
+    .await?;
+    if let Some(folder) = &a.set.output {
+        curve_svg::write(folder, &axes.into_inner().expect("one command has it"))?;
+    }
+    Ok(ended)
+}
+
+/// Reads and checks the components, asks, and shows the answer.
+async fn ask(
+    a: &SetArguments,
+    question: impl Fn(&KnownSet) -> Result<Question, ClientError>,
+) -> Result<Exit, ClientError> {
+    let running = a.service.running()?;
+    let mut set = match &running {
+        Some(target) if !a.set.exists() => {
+            let mut connection = Connection::open(target).await?;
+            KnownSet::of_job(&mut connection, &a.set.display().to_string()).await?
+        }
+        _ => KnownSet::read(&a.set)?,
+    };
+    set.choose(&a.components)?;
+    set.check()?;
+    let prepared = prepared(a, &set, question(&set)?)?;
+    let output = a.output();
+    solve::anywhere(&a.service, running.as_ref(), &output, &a.progress, prepared).await
+}
+
+fn prepared(a: &SetArguments, set: &KnownSet, question: Question) -> Result<Prepared, ClientError> {
+    let options = Options {
+        seed: Some(set.seed),
+        settings: SettingsChoice {
+            preset: Some(Preset::from(a.preset)),
+            ..SettingsChoice::default()
+        },
+        name: set.name.chars().take(60).collect(),
+        question: Some(Asked {
+            components: set.sets(),
+            question,
+        }),
+        ..Options::default()
+    };
+    options
+        .check()
+        .map_err(|misfit| wrong("options", &misfit.to_string()))?;
+    Ok(Prepared {
+        submission: Submission {
+            source: Source::System(Box::new(set.system.clone())),
+            options,
+        },
+        name: set.name.clone(),
+    })
+}
+
+fn wrong(origin: &str, message: &str) -> ClientError {
+    ClientError::Input {
+        origin: origin.into(),
+        message: message.into(),
+    }
+}

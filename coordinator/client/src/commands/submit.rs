@@ -1,0 +1,85 @@
+//! `cognate submit`: hands a problem to a coordinator.
+
+use crate::arguments::{Format, Submit};
+use crate::connection::Connection;
+use crate::error::{ClientError, Exit};
+use crate::output;
+use crate::problem::{self, Prepared};
+use cognate_continuation::start_points::Digest;
+use cognate_protocol::submission::{StartSolutions, Submission};
+use cognate_protocol::to_proto;
+use std::time::Duration;
+
+/// Start solutions up to this size travel with the problem; larger ones are uploaded first.
+const INLINE_BYTES: usize = 4 << 20;
+
+/// How often a submission is sent when the reply is lost; the request id makes it one job.
+const ATTEMPTS: u32 = 5;
+
+/// Prints the job's id alone on a line.
+pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
+    let mut prepared = problem::prepare(&a.problem)?;
+    let components = &a.components;
+    if a.decompose {
+        prepared = problem::for_components(prepared, components);
+    } else if components.are_given() {
+        return Err(ClientError::Input {
+            origin: "--dimension, --loops, --method, --verify".into(),
+            message: "only go with --decompose".into(),
+        });
+    }
+    let mut connection = Connection::open(&a.service.target()?).await?;
+    let request_id = match &a.request_id {
+        Some(id) => id.clone(),
+        None => uuid::Uuid::new_v4().to_string(),
+    };
+    let (job, warnings) = send(&mut connection, &request_id, prepared).await?;
+    let answer = match a.format {
+        Format::Table => {
+            for warning in &warnings {
+                eprintln!("warning: {warning}");
+            }
+            format!("{job}\n")
+        }
+        Format::Json => output::json::submitted(&job, &warnings),
+    };
+    output::print(&answer)?;
+    Ok(Exit::Solved)
+}
+
+/// Sends a problem; gives the job's id, and what a person should know.
+pub async fn send(
+    connection: &mut Connection,
+    request_id: &str,
+    prepared: Prepared,
+) -> Result<(String, Vec<String>), ClientError> {
+    let Prepared { submission, .. } = prepared;
+    let message = to_proto::problem::submission(&uploaded(connection, submission).await?);
+    let mut attempt = 1;
+    let answer = loop {
+        match connection.submit(request_id, message.clone()).await {
+            Err(ClientError::Unreachable { .. }) if attempt < ATTEMPTS => {
+                tokio::time::sleep(Duration::from_millis(200 << attempt)).await;
+                attempt += 1;
+            }
+            other => break other?,
+        }
+    };
+    Ok((answer.job, answer.warnings))
+}
+
+/// Large start solutions go ahead as an object.
+async fn uploaded(
+    connection: &mut Connection,
+    mut submission: Submission,
+) -> Result<Submission, ClientError> {
+    if let Some(StartSolutions::Points(points)) = &submission.options.start_solutions
+        && points.coordinates.len() * 16 > INLINE_BYTES
+    {
+        let stored = connection.upload(points.to_bytes()).await?;
+        let digest = <[u8; 32]>::try_from(&stored.digest[..])
+            .map_err(|_| ClientError::GaveUp("its answer to an upload names no object".into()))?;
+        submission.options.start_solutions = Some(StartSolutions::Object(Digest(digest)));
+    }
+    Ok(submission)
+}

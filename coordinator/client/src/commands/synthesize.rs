@@ -1,0 +1,198 @@
+//! `cognate synthesize`: from points, poses or angles to linkages, on a coordinator of its own or on a running one.
+
+use crate::arguments::{NinePoint, SynthesisArguments, SynthesisFormat, Synthesize};
+use crate::connection::Target;
+use crate::error::{ClientError, Exit};
+use crate::output;
+use crate::output::linkages::designs::{self, Designs};
+use crate::output::linkages::{self, Sheet};
+use crate::output::progress::Progress;
+use crate::output::text::{self, Look, counted};
+use crate::problem;
+use crate::synthesis::designs::{Sister, designs};
+use crate::synthesis::{How, nine_points, point_files, position_files, sweep};
+use cognate_kinematics::nine_point::family::CLASSES;
+use cognate_kinematics::nine_point::{ClassEnd, PathPoints};
+use std::path::Path;
+use std::time::Instant;
+
+/// What is asked for, read and checked.
+enum Task {
+    One(String, Box<PathPoints>),
+    Many(String, Vec<(String, PathPoints)>),
+    Sister(String, Sister),
+}
+
+/// Finds all linkages, prints them, stops everything that it started.
+pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
+    let task = match a {
+        Synthesize::NinePoint(a) => read(a)?,
+        Synthesize::BodyGuidance(a) => sister(&a.file, position_files::read_poses)?,
+        Synthesize::PathTiming(a) => sister(&a.file, position_files::read_timed_points)?,
+        Synthesize::FunctionGeneration(a) => sister(&a.file, position_files::read_angles)?,
+        Synthesize::PosesAndPoints(a) => sister(&a.file, position_files::read_poses_and_points)?,
+    };
+    let a = a.common();
+    if let Some(target) = a.service.running()? {
+        return tokio::select! {
+            ended = perform(a, &task, &target) => ended,
+            () = crate::interrupted() => Err(ClientError::Interrupted),
+        };
+    }
+    let mut service = a.service.start().await?;
+    let target = Target::open_to_all(&service.address());
+    let ended = tokio::select! {
+        ended = perform(a, &task, &target) => ended,
+        error = service.abandoned() => Err(error),
+        () = crate::interrupted() => Err(ClientError::Interrupted),
+    };
+    service.stop().await;
+    ended
+}
+
+fn read(a: &NinePoint) -> Result<Task, ClientError> {
+    if let Some(path) = &a.targets {
+        let (name, content) = problem::read_file(path)?;
+        let sets = point_files::read_many(&name, &content).map_err(ClientError::Format)?;
+        return Ok(Task::Many(short(path), sets));
+    }
+    let Some(path) = &a.file else {
+        unreachable!("the arguments name points or --targets")
+    };
+    let (name, content) = problem::read_file(path)?;
+    let points = point_files::read(&name, &content).map_err(ClientError::Format)?;
+    Ok(Task::One(short(path), Box::new(points)))
+}
+
+/// What people call a file, cut to what fits beside other words.
+fn short(path: &Path) -> String {
+    problem::short_name(path).chars().take(60).collect()
+}
+
+fn sister(
+    path: &Path,
+    read: impl Fn(&str, &[u8]) -> Result<Sister, String>,
+) -> Result<Task, ClientError> {
+    let (name, content) = problem::read_file(path)?;
+    let sister = read(&name, &content).map_err(ClientError::Format)?;
+    Ok(Task::Sister(short(path), sister))
+}
+
+async fn perform(
+    a: &SynthesisArguments,
+    task: &Task,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let how = |name: &str| How {
+        seed: a.seed,
+        preset: a.preset,
+        precision: a.precision,
+        certify: a.certify,
+        name: name.to_owned(),
+    };
+    match task {
+        Task::One(name, points) => find(a, points, &how(name), target).await,
+        Task::Many(name, sets) => find_many(a, sets, &how(name), target).await,
+        Task::Sister(name, sister) => find_designs(a, sister, &how(name), target).await,
+    }
+}
+
+/// Every set is answered on a line of its own as soon as it and those before it are settled; at
+/// the end standard error says how many paths that were, and which classes were lost.
+async fn find_many(
+    a: &SynthesisArguments,
+    sets: &[(String, PathPoints)],
+    how: &How,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let mut lost = 0;
+    if a.format == SynthesisFormat::Csv {
+        output::print(&format!("set,{}", linkages::csv::header()))?;
+    }
+    sweep::sweep(target, sets, how, |place, answer| {
+        let (name, points) = &sets[place];
+        let sheet = Sheet::new(name, points, answer, a.certify, began.elapsed());
+        for warning in &sheet.warnings {
+            eprintln!("warning: set {name}: {warning}");
+        }
+        lost += sheet.count(ClassEnd::Failed);
+        output::print(&match a.format {
+            SynthesisFormat::Table => linkages::table::line(&sheet),
+            SynthesisFormat::Json => linkages::json::line(&sheet),
+            SynthesisFormat::Csv => linkages::csv::rows(&sheet, Some(name)),
+        })
+    })
+    .await?;
+    let seconds = began.elapsed().as_secs_f64();
+    let paths = (sets.len() * CLASSES) as u64;
+    eprintln!(
+        "{} in {}: {}, {} paths/s; {} lost",
+        counted(sets.len() as u64, "set"),
+        text::seconds(seconds),
+        counted(paths, "path"),
+        text::rate(paths as f64 / seconds.max(1e-9)),
+        text::count(lost as u64)
+    );
+    Ok(match lost {
+        0 => Exit::Solved,
+        _ => Exit::Unsettled,
+    })
+}
+
+async fn find(
+    a: &SynthesisArguments,
+    points: &PathPoints,
+    how: &How,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let quiet = a.format != SynthesisFormat::Table;
+    let mut progress = Progress::new(quiet, began);
+    let answer = nine_points(target, points, how, &mut progress).await;
+    progress.finish();
+    let sheet = Sheet::new(&how.name, points, answer?, a.certify, began.elapsed());
+    if let Some(folder) = &a.output {
+        linkages::write(folder, &sheet)?;
+    }
+    let text = match a.format {
+        SynthesisFormat::Table => {
+            linkages::table::sheet(&sheet, a.output.as_deref(), Look::of_standard_output())
+        }
+        SynthesisFormat::Json => linkages::json::sheet(&sheet),
+        SynthesisFormat::Csv => linkages::csv::sheet(&sheet),
+    };
+    output::print(&text)?;
+    Ok(match sheet.count(ClassEnd::Failed) {
+        0 => Exit::Solved,
+        _ => Exit::Unsettled,
+    })
+}
+
+/// A sister of the nine-point problem: a few paths, a few linkages.
+async fn find_designs(
+    a: &SynthesisArguments,
+    sister: &Sister,
+    how: &How,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let mut progress = Progress::new(a.format != SynthesisFormat::Table, began);
+    let found = designs(target, sister, how, &mut progress).await;
+    progress.finish();
+    let found = Designs {
+        name: how.name.clone(),
+        sister: sister.clone(),
+        found: found?,
+        elapsed: began.elapsed(),
+    };
+    if let Some(folder) = &a.output {
+        designs::write(folder, &found)?;
+    }
+    output::print(&match a.format {
+        SynthesisFormat::Table => designs::table(&found, Look::of_standard_output()),
+        SynthesisFormat::Json => designs::json(&found),
+        SynthesisFormat::Csv => designs::csv(&found),
+    })?;
+    Ok(found.exit())
+}

@@ -1,0 +1,124 @@
+//! The command-line client: arguments, one connection, commands, output.
+//!
+//! `main` parses, runs one command, and turns what came of it into an exit code.
+#![forbid(unsafe_code)]
+
+pub mod arguments;
+pub mod commands;
+pub mod common_arguments;
+pub mod config_file;
+pub mod connection;
+pub mod embedded;
+pub mod error;
+pub mod fleet;
+pub mod mechanism;
+pub mod output;
+pub mod problem;
+pub mod sets;
+pub mod synthesis;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use error::{ClientError, Exit};
+use futures::future::LocalBoxFuture;
+use std::process::ExitCode;
+use tokio::signal::unix::{SignalKind, signal};
+
+/// A command that was started.
+enum Started {
+    /// The command has ended; a worker has a runtime and exit codes of its own.
+    Ended(ExitCode),
+    /// The same, with what came of it.
+    Done(Result<Exit, ClientError>),
+    /// It talks to a service, or is one, and stops in an orderly way of its own.
+    Orderly(LocalBoxFuture<'static, Result<Exit, ClientError>>),
+    /// It talks to a service, and may be dropped at any moment.
+    Droppable(LocalBoxFuture<'static, Result<Exit, ClientError>>),
+}
+
+/// Every command, and how it runs.
+fn start(command: Command) -> Started {
+    use Started::{Done, Droppable, Ended, Orderly};
+    use commands::*;
+    match command {
+        Command::Worker(a) => Ended(worker::run(a)),
+        Command::Info(a) => Done(info::run(&a)),
+        Command::Convert(a) => Done(convert::run(&a)),
+        Command::Path(a) => Done(path::run(&a)),
+        Command::Mechanism(a) => Done(mechanism::run(&a)),
+        Command::Coordinator(a) => Orderly(Box::pin(async move { coordinator::run(&a).await })),
+        Command::Solve(a) => Orderly(Box::pin(async move { solve::run(&a).await })),
+        Command::Decompose(a) => Orderly(Box::pin(async move { decompose::run(&a).await })),
+        Command::Synthesize(a) => Orderly(Box::pin(async move { synthesize::run(&a).await })),
+        Command::Member(a) => Orderly(Box::pin(async move { question::member(&a).await })),
+        Command::Sample(a) => Orderly(Box::pin(async move { question::sample(&a).await })),
+        Command::Project(a) => Orderly(Box::pin(async move { question::project(&a).await })),
+        Command::Multidegree(a) => {
+            Orderly(Box::pin(async move { question::multidegree(&a).await }))
+        }
+        Command::Mobility(a) => Orderly(Box::pin(async move { question::mobility(&a).await })),
+        Command::Certify(a) => Orderly(Box::pin(async move { question::certify(&a).await })),
+        Command::RealCurve(a) => Orderly(Box::pin(async move { question::real_curve(&a).await })),
+        Command::Submit(a) => Droppable(Box::pin(async move { submit::run(&a).await })),
+        Command::Watch(a) => Droppable(Box::pin(async move { watch::run(&a).await })),
+        Command::Results(a) => Droppable(Box::pin(async move { results::run(&a).await })),
+        Command::Explain(a) => Droppable(Box::pin(async move { explain::run(&a).await })),
+        Command::Cancel(a) => Droppable(Box::pin(async move { cancel::run(&a).await })),
+        Command::Jobs(a) => Droppable(Box::pin(async move { jobs::run(&a).await })),
+        Command::Workers(a) => Droppable(Box::pin(async move { workers::run(&a).await })),
+        Command::Fleet(a) => Droppable(Box::pin(async move { fleet::run(&a).await })),
+    }
+}
+
+/// The `cognate` command.
+pub fn main() -> ExitCode {
+    let ended = match start(Arguments::parse().command) {
+        Started::Ended(code) => return code,
+        Started::Done(ended) => ended,
+        Started::Orderly(running) => in_runtime(running),
+        Started::Droppable(running) => in_runtime(async {
+            tokio::select! {
+                ended = running => ended,
+                () = interrupted() => Err(ClientError::Interrupted),
+            }
+        }),
+    };
+    let exit = match &ended {
+        Ok(exit) => *exit,
+        Err(e) => {
+            eprintln!("error: {e}");
+            e.exit()
+        }
+    };
+    ExitCode::from(exit as u8)
+}
+
+/// Runs a command that talks to a service, or is one.
+fn in_runtime(
+    running: impl Future<Output = Result<Exit, ClientError>>,
+) -> Result<Exit, ClientError> {
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .map_err(|e| ClientError::Local(format!("the runtime could not be started: {e}")))?;
+    runtime.block_on(running)
+}
+
+/// Returns when somebody wants this process to end.
+pub async fn interrupted() {
+    let waiting = (
+        signal(SignalKind::interrupt()),
+        signal(SignalKind::terminate()),
+    );
+    match waiting {
+        (Ok(mut interrupt), Ok(mut terminate)) => {
+            tokio::select! {
+                _ = interrupt.recv() => {}
+                _ = terminate.recv() => {}
+            }
+        }
+        // Without handlers the signals end the process by themselves.
+        _ => std::future::pending().await,
+    }
+}

@@ -1,0 +1,269 @@
+//! Answers of components for people, and the folder of --output.
+
+use super::files::{create, make_folder, write_file};
+use super::text::{Columns, Look, count, counted, seconds, wrapped};
+use super::{json, print};
+use crate::arguments::{Format, OutputArguments};
+use crate::error::{ClientError, Exit};
+use cognate_summary::question::QuestionSummary;
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Rows of a table before it says how many more there are.
+const SHOWN: usize = 20;
+/// Doubts shown before a table says how many more there are.
+const DOUBTS_SHOWN: usize = 8;
+
+/// The exit code that this answer has.
+pub fn exit(summary: &QuestionSummary) -> Exit {
+    match summary.settled {
+        true => Exit::Solved,
+        false => Exit::Unsettled,
+    }
+}
+
+/// The answer in one phrase.
+pub fn headline(summary: &QuestionSummary) -> String {
+    let points = summary.points.as_deref().unwrap_or(&[]).len() as u64;
+    let components = summary.components.as_deref().unwrap_or(&[]).len() as u64;
+    match (summary.question.as_str(), points, components) {
+        ("member", points, _) => {
+            let list = summary.points.iter().flatten();
+            let on = list.filter(|p| p["on"].as_array().is_some_and(|on| !on.is_empty()));
+            format!(
+                "{} of {} on components",
+                on.count(),
+                counted(points, "point")
+            )
+        }
+        ("sample", points, components) => {
+            format!(
+                "{} of {}",
+                counted(points, "point"),
+                counted(components, "component")
+            )
+        }
+        (question, 0, components) => format!("{question} of {}", counted(components, "component")),
+        (question, points, _) => format!("{question} at {}", counted(points, "point")),
+    }
+}
+
+/// Prints the answer and writes the files that were asked for.
+pub fn show(
+    summary_json: &str,
+    summary: &QuestionSummary,
+    output: &OutputArguments,
+) -> Result<Exit, ClientError> {
+    if let Some(folder) = &output.output {
+        write(folder, summary_json, summary)?;
+    }
+    let text = match output.format {
+        Format::Json => json::summary(summary_json),
+        Format::Table => table(summary, Look::of_standard_output()),
+    };
+    print(&text)?;
+    Ok(exit(summary))
+}
+
+fn table(summary: &QuestionSummary, look: Look) -> String {
+    let answer = headline(summary);
+    let answer = match summary.settled {
+        true => look.good(&answer),
+        false => look.warn(&answer),
+    };
+    let mut text = format!("{}: {answer}\n", look.bold(&summary.problem.name));
+    for doubt in summary.unsettled.iter().take(DOUBTS_SHOWN) {
+        for (i, line) in wrapped(doubt, look.width - 15).iter().enumerate() {
+            let lead = if i == 0 {
+                "not settled: "
+            } else {
+                "             "
+            };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    let more = summary.unsettled.len().saturating_sub(DOUBTS_SHOWN) as u64;
+    if more > 0 {
+        let _ = writeln!(
+            text,
+            "{}and {} more",
+            look.warn("not settled: "),
+            count(more)
+        );
+    }
+    let rows = rows(summary);
+    if let Some(first) = rows.first() {
+        text.push('\n');
+        let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
+        let mut columns = Columns::new(&names);
+        for row in rows.iter().take(SHOWN) {
+            columns.row(row.iter().map(|(_, cell)| cell.clone()).collect());
+        }
+        for line in columns
+            .render(Look {
+                width: look.width - 2,
+                ..look
+            })
+            .lines()
+        {
+            let _ = writeln!(text, "  {line}");
+        }
+        if rows.len() > SHOWN {
+            let note = format!("and {} more; --format json shows all", rows.len() - SHOWN);
+            let _ = writeln!(text, "  {}", look.dim(&note));
+        }
+    }
+    let paths = counted(summary.paths.total, "path");
+    let time = seconds(summary.time.wall_seconds);
+    let cpu = seconds(summary.time.cpu_seconds);
+    let _ = writeln!(
+        text,
+        "\n  {}",
+        look.dim(&format!("{paths}, {time}, {cpu} of CPU"))
+    );
+    for warning in &summary.warnings {
+        let _ = writeln!(text, "  {}{warning}", look.warn("warning: "));
+    }
+    text
+}
+
+/// Name and cell of each column.
+type Row = Vec<(String, String)>;
+
+fn rows(summary: &QuestionSummary) -> Vec<Row> {
+    let list = match summary.question.as_str() {
+        "member" | "mobility" => &summary.points,
+        _ => &summary.components,
+    };
+    let list = list.as_deref().unwrap_or(&[]);
+    if summary.question == "multidegree" {
+        return list.iter().flat_map(degrees).collect();
+    }
+    let columns: &[&str] = match summary.question.as_str() {
+        "member" => &["index", "on", "unsettled", "solves"],
+        "mobility" => &[
+            "index",
+            "infinitesimal",
+            "dimensions_by_order",
+            "local_dimension",
+            "on",
+            "reason",
+        ],
+        "sample" => &["id", "count", "wanted", "failed"],
+        "certify" => &["id", "points", "certified", "distinct"],
+        "real-curve" => &[
+            "id",
+            "degree",
+            "closed_loops",
+            "unbounded_arcs",
+            "isolated_points",
+            "singular_points",
+            "connected_components",
+            "settled",
+        ],
+        _ => &[
+            "id",
+            "dimension",
+            "degree",
+            "fiber_dimension",
+            "fiber_degree",
+        ],
+    };
+    let row = |value: &Value| {
+        let cells = columns.iter();
+        cells
+            .map(|name| (name.replace('_', " "), cell(&value[*name])))
+            .collect()
+    };
+    list.iter().map(row).collect()
+}
+
+fn degrees(component: &Value) -> Vec<Row> {
+    let list = component["multidegree"].as_array();
+    let entry = |entry: &Value| {
+        vec![
+            ("id".to_owned(), cell(&component["id"])),
+            ("slices in groups".to_owned(), cell(&entry["slices"])),
+            ("degree".to_owned(), cell(&entry["degree"])),
+        ]
+    };
+    list.map(|list| list.iter().map(entry).collect())
+        .unwrap_or_default()
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => "?".into(),
+        Value::Bool(true) => "yes".into(),
+        Value::Bool(false) => "no".into(),
+        Value::String(text) => text.clone(),
+        Value::Array(list) if list.is_empty() => "-".into(),
+        Value::Array(list) => list.iter().map(cell).collect::<Vec<_>>().join(" "),
+        Value::Object(fields) => match fields.get("component") {
+            Some(component) => cell(component),
+            None => "...".into(),
+        },
+        Value::Number(number) => number.to_string(),
+    }
+}
+
+/// summary.json, and samples.csv with real and imaginary parts.
+fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result<(), ClientError> {
+    make_folder(folder)?;
+    if summary.question == "sample" {
+        let mut out = create(folder, "samples.csv")?;
+        let counts = summary.components.iter().flatten();
+        let of = counts.flat_map(|c| {
+            let count = c["count"].as_u64().unwrap_or(0) as usize;
+            std::iter::repeat_n(cell(&c["id"]), count)
+        });
+        let parts = (0..summary.problem.variables).map(|v| format!("re{v},im{v}"));
+        out.write(&format!(
+            "component,{}\n",
+            parts.collect::<Vec<_>>().join(",")
+        ))?;
+        for (id, point) in of.zip(summary.points.iter().flatten()) {
+            let coordinates = point.as_array().into_iter().flatten();
+            let numbers = coordinates.map(|z| format!("{},{}", z[0], z[1]));
+            out.write(&format!("{id},{}\n", numbers.collect::<Vec<_>>().join(",")))?;
+        }
+        out.finish()?;
+    }
+    if let Some(curves) = &summary.curves {
+        let list = Value::Array(curves.clone());
+        write_file(folder, "curve.json", &format!("{list:#}\n"))?;
+        write_file(
+            folder,
+            "samples.csv",
+            &arcs(curves, summary.problem.variables),
+        )?;
+    }
+    write_file(folder, "summary.json", &json::summary(summary_json))
+}
+
+/// The points of arcs, one a line.
+fn arcs(curves: &[Value], variables: u64) -> String {
+    let parts = (0..variables).map(|v| format!("re{v},im{v}"));
+    let mut text = format!(
+        "component,edge,index,{}\n",
+        parts.collect::<Vec<_>>().join(",")
+    );
+    for curve in curves {
+        for (edge, arc) in curve["edges"].as_array().into_iter().flatten().enumerate() {
+            let samples = arc["samples"].as_array().into_iter().flatten();
+            for (index, point) in samples.enumerate() {
+                let coordinates = point.as_array().into_iter().flatten();
+                let numbers = coordinates.map(|z| format!("{},{}", z[0], z[1]));
+                let numbers: Vec<String> = numbers.collect();
+                let _ = writeln!(
+                    text,
+                    "{},{edge},{index},{}",
+                    cell(&curve["id"]),
+                    numbers.join(",")
+                );
+            }
+        }
+    }
+    text
+}

@@ -1,0 +1,280 @@
+//! A decomposition for people: components by dimension, how the paths add up, what is not settled; and the
+//! folder of --output.
+
+use super::bertini;
+use super::files::{create, make_folder, write_file};
+use super::json;
+use super::table::Lines;
+use super::text::{Columns, Look, count, counted, magnitude, seconds, wrapped};
+use crate::error::{ClientError, Exit};
+use cognate_solutions::witness::Irreducible;
+use cognate_summary::decomposition::{ComponentBlock, DecompositionSummary};
+use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Doubts shown before a table says how many more there are.
+const DOUBTS_SHOWN: usize = 8;
+
+/// The exit code that this answer has.
+pub fn exit(summary: &DecompositionSummary) -> Exit {
+    match summary.settled {
+        true => Exit::Solved,
+        false => Exit::Unsettled,
+    }
+}
+
+/// The whole table; `files` is the folder with the witness points.
+pub fn table(summary: &DecompositionSummary, files: Option<&Path>, look: Look) -> String {
+    let mut text = headline(summary, look);
+    text.push('\n');
+    if !summary.decomposition.components.is_empty() {
+        text.push_str(&indented(&components(summary, look)));
+        text.push('\n');
+    }
+    text.push_str(&indented(&dimensions(summary, look)));
+    text.push('\n');
+    let (paths, loops) = (&summary.paths.superset, &summary.paths.loops);
+    let number = (count(paths.total.max(loops.total)).len() + 1).max(6);
+    let mut lines = Lines::new(look, number);
+    let note = format!(
+        "{} tracked again, {} failed, {} of {} resolved",
+        count(paths.retracked),
+        count(paths.failed),
+        count(paths.crossings_resolved),
+        counted(paths.crossings_found, "crossing"),
+    );
+    lines.heading("Paths", &count(paths.total), &note);
+    let note = match loops.failed {
+        0 => String::new(),
+        failed => format!("{} failed", count(failed)),
+    };
+    lines.line("of loops", &count(loops.total), &note);
+    let time = &summary.time;
+    let cpu = format!("{} of CPU", seconds(time.cpu_seconds));
+    lines.heading("Time", &seconds(time.wall_seconds), &cpu);
+    let workers = summary.workers.len();
+    if workers > 0 {
+        let items: u64 = summary.workers.iter().map(|worker| worker.paths).sum();
+        let note = counted(items, "item");
+        lines.heading("Workers", &workers.to_string(), &note);
+    }
+    text.push_str(&lines.finish());
+    for warning in &summary.warnings {
+        for (i, line) in wrapped(warning, look.width - 11).iter().enumerate() {
+            let lead = if i == 0 { "  warning: " } else { "           " };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    let note = match files {
+        Some(folder) => format!("witness points are in {}", folder.display()),
+        None => "--output DIR writes the witness points".into(),
+    };
+    let _ = writeln!(text, "\n  {}", look.dim(&note));
+    text
+}
+
+/// Two columns before each line.
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+/// The answer in one phrase.
+pub fn answer(summary: &DecompositionSummary) -> String {
+    let found = summary.decomposition.components.iter();
+    match found.map(|c| c.count).sum() {
+        0 if summary.settled => "no components in the dimensions that were asked".into(),
+        0 => "no components found".into(),
+        n => counted(n, "component"),
+    }
+}
+
+/// What was found, in a line or two, and what is not settled.
+fn headline(summary: &DecompositionSummary, look: Look) -> String {
+    let found = &summary.decomposition;
+    let answer = answer(summary);
+    let answer = match summary.settled {
+        true => look.good(&answer),
+        false => look.warn(&answer),
+    };
+    let problem = &summary.problem;
+    let mut text = format!("{}: {answer}\n", look.bold(&problem.name));
+    let [lowest, highest] = found.asked;
+    let asked = match lowest == highest {
+        true => format!("dimension {lowest}"),
+        false => format!("dimensions {lowest} to {highest}"),
+    };
+    let what = format!(
+        "{}, {}, {asked}, by {}, seed {}",
+        counted(problem.variables, "variable"),
+        counted(problem.equations, "equation"),
+        problem.method,
+        problem.seed
+    );
+    for line in wrapped(&what, look.width) {
+        let _ = writeln!(text, "{}", look.dim(&line));
+    }
+    if let Some(second) = &found.verification {
+        let said = match (second.agrees, second.settled) {
+            (true, true) => "finds the same",
+            (true, false) => "finds the same, and leaves something in doubt",
+            (false, _) => "finds something else",
+        };
+        let _ = writeln!(
+            text,
+            "{}",
+            look.dim(&format!("verified: {} {said}", second.method.name()))
+        );
+    }
+    for doubt in found.unsettled.iter().take(DOUBTS_SHOWN) {
+        for (i, line) in wrapped(doubt, look.width - 15).iter().enumerate() {
+            let lead = match i {
+                0 => "not settled: ",
+                _ => "             ",
+            };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    let more = found.unsettled.len().saturating_sub(DOUBTS_SHOWN);
+    if more > 0 {
+        let _ = writeln!(
+            text,
+            "{}and {} more",
+            look.warn("not settled: "),
+            count(more as u64)
+        );
+    }
+    text
+}
+
+/// What components are alike in for one line of the table.
+fn likeness(c: &ComponentBlock) -> (u32, u64, Option<u64>, u64, Irreducible, &[u32]) {
+    (
+        c.dimension,
+        c.degree,
+        c.multiplicity,
+        c.tracked_multiplicity,
+        c.irreducible,
+        &c.deflation,
+    )
+}
+
+fn components(summary: &DecompositionSummary, look: Look) -> String {
+    let mut columns = Columns::new(&[
+        ">dimension",
+        ">degree",
+        ">multiplicity",
+        ">count",
+        "irreducible",
+        "trace",
+    ]);
+    for alike in summary
+        .decomposition
+        .components
+        .chunk_by(|a, b| likeness(a) == likeness(b))
+    {
+        let first = &alike[0];
+        columns.row(vec![
+            first.dimension.to_string(),
+            count(first.degree),
+            first.multiplicity.map_or_else(|| "?".into(), count),
+            count(alike.iter().map(|c| c.count).sum()),
+            match first.irreducible {
+                Irreducible::Yes => "yes".into(),
+                Irreducible::Unsettled => "unsettled".into(),
+            },
+            evidence(alike),
+        ]);
+    }
+    columns.render(Look {
+        width: look.width - 2,
+        ..look
+    })
+}
+
+/// The largest trace of these components, and the least of points that are none.
+fn evidence(alike: &[ComponentBlock]) -> String {
+    if alike[0].dimension == 0 {
+        return "isolated".into();
+    }
+    let traces = alike.iter().filter_map(|c| c.evidence.trace_deviation);
+    let trace = traces
+        .reduce(f64::max)
+        .map_or_else(|| "?".into(), magnitude);
+    let wrong = alike.iter().filter_map(|c| c.evidence.smallest_wrong_union);
+    match wrong.reduce(f64::min) {
+        Some(least) => format!("{trace}, wrong {}", magnitude(least)),
+        None => trace,
+    }
+}
+
+fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
+    let mut columns = Columns::new(&[
+        ">dimension",
+        ">components",
+        ">degree",
+        ">paths",
+        ">junk",
+        ">excess",
+        ">failed",
+        "complete",
+    ]);
+    for (number, d) in summary.decomposition.by_dimension.iter().rev() {
+        columns.row(vec![
+            number.to_string(),
+            count(d.components),
+            count(d.degree),
+            count(d.superset),
+            count(d.junk),
+            count(d.excess),
+            count(d.failed),
+            d.complete.name().into(),
+        ]);
+    }
+    columns.render(Look {
+        width: look.width - 2,
+        ..look
+    })
+}
+
+/// The folder of --output: `summary.json`; `decomposition.json` with slices and evidence; `system.json`; Bertini's files;
+/// `witness_points.jsonl` with a point on each line. Numbers stay as they were written.
+pub fn write(folder: &Path, summary: &str, mut found: Value) -> Result<(), ClientError> {
+    let strange = || ClientError::GaveUp("its components are not what was agreed".into());
+    make_folder(folder)?;
+    bertini::write(folder, &found)?;
+    let system = found
+        .as_object_mut()
+        .and_then(|fields| fields.remove("system"));
+    let system = system
+        .as_ref()
+        .and_then(Value::as_str)
+        .ok_or_else(strange)?;
+    write_file(folder, "system.json", system)?;
+    let mut lines = create(folder, "witness_points.jsonl")?;
+    let variables = found["variables"].as_array().cloned().ok_or_else(strange)?;
+    let components = found["components"].as_array_mut().ok_or_else(strange)?;
+    for component in components {
+        let fields = component.as_object_mut().ok_or_else(strange)?;
+        let points = fields.remove("points");
+        let id = &fields["id"];
+        let id = format!("{}.{}", id["dimension"], id["number"]);
+        for point in points
+            .as_ref()
+            .and_then(Value::as_array)
+            .ok_or_else(strange)?
+        {
+            let coordinates = point.as_array().ok_or_else(strange)?;
+            let mut values = Map::new();
+            for (name, z) in variables.iter().zip(coordinates) {
+                let name = name.as_str().ok_or_else(strange)?;
+                values.insert(name.to_owned(), z.clone());
+            }
+            let line = json!({ "component": id, "variables": values });
+            lines.write(&format!("{line}\n"))?;
+        }
+    }
+    lines.finish()?;
+    write_file(folder, "decomposition.json", &format!("{found:#}\n"))?;
+    write_file(folder, "summary.json", &json::summary(summary))
+}

@@ -1,0 +1,72 @@
+//! What a summary means for the person who asked: what is open, and the exit code.
+
+use super::text::counted;
+use crate::error::{ClientError, Exit};
+use cognate_summary::AnySummary;
+use cognate_summary::solve::Summary;
+
+/// The JSON object that the service gives, typed.
+pub fn read(json: &str) -> Result<Summary, ClientError> {
+    serde_json::from_str(json)
+        .map_err(|e| ClientError::GaveUp(format!("its summary is not what was agreed: {e}")))
+}
+
+/// The JSON object of a job of either kind, typed.
+pub fn read_any(json: &str) -> Result<AnySummary, ClientError> {
+    AnySummary::read(json)
+        .map_err(|e| ClientError::GaveUp(format!("its summary is not what was agreed: {e}")))
+}
+
+/// What keeps the answer from being settled, in words; nothing where all is.
+pub fn open_questions(summary: &Summary) -> Vec<String> {
+    let paths = &summary.paths;
+    let mut open = vec![];
+    if paths.failed > 0 {
+        open.push(format!("{} failed", counted(paths.failed, "path")));
+    }
+    let unresolved = paths
+        .crossings_found
+        .saturating_sub(paths.crossings_resolved);
+    if unresolved > 0 {
+        let crossings = counted(unresolved, "path crossing");
+        open.push(format!("{crossings} not resolved"));
+    }
+    if paths.decided_by_precision_limit > 0 {
+        let by_limit = counted(paths.decided_by_precision_limit, "path");
+        open.push(format!(
+            "{by_limit} finite or at infinity only by the limit of the precision"
+        ));
+    }
+    if summary.solutions.undecided > 0 {
+        open.push(format!(
+            "{} to a singular point of which it is not known whether it is isolated",
+            counted(paths.undecided, "path")
+        ));
+    }
+    if paths.within_data_accuracy > 0 {
+        let within = counted(paths.within_data_accuracy, "path");
+        open.push(format!(
+            "{within} to infinity as far as the accuracy of the decimals tells (--exact follows them)"
+        ));
+    }
+    let doubtful = summary.solutions.doubtful_multiplicity;
+    if doubtful > 0 {
+        let points = counted(doubtful, "singular point");
+        open.push(format!(
+            "{points} at which another number of paths ends than its multiplicity"
+        ));
+    }
+    if open.is_empty() && !summary.settled {
+        open.push("a count of one of the targets".into());
+    }
+    open
+}
+
+/// The exit code that this answer has.
+pub fn exit(summary: &Summary) -> Exit {
+    if summary.settled {
+        Exit::Solved
+    } else {
+        Exit::Unsettled
+    }
+}

@@ -1,0 +1,591 @@
+//! The answer for people: paths by verdict that add up, solutions, time, workers, warnings.
+
+use super::summary::open_questions;
+use super::text::{Look, complex, count, counted, cut, magnitude, rate, seconds, wrapped};
+use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
+use cognate_algorithms::monodromy::estimate::percent;
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::solution::{NamedValue, Solution};
+use cognate_summary::solve::Summary;
+use num_complex::Complex64;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Solutions shown before a table says how many more there are.
+pub const SOLUTIONS_SHOWN: usize = 8;
+
+/// Workers named in a table; `--format json` names all.
+const WORKERS_SHOWN: usize = 8;
+
+/// Width of the column of names.
+const LABEL: usize = 22;
+
+/// Significant figures of a coordinate in a table; files have all of them.
+const FIGURES: usize = 6;
+
+/// One line: a name, a number, what it means.
+pub(super) struct Lines {
+    text: String,
+    look: Look,
+    number: usize,
+}
+
+impl Lines {
+    /// No lines yet; numbers are so wide.
+    pub(super) fn new(look: Look, number: usize) -> Self {
+        Self {
+            text: String::new(),
+            look,
+            number,
+        }
+    }
+
+    /// All lines.
+    pub(super) fn finish(self) -> String {
+        self.text
+    }
+
+    /// Lines that are made already.
+    pub(super) fn raw(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
+    pub(super) fn heading(&mut self, title: &str, number: &str, note: &str) {
+        let cell = format!("{number:>width$}", width = self.number);
+        let title = self.look.bold(&format!("{title:<LABEL$}"));
+        let line = format!("  {title}{}", self.look.bold(&cell));
+        self.with_note(line, note);
+    }
+
+    pub(super) fn line(&mut self, name: &str, number: &str, note: &str) {
+        let cell = format!("{number:>width$}", width = self.number);
+        let line = format!("    {name:<width$}{cell}", width = LABEL - 2);
+        self.with_note(line, note);
+    }
+
+    /// The note starts in its own column, and goes on below itself.
+    fn with_note(&mut self, line: String, note: &str) {
+        let column = 2 + LABEL + self.number + 2;
+        let room = self.look.width.saturating_sub(column).max(20);
+        let notes = wrapped(note, room);
+        match notes.split_first() {
+            None => {
+                let _ = writeln!(self.text, "{}", line.trim_end());
+            }
+            Some((first, rest)) => {
+                let _ = writeln!(self.text, "{line}  {}", self.look.dim(first));
+                for more in rest {
+                    let _ = writeln!(self.text, "{}{}", " ".repeat(column), self.look.dim(more));
+                }
+            }
+        }
+    }
+
+    pub(super) fn blank(&mut self) {
+        self.text.push('\n');
+    }
+}
+
+/// The whole table; `solutions` are the first of them, `files` is the folder with all of them.
+pub fn summary(
+    summary: &Summary,
+    solutions: &[Solution],
+    files: Option<&Path>,
+    look: Look,
+) -> String {
+    let paths = &summary.paths;
+    let mut lines = Lines {
+        text: String::new(),
+        look,
+        number: (count(paths.total).len() + 1).max(6),
+    };
+    lines.text.push_str(&headline(summary, look));
+    lines.blank();
+    paths_block(&mut lines, summary);
+    lines.blank();
+    solutions_block(&mut lines, summary);
+    lines.blank();
+    if let Some(block) = &summary.monodromy {
+        loops_block(&mut lines, &block.loops);
+        lines.blank();
+    }
+    time_block(&mut lines, summary);
+    lines.text.push_str(&warnings(summary, look));
+    if !solutions.is_empty() {
+        lines.blank();
+        let total = summary.solutions.distinct + summary.solutions.undecided;
+        lines
+            .text
+            .push_str(&solution_list(solutions, total, files, look));
+    }
+    lines.text
+}
+
+/// One or two lines that answer the question.
+fn headline(summary: &Summary, look: Look) -> String {
+    let name = match summary.problem.name.as_str() {
+        "" => summary.job.as_str(),
+        name => name,
+    };
+    let open = open_questions(summary);
+    let answer = answer(summary);
+    let color = |line: &str| match (open.is_empty(), summary.paths.failed > 0) {
+        (true, _) => look.good(line),
+        (false, false) => look.warn(line),
+        (false, true) => look.bad(line),
+    };
+    let mut text = format!("{}:", look.bold(name));
+    if name.chars().count() + 2 + answer.chars().count() <= look.width {
+        let _ = writeln!(text, " {}", color(&answer));
+    } else {
+        text.push('\n');
+        for line in wrapped(&answer, look.width - 2) {
+            let _ = writeln!(text, "  {}", color(&line));
+        }
+    }
+    let p = &summary.problem;
+    let what = format!(
+        "{}, {}, {} start, seed {}",
+        counted(p.variables, "variable"),
+        counted(p.equations, "equation"),
+        p.start,
+        p.seed
+    );
+    for line in wrapped(&what, look.width) {
+        let _ = writeln!(text, "{}", look.dim(&line));
+    }
+    for question in &open {
+        for (i, line) in wrapped(question, look.width - 15).iter().enumerate() {
+            let lead = if i == 0 {
+                "not settled: "
+            } else {
+                "             "
+            };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    text
+}
+
+/// The answer in one phrase.
+pub fn answer(summary: &Summary) -> String {
+    let s = &summary.solutions;
+    let mut answer = match s.singular {
+        0 => counted(s.nonsingular, "solution"),
+        n => format!("{}, {} singular", counted(s.distinct, "solution"), count(n)),
+    };
+    let also = s.positive_dimensional == Some(true);
+    if also && s.distinct == 0 && s.undecided == 0 {
+        return "no isolated solution, but a positive-dimensional solution set".to_owned();
+    }
+    match s.real {
+        Some(n) if n == s.distinct && n > 1 => answer.push_str(", all real"),
+        Some(n) if s.distinct > 0 => {
+            let _ = write!(answer, ", {} real", count(n));
+        }
+        _ => {}
+    }
+    if s.undecided > 0 {
+        let points = counted(s.undecided, "singular point");
+        let _ = write!(answer, ", and {points} that may not be isolated");
+    }
+    if also {
+        answer.push_str(", and a positive-dimensional set");
+    }
+    answer
+}
+
+fn paths_block(lines: &mut Lines, summary: &Summary) {
+    let p = &summary.paths;
+    let undecided = "not decided; such paths are counted in the next class";
+    let classes = [
+        (
+            "failed",
+            Some(p.failed),
+            "given up; `cognate explain` says why",
+        ),
+        ("at infinity", Some(p.at_infinity), "no solution there"),
+        ("excess", p.excess, "no solution before randomisation"),
+        (
+            "positive-dimensional",
+            p.positive_dimensional,
+            "on a curve, surface, ... of solutions",
+        ),
+        (
+            "undecided",
+            Some(p.undecided),
+            "at a singular point; isolated or not is not known",
+        ),
+        (
+            "within data accuracy",
+            Some(p.within_data_accuracy),
+            "other digits of the data would give another class",
+        ),
+        (
+            "singular",
+            Some(p.singular),
+            "at an isolated multiple or otherwise singular point",
+        ),
+        (
+            "finite",
+            Some(p.finite),
+            "at a nonsingular isolated solution",
+        ),
+    ];
+    let shown_where_there_are_some = ["undecided", "within data accuracy"];
+    lines.heading("Paths", "", "each in the first class that holds");
+    for (name, number, meaning) in classes {
+        match number {
+            Some(0) if shown_where_there_are_some.contains(&name) => {}
+            Some(0) => lines.line(name, "0", ""),
+            Some(n) => lines.line(name, &count(n), meaning),
+            None => lines.line(name, "-", undecided),
+        }
+    }
+    let rule = "-".repeat(count(p.total).len().max(2));
+    lines.line("", &rule, "");
+    let sum: u64 = classes.iter().filter_map(|(_, n, _)| *n).sum();
+    let note = if sum == p.total {
+        String::new()
+    } else {
+        format!("the classes add up to {}: please report this", count(sum))
+    };
+    lines.line("total", &count(p.total), &note);
+    if p.images > 0 {
+        let note = "not followed: images of others by the symmetry";
+        lines.line("images", &count(p.images), note);
+    }
+    for (name, &n) in &p.degenerate {
+        lines.line("on a named set", &count(n), name);
+    }
+    if p.retracked > 0 || p.crossings_found > 0 {
+        let note = match p.crossings_found {
+            0 => String::new(),
+            found => format!(
+                "{} found, {} resolved",
+                counted(found, "path crossing"),
+                count(p.crossings_resolved)
+            ),
+        };
+        lines.line("tracked again", &count(p.retracked), &note);
+    }
+    if p.decided_by_precision_limit > 0 {
+        let note = "verdicts that only the limit of precision gave";
+        lines.line(
+            "by precision limit",
+            &count(p.decided_by_precision_limit),
+            note,
+        );
+    }
+    if p.by_precision.len() > 1 {
+        let words: Vec<String> = p
+            .by_precision
+            .iter()
+            .map(|(bits, n)| format!("{} with {bits} bits", count(*n)))
+            .collect();
+        lines.line("precision", "", &words.join(", "));
+    }
+}
+
+fn solutions_block(lines: &mut Lines, summary: &Summary) {
+    let s = &summary.solutions;
+    lines.heading("Solutions", "", "isolated points, equal ones merged");
+    lines.line("nonsingular", &count(s.nonsingular), "");
+    lines.line("singular", &count(s.singular), "");
+    let rule = "-".repeat(count(s.distinct).len().max(2));
+    lines.line("", &rule, "");
+    let note = if s.with_multiplicity == s.distinct {
+        String::new()
+    } else {
+        format!("{} with multiplicity", count(s.with_multiplicity))
+    };
+    lines.line("distinct", &count(s.distinct), &note);
+    if s.undecided > 0 {
+        let note = "singular points, isolated or not: in no other count";
+        lines.line("undecided", &count(s.undecided), note);
+    }
+    if s.complete != Completeness::Yes
+        && let Some(reason) = &s.complete_reason
+    {
+        let note = format!("{}: {reason}", s.complete.name());
+        lines.line("complete", "", &note);
+    }
+    match (s.real, &s.real_reason) {
+        (Some(n), _) => lines.line("real", &count(n), ""),
+        (None, reason) => lines.line("real", "-", reason.as_deref().unwrap_or("not asked")),
+    }
+    if let Some(n) = s.certified {
+        let boxes = format!(
+            "of {}: each alone in its box, no box meets another",
+            count(s.nonsingular)
+        );
+        let note = match s.certified_real {
+            Some(real) if n > 0 => format!("{boxes}; {} proved real", count(real)),
+            _ => boxes,
+        };
+        lines.line("certified", &count(n), &note);
+    }
+    if let Some(sharpened) = &s.sharpened {
+        let mut note = format!(
+            "of {} brought to {} digits",
+            count(s.distinct),
+            sharpened.digits
+        );
+        if sharpened.by_deflation > 0 {
+            note.push_str(&format!(", {} by deflation", count(sharpened.by_deflation)));
+        }
+        lines.line("sharpened", &count(sharpened.solutions), &note);
+    }
+    if s.positive_dimensional == Some(true) {
+        lines.line("and also", "", "a positive-dimensional solution set");
+    }
+    for (name, &n) in &s.degenerate {
+        lines.line("degenerate", &count(n), name);
+    }
+    if let Some(n) = summary.classes.count {
+        let note = summary
+            .classes
+            .group_order
+            .map(|order| format!("of a group of {}", counted(order, "element")));
+        lines.line("classes", &count(n), note.as_deref().unwrap_or(""));
+    }
+}
+
+fn loops_block(lines: &mut Lines, loops: &LoopCounts) {
+    lines.heading("Monodromy", "", "at generic parameters");
+    let classes = match loops.group_order {
+        0 | 1 => String::new(),
+        order => {
+            let noun = if loops.classes == 1 {
+                "class"
+            } else {
+                "classes"
+            };
+            let group = counted(order, "element");
+            format!(
+                "in {} {noun} under a group of {group}",
+                count(loops.classes)
+            )
+        }
+    };
+    lines.line("solutions", &count(loops.solutions), &classes);
+    let idle = format!("the last {} without anything new", count(loops.idle_loops));
+    lines.line("loops", &count(loops.loops), &idle);
+    let crossings = match loops.crossings_found {
+        0 => String::new(),
+        found => format!(
+            "{} seen, {} resolved",
+            counted(found, "path crossing"),
+            count(loops.crossings_resolved)
+        ),
+    };
+    lines.line("paths for them", &count(loops.tracked), &crossings);
+    if let Some(test) = &loops.trace_test {
+        let off = test.deviation.map(|off| format!(", to {off:.0e}"));
+        let off = off.unwrap_or_default();
+        let said = match test.complete {
+            true => format!("complete: the sum of so many points moves on a line{off}"),
+            false => format!("not complete: the sum of so many points should move on a line{off}"),
+        };
+        lines.line("trace test", &count(test.points), &said);
+    }
+    if let (Some(Stop::Confidence), Some(estimate)) = (loops.stop, &loops.estimate) {
+        let likeliest = estimate.likeliest.map_or("?".to_owned(), count);
+        let sure = format!(
+            "classes; no more with probability {}, if loops permute at random",
+            percent(estimate.confidence)
+        );
+        lines.line("estimated", &likeliest, &sure);
+    }
+    if loops.lost > 0 {
+        lines.line(
+            "lost on loops",
+            &count(loops.lost),
+            "found again or not: see warnings",
+        );
+    }
+}
+
+fn time_block(lines: &mut Lines, summary: &Summary) {
+    let t = &summary.time;
+    let parts = [
+        format!("{} of CPU", seconds(t.cpu_seconds)),
+        format!("{} tracking", seconds(t.tracking_cpu_seconds)),
+        format!("{} paths/s", rate(t.paths_per_second)),
+    ];
+    // Times are words, not counts: they may be wider than the column of numbers.
+    let wall = seconds(t.wall_seconds);
+    lines.heading("Time", &wall, &parts.join(", "));
+    let mut workers: Vec<String> = summary
+        .workers
+        .iter()
+        .take(WORKERS_SHOWN)
+        .map(|w| {
+            format!(
+                "{} {} ({})",
+                cut(&w.id, 24),
+                counted(w.paths, "path"),
+                w.transport
+            )
+        })
+        .collect();
+    let more = summary.workers.len().saturating_sub(WORKERS_SHOWN);
+    if more > 0 {
+        workers.push(format!("and {more} more"));
+    }
+    let number = count(summary.workers.len() as u64);
+    lines.heading("Workers", &number, &workers.join(", "));
+}
+
+fn warnings(summary: &Summary, look: Look) -> String {
+    let mut text = String::new();
+    for warning in &summary.warnings {
+        text.push('\n');
+        for (i, line) in wrapped(warning, look.width.saturating_sub(9).max(20))
+            .iter()
+            .enumerate()
+        {
+            let lead = if i == 0 { "warning: " } else { "         " };
+            let _ = writeln!(text, "{}{line}", look.warn(lead));
+        }
+    }
+    text
+}
+
+/// The first solutions, one a line, as many variables as fit; `total` is how many there are.
+pub fn solution_list(
+    solutions: &[Solution],
+    total: u64,
+    files: Option<&Path>,
+    look: Look,
+) -> String {
+    let mut text = String::new();
+    let Some(first) = solutions.first() else {
+        return text;
+    };
+    let shown = &solutions[..solutions.len().min(SOLUTIONS_SHOWN)];
+    let digits = shown.len().to_string().len().max(1);
+    let kind = |s: &Solution| {
+        let mut kind = match s.real {
+            Some(true) => "real".to_string(),
+            Some(false) => "complex".to_string(),
+            None => String::new(),
+        };
+        if s.undecided {
+            kind = format!("{kind} undecided").trim().to_string();
+        } else if s.singular {
+            kind = format!("{kind} singular").trim().to_string();
+        }
+        if s.multiplicity > 1 {
+            let _ = write!(kind, " x{}", s.multiplicity);
+        }
+        kind.trim().to_string()
+    };
+    let mut columns: Vec<(String, Vec<String>)> = vec![
+        (
+            "#".into(),
+            (1..=shown.len()).map(|i| format!("{i:>digits$}")).collect(),
+        ),
+        ("kind".into(), shown.iter().map(kind).collect()),
+        (
+            "condition".into(),
+            shown.iter().map(|s| magnitude(s.condition)).collect(),
+        ),
+    ];
+    if columns[1].1.iter().all(String::is_empty) {
+        columns.remove(1);
+    }
+    let fixed = columns.len();
+    for (v, NamedValue { name, .. }) in first.variables.0.iter().enumerate() {
+        let mut cells: Vec<String> = shown
+            .iter()
+            .map(|s| {
+                s.variables
+                    .0
+                    .get(v)
+                    .map_or(String::new(), |v| coordinate(s, v.value))
+            })
+            .collect();
+        // Signs stand in a column of their own.
+        if cells.iter().any(|c| c.starts_with('-')) {
+            for cell in cells.iter_mut().filter(|c| !c.starts_with('-')) {
+                cell.insert(0, ' ');
+            }
+        }
+        columns.push((name.clone(), cells));
+    }
+    let width = |(name, cells): &(String, Vec<String>)| {
+        cells
+            .iter()
+            .chain([name])
+            .map(|c| c.chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: Vec<usize> = columns.iter().map(width).collect();
+    // As many variables as fit, at least one, and room to say how many are left out.
+    let mut used = widths[..fixed].iter().map(|w| w + 2).sum::<usize>();
+    let mut fitting = fixed;
+    for (i, w) in widths.iter().enumerate().skip(fixed) {
+        let mark = match columns.len() - i - 1 {
+            0 => 0,
+            left => format!("  +{left} more").len(),
+        };
+        if i > fixed && used + w + 2 + mark > look.width {
+            break;
+        }
+        used += w + 2;
+        fitting = i + 1;
+    }
+    let left_out = columns.len() - fitting;
+    let mut heading = String::new();
+    for (i, (name, _)) in columns[..fitting].iter().enumerate() {
+        let _ = write!(heading, "  {name:<width$}", width = widths[i]);
+    }
+    if left_out > 0 {
+        let _ = write!(heading, "  +{left_out} more");
+    }
+    let _ = writeln!(text, "{}", look.bold(&cut(heading.trim_end(), look.width)));
+    for r in 0..shown.len() {
+        let mut line = String::new();
+        for (i, (_, cells)) in columns[..fitting].iter().enumerate() {
+            let _ = write!(line, "  {:<width$}", cells[r], width = widths[i]);
+        }
+        let _ = writeln!(text, "{}", cut(line.trim_end(), look.width));
+    }
+    let more = total.saturating_sub(shown.len() as u64);
+    if more > 0 || left_out > 0 || files.is_some() {
+        let mut note = String::new();
+        if more > 0 {
+            let _ = write!(note, "and {} more; ", count(more));
+        }
+        match files {
+            Some(folder) => {
+                let _ = write!(
+                    note,
+                    "all digits of all of them are in {}",
+                    folder.display()
+                );
+            }
+            None => note.push_str("--output DIR writes all digits of all of them"),
+        }
+        for line in wrapped(&note, look.width - 2) {
+            let _ = writeln!(text, "  {}", look.dim(&line));
+        }
+    }
+    text
+}
+
+/// A coordinate without what is only rounding.
+fn coordinate(solution: &Solution, z: Complex64) -> String {
+    // A part below the solution's own error estimate says nothing; nor does one that is below
+    // the shown figures of the other by a thousand.
+    let values = solution
+        .variables
+        .0
+        .iter()
+        .map(|v| v.value.re.abs().max(v.value.im.abs()));
+    let noise = solution.accuracy.clamp(1e-14, 1e-6) * values.fold(1.0, f64::max);
+    let keep = |part: f64| if part.abs() <= noise { 0.0 } else { part };
+    complex(Complex64::new(keep(z.re), keep(z.im)), FIGURES, 1e-9)
+}

@@ -1,0 +1,266 @@
+//! From arguments to a submission: files read and checked here, so that mistakes are named before anything starts.
+
+use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
+use super::error::ClientError;
+use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::settings::Preset;
+use cognate_protocol::file_settings;
+use cognate_protocol::option_misfit::{OptionMisfit, any_of};
+use cognate_protocol::submission::{
+    Decompose, Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
+};
+use cognate_systems::formats::{self, FormatError};
+use cognate_systems::system::System;
+use std::io::Read;
+use std::path::Path;
+
+/// A submission, and what a person should know about it.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The submission that is sent to the coordinator.
+    pub submission: Submission,
+    /// What is solved, in a word: the file's name.
+    pub name: String,
+}
+
+/// Reads a file, or standard input for `-`; gives a name for messages with it.
+pub fn read_file(path: &Path) -> Result<(String, Vec<u8>), ClientError> {
+    let failed = |source| ClientError::File {
+        action: "cannot read",
+        path: path.to_path_buf(),
+        source,
+    };
+    if path.as_os_str() == "-" {
+        let mut content = vec![];
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut content)
+            .map_err(failed)?;
+        return Ok(("standard input".into(), content));
+    }
+    let content = std::fs::read(path).map_err(failed)?;
+    Ok((path.display().to_string(), content))
+}
+
+/// The name without its folders.
+pub fn short_name(path: &Path) -> String {
+    if path.as_os_str() == "-" {
+        return "standard input".into();
+    }
+    path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+/// Reads a system and puts the groups of the command line in the place of its own.
+pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem, ClientError> {
+    let (name, content) = read_file(path)?;
+    let mut problem = formats::read(&name, &content).map_err(|e| described(&e))?;
+    if let Some(groups) = groups {
+        formats::options::groups(groups, &mut problem.system).map_err(|e| described(&e))?;
+    }
+    Ok(problem)
+}
+
+/// The sets of a linear-product start: variables by index, for each factor of each equation.
+pub fn read_sets(
+    path: Option<&Path>,
+    system: &System,
+) -> Result<Option<Vec<Vec<Vec<u32>>>>, ClientError> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    let (name, content) = read_file(path)?;
+    let sets = formats::sets::read(&name, &content, system);
+    sets.map(Some).map_err(|e| described(&e))
+}
+
+/// Everything that the arguments say, checked.
+pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
+    let formats::Problem {
+        mut system,
+        settings: file,
+        warnings,
+        ..
+    } = read_system(&a.file, a.groups.as_deref())?;
+    let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    if let Some(pairs) = &a.conjugates {
+        formats::options::conjugates(pairs, &mut system).map_err(|e| described(&e))?;
+    }
+    if let Some(path) = &a.degenerate {
+        let (name, content) = read_file(path)?;
+        formats::degenerate::read(&name, &content, &mut system).map_err(|e| described(&e))?;
+    }
+    if let Some(path) = &a.symmetry {
+        let (name, content) = read_file(path)?;
+        formats::symmetry::read(&name, &content, &mut system).map_err(|e| described(&e))?;
+    }
+    let sets = read_sets(a.sets.as_deref(), &system)?;
+    warnings.extend(file_settings::precision_warning(&file));
+    let start_solutions = match &a.start_solutions {
+        None => None,
+        Some(path) => Some(start_points(path, &system)?),
+    };
+    let start = match (a.start, &start_solutions) {
+        (StartKind::Auto, Some(_)) => StartKind::Given,
+        (start, _) => start,
+    };
+    let mut start_parameters = parameters(a.start_parameters.as_deref(), &system)?;
+    if start_parameters.len() > 1 {
+        let message = format!(
+            "holds {} sets of parameters; expected one",
+            start_parameters.len()
+        );
+        return Err(wrong("--start-parameters", &message));
+    }
+    let preset = Preset::from(a.preset);
+    let mut target_parameters = parameters(a.target_parameters.as_deref(), &system)?;
+    if start_parameters.is_empty()
+        && target_parameters.is_empty()
+        && let Some((values, warning)) = file.random_parameters(&system, a.seed)
+    {
+        target_parameters.push(values);
+        warnings.push(warning);
+    }
+    let options = Options {
+        start,
+        // The groups are in the system already.
+        groups: None,
+        conjugates: vec![],
+        seed: a.seed.or(file.seed),
+        settings: SettingsChoice {
+            preset: Some(preset),
+            exact_data: Some(a.exact),
+            ..file_settings::of_file(&file, &preset.settings())
+        },
+        precision: a.precision,
+        start_parameters: start_parameters.pop().unwrap_or_default(),
+        target_parameters,
+        start_solutions,
+        name: short_name(&a.file).chars().take(60).collect(),
+        idle_loops: a.idle_loops,
+        expected_solutions: a.expect,
+        certify: a.certify,
+        trace_test: a.trace_test,
+        confidence: a.confidence,
+        digits: a.digits.or(file.digits),
+        deflate: a.deflate,
+        warnings,
+        sets,
+        decompose: None,
+        question: None,
+    };
+    options.check().map_err(misfit)?;
+    Ok(Prepared {
+        submission: Submission {
+            source: Source::System(Box::new(system)),
+            options,
+        },
+        name: short_name(&a.file),
+    })
+}
+
+impl From<PresetName> for Preset {
+    fn from(name: PresetName) -> Self {
+        match name {
+            PresetName::Careful => Self::Careful,
+            PresetName::Default => Self::Default,
+            PresetName::Fast => Self::Fast,
+            PresetName::Reckless => Self::Reckless,
+        }
+    }
+}
+
+/// The submission that asks for these components instead of isolated solutions.
+pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Prepared {
+    let options = &mut prepared.submission.options;
+    // A file's digits are those of isolated solutions.
+    if options.digits.take().is_some() {
+        options
+            .warnings
+            .push("the file asks for digits; witness points have those of doubles".into());
+    }
+    options.decompose = Some(Decompose {
+        dimensions: wanted.dimension.map(|d| [d.lowest, d.highest]),
+        idle_loops: wanted.loops,
+        method: wanted.method.method(),
+        verify: wanted.verify,
+    });
+    prepared
+}
+
+fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientError> {
+    let (name, content) = read_file(path)?;
+    // Our own objects, all bits of them: families that are kept.
+    if let Ok(points) = StoredPoints::from_bytes(&content) {
+        if points.dimension != system.variables.len() {
+            let message = format!(
+                "holds points of {} coordinates; the system has {} variables",
+                points.dimension,
+                system.variables.len()
+            );
+            return Err(wrong(&name, &message));
+        }
+        if points.is_empty() {
+            return Err(wrong(&name, "holds no start solution"));
+        }
+        return Ok(StartSolutions::Points(points));
+    }
+    let points = formats::points::read_solutions(&name, &content, &system.variables)
+        .map_err(|e| described(&e))?;
+    if points.is_empty() {
+        return Err(wrong(&name, "holds no start solution"));
+    }
+    Ok(StartSolutions::Points(StoredPoints {
+        dimension: system.variables.len(),
+        coordinates: points.into_iter().flatten().collect(),
+    }))
+}
+
+fn parameters(
+    path: Option<&Path>,
+    system: &System,
+) -> Result<Vec<Vec<num_complex::Complex64>>, ClientError> {
+    let Some(path) = path else {
+        return Ok(vec![]);
+    };
+    let (name, content) = read_file(path)?;
+    if system.parameters.is_empty() {
+        return Err(wrong(
+            &name,
+            "the system has no parameters to give values to",
+        ));
+    }
+    formats::points::read_parameters(&name, &content, &system.parameters).map_err(|e| described(&e))
+}
+
+/// A misfit in the words of the command line.
+fn misfit(misfit: OptionMisfit) -> ClientError {
+    let typed = |field: &str| match field {
+        "expected_solutions" => "--expect".to_owned(),
+        field => format!("--{}", field.replace('_', "-")),
+    };
+    match misfit {
+        OptionMisfit::OnlyWith { field, starts } => {
+            let message = format!("only goes with --start {}", any_of(starts));
+            wrong(&typed(field), &message)
+        }
+        OptionMisfit::NotWith { field, other } => {
+            wrong(&typed(field), &format!("does not go with {}", typed(other)))
+        }
+        OptionMisfit::NoStartSolutions => wrong("--start given", "needs --start-solutions FILE"),
+    }
+}
+
+fn wrong(origin: &str, message: &str) -> ClientError {
+    ClientError::Input {
+        origin: origin.into(),
+        message: message.into(),
+    }
+}
+
+/// The whole message of a reader: it names file, line and column itself.
+fn described(error: &FormatError) -> ClientError {
+    ClientError::Format(error.to_string())
+}

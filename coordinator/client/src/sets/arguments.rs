@@ -1,0 +1,188 @@
+//! Arguments of the commands that ask components.
+
+use crate::common_arguments::{
+    Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments,
+};
+use clap::Args;
+use cognate_solutions::witness::ComponentId;
+use std::path::PathBuf;
+
+/// The components that are asked, by whom, and how the answer is shown.
+#[derive(Clone, Debug, Args)]
+pub struct SetArguments {
+    /// Components: the folder of `decompose --output`, its decomposition.json, a folder with Bertini's input and
+    /// witness_data, or the id of a job of --coordinator
+    #[arg(value_name = "SET")]
+    pub set: PathBuf,
+    /// Only these components, such as 1.2; may be given several times [default: all]
+    #[arg(long = "component", value_name = "ID", value_parser = id)]
+    pub components: Vec<ComponentId>,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// A coordinator of the command's own, or one that runs.
+    #[command(flatten)]
+    pub service: OwnOrRunning,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+    /// Also write summary.json here, points as samples.csv, real curves as curve.json and curve.svg
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
+}
+
+fn id(text: &str) -> Result<ComponentId, String> {
+    text.parse()
+}
+
+impl SetArguments {
+    /// Files and format of the answer.
+    pub fn output(&self) -> OutputArguments {
+        OutputArguments {
+            format: self.format,
+            output: self.output.clone(),
+        }
+    }
+}
+
+/// `cognate member`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate decompose system.bertini --output here && cognate member here --points points.csv
+  echo 'x,y,z
+3/5,4/5,0' | cognate member here --points - --format json")]
+pub struct Member {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Points: CSV with a header of variables, JSON, or solutions.jsonl; fractions are exact
+    #[arg(long, value_name = "FILE")]
+    pub points: PathBuf,
+    /// The error of each point relative to its size [default: as their digits say]
+    #[arg(long, value_name = "E", value_parser = accuracy)]
+    pub accuracy: Option<f64>,
+}
+
+/// `cognate sample`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate sample here --component 1.1 --count 1000 --output points
+  cognate sample here --component 1.1 --count 20 --real --box '0..1,-1..1,-1..1'
+  cognate sample here --component 1.1 --count 20 --near point.csv")]
+pub struct Sample {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Points of each component
+    #[arg(long, value_name = "K")]
+    pub count: u64,
+    /// Near this point: a file with one point
+    #[arg(long, value_name = "FILE", conflicts_with = "within")]
+    pub near: Option<PathBuf>,
+    /// Only real points
+    #[arg(long)]
+    pub real: bool,
+    /// Only real points with each variable between two numbers: "0..1,-1..1", or a range for all of them
+    #[arg(long = "box", value_name = "LOW..HIGH,...", value_parser = ranges, allow_hyphen_values = true)]
+    pub within: Option<Ranges>,
+}
+
+/// Ranges of variables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranges(pub Vec<[f64; 2]>);
+
+/// `cognate project`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate project here --onto x,y")]
+pub struct Project {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Variables of the image: \"x,y\"
+    #[arg(long, value_name = "VARIABLES", value_delimiter = ',')]
+    pub onto: Vec<String>,
+}
+
+/// `cognate multidegree` and `cognate certify`.
+#[derive(Clone, Debug, Args)]
+pub struct Plain {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+}
+
+/// `cognate real-curve`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate real-curve here --component 1.1 --output curve && open curve/curve.svg")]
+pub struct RealCurve {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Points of each arc on either side of its middle
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub samples: u32,
+    /// The two variables that curve.svg shows [default: the first two]; of a pair of conjugates real and imaginary part
+    #[arg(long, value_name = "X,Y", value_delimiter = ',')]
+    pub axes: Vec<String>,
+}
+
+/// `cognate mobility`.
+#[derive(Clone, Debug, Args)]
+pub struct Mobility {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Points: CSV with a header of variables, JSON, or solutions.jsonl; fractions are exact
+    #[arg(long = "at", value_name = "FILE")]
+    pub points: PathBuf,
+    /// The error of each point relative to its size [default: as their digits say]
+    #[arg(long, value_name = "E", value_parser = accuracy)]
+    pub accuracy: Option<f64>,
+    /// Highest order of motions that is asked
+    #[arg(long, value_name = "K", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=20))]
+    pub depth: u32,
+}
+
+fn accuracy(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
+    match (0.0..0.5).contains(&value) {
+        true => Ok(value),
+        false => Err("expected a number from 0 to 0.5".into()),
+    }
+}
+
+fn ranges(text: &str) -> Result<Ranges, String> {
+    let range = |part: &str| {
+        let expected = || format!("`{part}`: expected two numbers, such as -1..1");
+        let (low, high) = part.split_once("..").ok_or_else(expected)?;
+        let number = |text: &str| text.trim().parse::<f64>().map_err(|_| expected());
+        let (low, high) = (number(low)?, number(high)?);
+        match low < high && low.is_finite() && high.is_finite() {
+            true => Ok([low, high]),
+            false => Err(expected()),
+        }
+    };
+    let each = text.split(',').map(range).collect::<Result<_, String>>();
+    each.map(Ranges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_read() {
+        let found = ranges("0..1,-2.5..-1e-3").unwrap();
+        assert_eq!(found, Ranges(vec![[0.0, 1.0], [-2.5, -1e-3]]));
+        assert!(ranges("1..0").is_err() && ranges("0..inf").is_err() && ranges("3").is_err());
+    }
+}

@@ -1,0 +1,590 @@
+//! Mechanisms with known answers, from their files to positions: `tests/mechanisms`, three seeds each.
+//!
+//! `meta.json` of each instance says what is expected and by which independent programs that was found.
+
+use cognate_client::mechanism::answer::{Answer, AnswerOptions, TargetAnswer, answer};
+use cognate_kinematics::compile::{Problem, Question, Target};
+use cognate_kinematics::mechanism::chain::JointValue;
+use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, Space, read, targets};
+use serde_json::Value;
+use std::f64::consts::PI;
+use std::path::PathBuf;
+
+const SEEDS: std::ops::RangeInclusive<u64> = 1..=3;
+
+fn content(instance: &str, file: &str) -> Vec<u8> {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/mechanisms");
+    let path = root.join(instance).join(file);
+    std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn json(instance: &str, file: &str) -> Value {
+    serde_json::from_slice(&content(instance, file)).unwrap()
+}
+
+fn mechanism(instance: &str, file: &str) -> Mechanism {
+    read(file, &content(instance, file), &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn question(problem: Problem) -> Question {
+    Question {
+        problem,
+        inputs: None,
+        locks: Vec::new(),
+    }
+}
+
+/// All seeds; each target of each must have these numbers of complex and real positions.
+fn check(
+    name: &str,
+    mechanism: &Mechanism,
+    question: &Question,
+    targets: &[Target],
+    expected: &[(u64, u64)],
+) -> Vec<Answer> {
+    let mut wrong = String::new();
+    let mut answers = Vec::new();
+    for seed in SEEDS {
+        let options = AnswerOptions {
+            seed,
+            certify: false,
+        };
+        let found =
+            answer(mechanism, question, targets, &options).unwrap_or_else(|e| panic!("{e}"));
+        let counts: Vec<(u64, u64)> = found
+            .targets
+            .iter()
+            .map(|t| (t.counts.complex, t.counts.real))
+            .collect();
+        if counts != expected || !found.settled {
+            let all: Vec<_> = found.targets.iter().map(|t| &t.counts).collect();
+            wrong += &format!(
+                "\n{name}, seed {seed}: {all:?} instead of {expected:?}; {:?} {}",
+                found.warnings, found.reason
+            );
+        }
+        for target in &found.targets {
+            for position in &target.positions {
+                let residual = position.configuration.residual;
+                if residual > 1e-9 {
+                    wrong += &format!("\n{name}, seed {seed}: a loop stays open by {residual:e}");
+                }
+            }
+        }
+        answers.push(found);
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+    answers
+}
+
+fn poses(instance: &str, mechanism: &Mechanism) -> Vec<Target> {
+    let found = targets::poses(
+        "poses.json",
+        &content(instance, "poses.json"),
+        mechanism,
+        mechanism.degrees,
+    );
+    found
+        .unwrap_or_else(|e| panic!("{e}"))
+        .into_iter()
+        .map(Target::Pose)
+        .collect()
+}
+
+fn inputs(instance: &str, file: &str, mechanism: &Mechanism, names: &[String]) -> Vec<Target> {
+    let kinds = mechanism.values();
+    let angle = |name: &String| kinds.iter().any(|(n, a)| n == name && *a);
+    let names: Vec<(String, bool)> = names.iter().map(|n| (n.clone(), angle(n))).collect();
+    let found = targets::inputs(file, &content(instance, file), &names, mechanism.degrees);
+    found
+        .unwrap_or_else(|e| panic!("{e}"))
+        .into_iter()
+        .map(Target::Inputs)
+        .collect()
+}
+
+/// The real joint values of a target.
+fn real_values(target: &TargetAnswer) -> Vec<Vec<f64>> {
+    let real = target.positions.iter().filter(|p| p.is_real);
+    real.map(|p| {
+        p.configuration
+            .values
+            .iter()
+            .map(|(_, v)| v.real())
+            .collect()
+    })
+    .collect()
+}
+
+/// The largest difference of two lists of angles.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let turn = 2.0 * PI;
+    let one = |(x, y): (&f64, &f64)| {
+        let d = (x - y).rem_euclid(turn);
+        d.min(turn - d)
+    };
+    a.iter().zip(b).map(one).fold(0.0, f64::max)
+}
+
+fn check_arm(instance: &str, file: &str, lock: Option<(&str, f64)>) {
+    let meta = json(instance, "meta.json");
+    let mechanism = mechanism(instance, file);
+    let targets = poses(instance, &mechanism);
+    let expected = match lock {
+        Some(_) => meta["expected"]["with_lock"].clone(),
+        None => meta["expected"].clone(),
+    };
+    let real: Vec<u64> = match expected["real_by_pose"].as_array() {
+        Some(list) => list.iter().map(|n| n.as_u64().unwrap()).collect(),
+        None => vec![expected["real"].as_u64().unwrap()],
+    };
+    let complex = expected["complex"].as_u64().unwrap_or(8);
+    let wanted: Vec<(u64, u64)> = real.iter().map(|r| (complex, *r)).collect();
+    let question = Question {
+        locks: lock.iter().map(|(n, v)| ((*n).to_owned(), *v)).collect(),
+        ..question(Problem::Inverse)
+    };
+    let answers = check(instance, &mechanism, &question, &targets, &wanted);
+    let postures = json(instance, "configurations.json");
+    let postures = postures.as_array().unwrap();
+    // A list a pose, or one list for the only pose.
+    let nested = postures[0][0].is_array();
+    for answer in &answers {
+        for (i, target) in answer.targets.iter().enumerate() {
+            let list = if nested {
+                &postures[i]
+            } else {
+                &Value::Array(postures.clone())
+            };
+            let found = real_values(target);
+            for posture in list.as_array().unwrap() {
+                let wanted: Vec<f64> = posture
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .map(|x| x.as_f64().unwrap())
+                    .collect();
+                let nearest = found
+                    .iter()
+                    .map(|f| apart(f, &wanted))
+                    .fold(f64::INFINITY, f64::min);
+                assert!(
+                    nearest < 1e-5,
+                    "{instance}, pose {i}: {wanted:?} is not among {found:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_general_arm_has_sixteen_postures() {
+    check_arm("arm_generic", "arm.json", None);
+}
+
+#[test]
+fn manseur_and_doty_have_sixteen_real_postures() {
+    check_arm("arm_manseur_doty", "arm.json", None);
+}
+
+#[test]
+fn the_puma_has_eight() {
+    check_arm("arm_puma560", "arm.json", None);
+}
+
+#[test]
+fn the_ur10e_has_eight() {
+    check_arm("arm_ur10e", "arm.urdf", None);
+}
+
+#[test]
+fn the_calibrated_ur10e_has_sixteen() {
+    check_arm("arm_ur10e_calibrated", "arm.urdf", None);
+}
+
+#[test]
+fn a_redundant_arm_wants_a_lock_and_has_eight_with_it() {
+    let instance = "arm_7r_iiwa";
+    let arm = mechanism(instance, "arm.urdf");
+    let targets = poses(instance, &arm);
+    let refused = answer(
+        &arm,
+        &question(Problem::Inverse),
+        &targets,
+        &AnswerOptions::default(),
+    );
+    let message = refused.unwrap_err().to_string();
+    for word in ["redundant", "7", "--lock"] {
+        assert!(message.contains(word), "{message}");
+    }
+    check_arm(instance, "arm.urdf", Some(("joint_3", 0.3)));
+}
+
+fn check_forward(
+    instance: &str,
+    file: &str,
+    inputs_file: &str,
+    drive: Option<&[&str]>,
+    expected: (u64, u64),
+) {
+    let mechanism = mechanism(instance, file);
+    let names: Vec<String> = match drive {
+        Some(names) => names.iter().map(|n| (*n).to_owned()).collect(),
+        None => mechanism.inputs.clone(),
+    };
+    let targets = inputs(instance, inputs_file, &mechanism, &names);
+    let question = Question {
+        inputs: Some(names),
+        ..question(Problem::Forward)
+    };
+    check(instance, &mechanism, &question, &targets, &[expected]);
+}
+
+#[test]
+fn platforms_in_the_plane_assemble_in_six_ways() {
+    check_forward("three_rpr", "platform.json", "inputs.json", None, (6, 2));
+    check_forward("three_rrr", "platform.json", "inputs.json", None, (6, 4));
+}
+
+#[test]
+fn a_general_platform_assembles_in_forty_ways() {
+    check_forward(
+        "stewart_generic",
+        "platform.json",
+        "inputs.json",
+        None,
+        (40, 4),
+    );
+}
+
+#[test]
+fn an_octahedral_platform_assembles_in_sixteen_ways() {
+    check_forward(
+        "stewart_octahedral",
+        "platform.json",
+        "inputs.json",
+        None,
+        (16, 8),
+    );
+}
+
+#[test]
+fn a_delta_robot_has_two_places_and_eight_postures() {
+    check_forward("delta", "platform.json", "inputs.json", None, (2, 2));
+    let delta = mechanism("delta", "platform.json");
+    let targets = poses("delta", &delta);
+    check(
+        "delta",
+        &delta,
+        &question(Problem::Inverse),
+        &targets,
+        &[(8, 8)],
+    );
+}
+
+#[test]
+fn a_spherical_platform_assembles_in_eight_ways() {
+    check_forward(
+        "spherical_3rrr",
+        "mechanism.json",
+        "inputs.json",
+        None,
+        (8, 4),
+    );
+}
+
+#[test]
+fn a_spatial_four_bar_has_two_positions_and_an_idle_spin() {
+    check_forward("rssr", "mechanism.json", "inputs.json", None, (2, 2));
+    let rssr = mechanism("rssr", "mechanism.json");
+    let graph = rssr.graph();
+    assert_eq!(
+        (rssr.gruebler(), graph.idle, rssr.expected_mobility()),
+        (Some(2), 1, Some(1))
+    );
+}
+
+#[test]
+fn a_six_bar_depends_on_what_drives_it() {
+    check_forward(
+        "stephenson",
+        "mechanism.json",
+        "inputs_A0.json",
+        Some(&["A0"]),
+        (4, 4),
+    );
+    check_forward(
+        "stephenson",
+        "mechanism.json",
+        "inputs_D0.json",
+        Some(&["D0"]),
+        (6, 2),
+    );
+}
+
+#[test]
+fn wunderlichs_framework_has_sixteen_realisations() {
+    let framework = mechanism("framework_k33", "framework.json");
+    assert_eq!(framework.gruebler(), Some(0));
+    check(
+        "framework_k33",
+        &framework,
+        &question(Problem::Forward),
+        &[],
+        &[(16, 8)],
+    );
+}
+
+#[test]
+fn a_rigid_loop_has_sixteen_assemblies() {
+    let rigid = mechanism("closed_6r", "mechanism.json");
+    assert_eq!(rigid.gruebler(), Some(0));
+    check(
+        "closed_6r",
+        &rigid,
+        &question(Problem::Forward),
+        &[],
+        &[(16, 2)],
+    );
+}
+
+/// What only moves: counted, and refused where inputs would be needed.
+#[test]
+fn loops_that_move_are_counted() {
+    for (instance, gruebler) in [
+        ("bennett", -2),
+        ("bricard_line_symmetric", 0),
+        ("bricard_orthogonal", 0),
+        ("sarrus", 0),
+        ("parallelogram", 1),
+        ("rhombus", 1),
+    ] {
+        let found = mechanism(instance, "mechanism.json");
+        assert_eq!(found.gruebler(), Some(gruebler), "{instance}");
+    }
+    let bennett = mechanism("bennett", "mechanism.json");
+    let refused = answer(
+        &bennett,
+        &question(Problem::Forward),
+        &[],
+        &AnswerOptions::default(),
+    );
+    assert!(refused.unwrap_err().to_string().contains("motion"));
+}
+
+#[test]
+fn screws_are_refused_with_the_reason() {
+    let text = content("helical", "mechanism.json");
+    let message = read("mechanism.json", &text, &ReadOptions::default())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("is H") && message.contains("not algebraic"),
+        "{message}"
+    );
+    assert!(
+        message.starts_with("mechanism.json:11: joints[0].type: joint screw"),
+        "{message}"
+    );
+}
+
+/// Numbers between -1 and 1.
+fn dice(seed: u64) -> impl FnMut() -> f64 {
+    use cognate_numeric::random::{Purpose, RandomStream};
+    let mut stream = RandomStream::new(seed, Purpose::Test, 0);
+    move || 2.0 * stream.uniform() - 1.0
+}
+
+fn random_arm(draw: &mut impl FnMut() -> f64, shifts: &[usize]) -> Mechanism {
+    let rows: Vec<String> = (1..=6)
+        .map(|i| {
+            let kind = if shifts.contains(&i) { "P" } else { "R" };
+            let [a, d] = [draw(), draw()].map(|x| (x * 500.0).round() / 1000.0);
+            let [alpha, theta] = [draw(), draw()].map(|x| (x * 3000.0).round() / 1000.0);
+            format!("{{\"name\": \"q{i}\", \"type\": \"{kind}\", \"a\": {a}, \"d\": {d}, \"alpha\": {alpha}, \"theta\": {theta}}}")
+        })
+        .collect();
+    let text = format!(
+        "{{\"angles\": \"rad\", \"serial\": {{\"joints\": [{}]}}}}",
+        rows.join(", ")
+    );
+    read("random.json", text.as_bytes(), &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Inverse of forward contains the start; forward of inverse is the pose (by the residual); sixteen always.
+#[test]
+fn inverse_of_forward_contains_the_start() {
+    for seed in 0..12 {
+        let mut draw = dice(seed);
+        let arm = random_arm(&mut draw, &[]);
+        let starts: Vec<Vec<f64>> = (0..3)
+            .map(|_| (0..6).map(|_| 3.0 * draw()).collect())
+            .collect();
+        let Body::Chain(chain) = &arm.body else {
+            unreachable!("a chain was written")
+        };
+        let values = |start: &Vec<f64>| -> Vec<JointValue> {
+            start
+                .iter()
+                .map(|x| JointValue::of_real(*x, true))
+                .collect()
+        };
+        let targets: Vec<Target> = starts
+            .iter()
+            .map(|s| Target::Pose(chain.tool_pose(&values(s))))
+            .collect();
+        let options = AnswerOptions {
+            seed,
+            certify: false,
+        };
+        let found = answer(&arm, &question(Problem::Inverse), &targets, &options).unwrap();
+        assert_eq!(found.here, Some(16), "arm {seed}: {}", found.reason);
+        assert!(found.settled, "arm {seed}: {:?}", found.warnings);
+        for (start, target) in starts.iter().zip(&found.targets) {
+            assert_eq!(target.counts.complex, 16, "arm {seed}: {:?}", target.counts);
+            let all = real_values(target);
+            let nearest = all
+                .iter()
+                .map(|q| apart(q, start))
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1e-6, "arm {seed}: {start:?} is not among {all:?}");
+            let worst = target
+                .positions
+                .iter()
+                .map(|p| p.configuration.residual)
+                .fold(0.0, f64::max);
+            assert!(worst < 1e-9, "arm {seed}: {worst:e}");
+        }
+    }
+}
+
+/// The same platform said as a platform and as links and joints: two rules, the same positions.
+#[test]
+fn two_rules_give_the_same_positions() {
+    let platform = mechanism("three_rrr", "platform.json");
+    let [a1, a2, a3] = [[0.0, 0.0], [2.5, 0.1], [0.9, 2.2]];
+    let cranks = [0.9, 0.8, 1.0];
+    let rods = [1.539795, 2.127633, 0.671773];
+    let heads = [[-0.4, -0.2], [0.7, -0.1], [0.1, 0.6]];
+    let mut joints = Vec::new();
+    let mut links = vec!["ground".to_owned(), "platform".to_owned()];
+    for k in 0..3 {
+        let n = k + 1;
+        links.extend([format!("crank{n}"), format!("rod{n}")]);
+        let [x, y] = [a1, a2, a3][k];
+        let [p, q] = heads[k];
+        let (crank, rod) = (cranks[k], rods[k]);
+        joints.push(format!(
+            "{{\"name\": \"th{n}\", \"type\": \"R\", \"links\": [\"ground\", \"crank{n}\"], \
+             \"in\": {{\"ground\": {{\"point\": [{x}, {y}]}}, \"crank{n}\": {{\"point\": [0, 0]}}}}}}"
+        ));
+        joints.push(format!(
+            "{{\"name\": \"b{n}\", \"type\": \"R\", \"links\": [\"crank{n}\", \"rod{n}\"], \
+             \"in\": {{\"crank{n}\": {{\"point\": [{crank}, 0]}}, \"rod{n}\": {{\"point\": [0, 0]}}}}}}"
+        ));
+        joints.push(format!(
+            "{{\"name\": \"c{n}\", \"type\": \"R\", \"links\": [\"rod{n}\", \"platform\"], \
+             \"in\": {{\"rod{n}\": {{\"point\": [{rod}, 0]}}, \"platform\": {{\"point\": [{p}, {q}]}}}}}}"
+        ));
+    }
+    let links: Vec<String> = links.iter().map(|l| format!("\"{l}\"")).collect();
+    let text = format!(
+        "{{\"space\": \"planar\", \"angles\": \"rad\", \"links\": [{}], \"joints\": [{}], \
+         \"inputs\": [\"th1\", \"th2\", \"th3\"], \"output\": \"platform\"}}",
+        links.join(", "),
+        joints.join(", ")
+    );
+    let linkage = read("linkage.json", text.as_bytes(), &ReadOptions::default()).unwrap();
+    assert_eq!(
+        (linkage.space, linkage.gruebler()),
+        (Space::Planar, Some(3))
+    );
+    let names = platform.inputs.clone();
+    let targets = inputs("three_rrr", "inputs.json", &platform, &names);
+    let options = AnswerOptions {
+        seed: 1,
+        certify: false,
+    };
+    let outputs = |mechanism: &Mechanism| -> Vec<[f64; 3]> {
+        let found = answer(mechanism, &question(Problem::Forward), &targets, &options).unwrap();
+        assert_eq!(
+            (found.targets[0].counts.complex, found.settled),
+            (6, true),
+            "{:?}",
+            found.warnings
+        );
+        let positions = found.targets[0].positions.iter().filter(|p| p.is_real);
+        let mut outputs: Vec<[f64; 3]> = positions
+            .map(|p| p.configuration.output.unwrap())
+            .map(|o| [o.position[0].re, o.position[1].re, o.rotation[1][0].re])
+            .collect();
+        outputs.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        outputs
+    };
+    let (first, second) = (outputs(&platform), outputs(&linkage));
+    assert_eq!((first.len(), second.len()), (4, 4));
+    for (a, b) in first.iter().zip(&second) {
+        let apart = a
+            .iter()
+            .zip(b)
+            .map(|(x, y)| (x - y).abs())
+            .fold(0.0, f64::max);
+        assert!(apart < 1e-8, "{a:?} and {b:?}");
+    }
+}
+
+/// One shift leaves sixteen postures, two eight, wherever they are in the chain; the start is among them.
+#[test]
+fn chains_with_shifts_reach_their_poses() {
+    for (seed, shifts, expected) in [
+        (1, &[3][..], 16),
+        (2, &[1], 16),
+        (3, &[6], 16),
+        (4, &[2, 3], 8),
+        (5, &[1, 3], 8),
+        (6, &[2, 4, 6], 2),
+    ] {
+        let mut draw = dice(100 + seed);
+        let arm = random_arm(&mut draw, shifts);
+        let start: Vec<f64> = (0..6).map(|_| draw()).collect();
+        let Body::Chain(chain) = &arm.body else {
+            unreachable!("a chain was written")
+        };
+        let joints = start.iter().zip(&chain.joints);
+        let values: Vec<JointValue> = joints
+            .map(|(x, j)| JointValue::of_real(*x, j.is_angle))
+            .collect();
+        let targets = [Target::Pose(chain.tool_pose(&values))];
+        let options = AnswerOptions {
+            seed,
+            certify: false,
+        };
+        let asked = answer(&arm, &question(Problem::Inverse), &targets, &options);
+        let found = match asked {
+            Ok(found) => found,
+            Err(e) => {
+                assert!(
+                    shifts.len() == 3 && e.to_string().contains("three apart"),
+                    "{e}"
+                );
+                continue;
+            }
+        };
+        assert_eq!(
+            (found.here, found.settled),
+            (Some(expected), true),
+            "{shifts:?}: {:?}",
+            found.warnings
+        );
+        let positions = found.targets[0].positions.iter().filter(|p| p.is_real);
+        let nearest = positions
+            .map(|p| {
+                let pairs = p.configuration.values.iter().zip(&start);
+                pairs
+                    .map(|((_, v), x)| (v.real() - x).abs())
+                    .fold(0.0, f64::max)
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-6, "{shifts:?}: {nearest}");
+    }
+}
