@@ -5,13 +5,13 @@ use super::store::RecordKind;
 use super::summary::{Finished, TimeBlock, WorkerBlock};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
-    Decomposition, Dimension, Doubt, Irreducible, TrackedPaths, Verification, WitnessSet,
+    Decomposition, Dimension, Doubt, Irreducible, Proof, TrackedPaths, Verification, WitnessSet,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Decompositions as objects.
-pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC03");
+pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC04");
 
 /// More isolated points than these stand together, by multiplicity.
 const MOST_POINTS_LISTED: usize = 1000;
@@ -106,7 +106,7 @@ pub struct ComponentBlock {
     pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
     /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
     pub self_conjugate: Option<bool>,
-    /// Witness points that are proved; none yet.
+    /// Witness points that are proved; `null` where no proof was asked for.
     pub certified: Option<u64>,
     /// What the claims rest on.
     pub evidence: EvidenceBlock,
@@ -129,6 +129,9 @@ pub struct EvidenceBlock {
     pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: Option<f64>,
+    /// What is proved; `null` where no proof was asked for.
+    #[serde(default)]
+    pub proof: Option<Proof>,
     /// What is not clear.
     pub doubts: Vec<Doubt>,
 }
@@ -213,6 +216,10 @@ fn components(sets: &[WitnessSet]) -> Vec<ComponentBlock> {
                     .worst_condition
                     .zip(b.worst_condition)
                     .map(|(x, y)| x.max(y));
+                if let (Some(known), Some(other)) = (&mut a.proof, b.proof) {
+                    known.add(&other);
+                }
+                known.certified = known.evidence.proof.map(|proof| proof.points);
             }
             None => blocks.push(block),
         }
@@ -233,7 +240,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
         deflation: set.deflation.clone(),
         multidegree: None,
         self_conjugate: set.self_conjugate,
-        certified: None,
+        certified: evidence.proof.map(|proof| proof.points),
         evidence: EvidenceBlock {
             trace_deviation: evidence.trace.and_then(|trace| finite(trace.deviation)),
             noise: evidence.trace.and_then(|trace| finite(trace.noise)),
@@ -242,6 +249,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
             precision_bits: evidence.trace.map(|trace| trace.precision_bits),
             rank_gap: evidence.rank_gap.and_then(finite),
             worst_condition: finite(evidence.worst_condition),
+            proof: evidence.proof,
             doubts: evidence.doubts.clone(),
         },
     }

@@ -102,6 +102,13 @@ pub(crate) enum StageSystem {
         /// The dimension.
         dimension: usize,
     },
+    /// The same, with the equations of first and second derivatives by the slices.
+    Bent {
+        /// Rank of the Jacobian before each deflation.
+        ranks: Vec<u32>,
+        /// The dimension.
+        dimension: usize,
+    },
 }
 
 /// What the job does.

@@ -16,7 +16,9 @@ use serde::{Deserialize, Serialize};
 
 /// How often a dimension is begun with other combinations and at another generic system, where paths from mixed cells
 /// were lost.
-const MOST_BEGINNINGS: u32 = 6;
+const MOST_BEGINNINGS: u32 = 8;
+/// How many of these give paths up soon: a whole beginning takes less than one of its hardest paths.
+const SOON_GIVEN_UP: u32 = 6;
 
 /// Dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -151,11 +153,11 @@ impl Slices {
         self.beginnings / 2 % 2 == 1
     }
 
-    /// The tracking of a beginning: every other one gives paths up soon, since in another beginning they are others.
+    /// The tracking of a beginning: all but the last give paths up soon, since in another beginning they are others.
     fn beginning(&self, with: &Tracking, seed: u64) -> Tracking {
-        let with = match self.beginnings % 2 {
-            0 => with.soon_given_up(),
-            _ => with.clone(),
+        let with = match self.beginnings < SOON_GIVEN_UP {
+            true => with.soon_given_up(),
+            false => with.clone(),
         };
         Tracking { seed, ..with }
     }

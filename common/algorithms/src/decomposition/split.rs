@@ -9,6 +9,7 @@
 use super::deflated::{Deflations, PureSet};
 use super::job::Job;
 use super::problem::Problem;
+use super::proof::moving_slices;
 use cognate_continuation::bend::{Bend, Number, RefinedPoint, length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
@@ -191,14 +192,7 @@ impl Split {
     /// The stage that asks how the points move when the slices do.
     fn ask_bends(&self, problem: &Problem) -> Job {
         let dimension = self.set.dimension;
-        let mut random = RandomStream::new(problem.seed(), Purpose::Detour, dimension as u64);
-        let slices = problem.slices(dimension);
-        let start = slices.concat();
-        let mut moved = slices;
-        for row in &mut moved {
-            row[0] += random.unit();
-        }
-        let ends = [start, moved.concat()];
+        let ends = moving_slices(problem, dimension);
         let points = self.set.doubles();
         Job::bend(self.set.whole(), ends, &points, &problem.tracking)
     }
@@ -637,6 +631,7 @@ impl Split {
                     .map(condition)
                     .fold(0.0, f64::max)
                     .min(f64::MAX),
+                proof: None,
                 doubts,
             },
         }
@@ -839,5 +834,35 @@ mod tests {
         assert!(closed(&split).is_empty());
         go_around(&mut split, &around);
         assert_eq!((closed(&split), split.broken), (components.to_vec(), 1));
+    }
+
+    #[test]
+    fn a_loop_that_is_no_permutation_brings_nothing_together() {
+        const DEGREE: usize = 20;
+        let around = |by: usize| -> Vec<usize> {
+            let mut images: Vec<usize> = (0..2 * DEGREE).collect();
+            images[..DEGREE].rotate_left(by);
+            images[DEGREE..].rotate_left(by);
+            images
+        };
+        let mut split = two_components(DEGREE);
+        // Two paths come to one point: one of them has left its way, perhaps to the other component.
+        let mut broken = around(1);
+        broken[3] = DEGREE + 4;
+        go_around(&mut split, &broken);
+        assert_eq!((split.classes.len(), split.broken), (2 * DEGREE, 1));
+        // A path comes to no witness point.
+        let place = |k: &usize| vec![Complex64::new(*k as f64, 0.0)];
+        let mut ends: Vec<Vec<Complex64>> = around(1).iter().map(place).collect();
+        ends[7][0] += 0.5;
+        split.close_loop(&ends, 1);
+        assert_eq!((split.classes.len(), split.broken), (2 * DEGREE, 2));
+        // Sound loops do what they do without broken ones.
+        go_around(&mut split, &around(1));
+        go_around(&mut split, &around(3));
+        let all: Vec<usize> = (0..2 * DEGREE).collect();
+        let expected = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        assert_eq!(closed(&split), expected);
+        assert_eq!((split.loops, split.broken), (4, 2));
     }
 }
