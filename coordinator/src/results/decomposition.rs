@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 /// Decompositions as objects.
 pub const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC04");
 
-/// More isolated points than these stand together, by multiplicity.
-const MOST_POINTS_LISTED: usize = 1000;
+/// More components of one dimension than these stand together, those that are alike.
+const MOST_LISTED: usize = 1000;
 
 /// A finished decomposition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,7 +71,8 @@ pub struct DecompositionBlock {
     pub settled: bool,
     /// Lowest and highest dimension that were asked.
     pub asked: [u32; 2],
-    /// The components: by dimension, degree and multiplicity, largest first.
+    /// The components: by dimension, degree and multiplicity, largest first. More than 1000 of one dimension stand
+    /// together where they are alike.
     pub components: Vec<ComponentBlock>,
     /// The dimensions that were asked.
     pub by_dimension: BTreeMap<u32, DimensionBlock>,
@@ -83,10 +84,10 @@ pub struct DecompositionBlock {
     pub unsettled: Vec<String>,
 }
 
-/// A component, or many isolated points of one multiplicity.
+/// A component, or many that are alike.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComponentBlock {
-    /// Its name, such as `1.3`; of many points, that of the first.
+    /// Its name, such as `1.3`; of many, that of the first.
     pub id: String,
     /// Dimension; projective in homogeneous groups.
     pub dimension: u32,
@@ -195,36 +196,60 @@ fn finite(x: f64) -> Option<f64> {
 }
 
 fn components(sets: &[WitnessSet]) -> Vec<ComponentBlock> {
-    let points = sets.iter().filter(|set| set.dimension() == 0).count();
+    let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+    for set in sets {
+        *counts.entry(set.dimension()).or_default() += 1;
+    }
     let mut blocks: Vec<ComponentBlock> = Vec::new();
     for set in sets {
         let block = component(set);
-        let together = |known: &&mut ComponentBlock| {
-            let of = |b: &ComponentBlock| (b.multiplicity, b.tracked_multiplicity, b.irreducible);
-            known.dimension == 0
-                && of(known) == of(&block)
-                && known.deflation == block.deflation
-                && known.evidence.doubts == block.evidence.doubts
-        };
-        let many = set.dimension() == 0 && points > MOST_POINTS_LISTED;
-        match blocks.iter_mut().find(|known| many && together(known)) {
-            Some(known) => {
-                known.count += 1;
-                let (a, b) = (&mut known.evidence, &block.evidence);
-                // Where one is not finite the worst is not, either.
-                a.worst_condition = a
-                    .worst_condition
-                    .zip(b.worst_condition)
-                    .map(|(x, y)| x.max(y));
-                if let (Some(known), Some(other)) = (&mut a.proof, b.proof) {
-                    known.add(&other);
-                }
-                known.certified = known.evidence.proof.map(|proof| proof.points);
-            }
+        let many = counts[&set.dimension()] > MOST_LISTED;
+        match blocks
+            .iter_mut()
+            .find(|known| many && known.is_like(&block))
+        {
+            Some(known) => known.add(block),
             None => blocks.push(block),
         }
     }
     blocks
+}
+
+impl ComponentBlock {
+    /// Whether the two can stand together.
+    fn is_like(&self, other: &Self) -> bool {
+        let kind = |b: &Self| {
+            let multiplicity = (b.multiplicity, b.tracked_multiplicity);
+            (
+                b.dimension,
+                b.degree,
+                multiplicity,
+                b.irreducible,
+                b.self_conjugate,
+            )
+        };
+        kind(self) == kind(other)
+            && self.deflation == other.deflation
+            && self.evidence.doubts == other.evidence.doubts
+    }
+
+    /// Takes another that is like it: of the evidence what is worst.
+    fn add(&mut self, other: Self) {
+        self.count += other.count;
+        let (a, b) = (&mut self.evidence, other.evidence);
+        // Where one is not known the worst is not, either.
+        let worst = |x: Option<f64>, y: Option<f64>| x.zip(y).map(|(x, y)| x.max(y));
+        let least = |x: Option<f64>, y: Option<f64>| x.zip(y).map(|(x, y)| x.min(y));
+        a.trace_deviation = worst(a.trace_deviation, b.trace_deviation);
+        a.noise = worst(a.noise, b.noise);
+        a.smallest_wrong_union = least(a.smallest_wrong_union, b.smallest_wrong_union);
+        a.rank_gap = least(a.rank_gap, b.rank_gap);
+        a.worst_condition = worst(a.worst_condition, b.worst_condition);
+        if let (Some(known), Some(other)) = (&mut a.proof, b.proof) {
+            known.add(&other);
+        }
+        self.certified = a.proof.map(|proof| proof.points);
+    }
 }
 
 fn component(set: &WitnessSet) -> ComponentBlock {

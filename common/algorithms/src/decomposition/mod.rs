@@ -16,6 +16,7 @@ mod dimension_start;
 mod equations;
 pub(crate) mod job;
 mod junk;
+pub(crate) mod moved;
 mod options;
 pub(crate) mod problem;
 mod proof;
@@ -67,7 +68,7 @@ enum Step {
     /// All is found: what of it is proved.
     Prove(Box<Proving>),
     /// All is known.
-    Done(Box<Decomposition>),
+    Done(Arc<Decomposition>),
 }
 
 /// Why a decomposition is made.
@@ -240,7 +241,7 @@ impl DecompositionSolve {
             }
             Step::Prove(proving) => {
                 let found = proving.take(problem);
-                state.step = Step::Done(Box::new(found));
+                state.step = Step::Done(Arc::new(found));
                 return;
             }
             Step::Done(_) => {}
@@ -292,7 +293,7 @@ impl DecompositionSolve {
     fn last_step(&self, found: Decomposition) -> Step {
         match self.state.options.certify {
             true => Step::Prove(Box::new(Proving::new(found))),
-            false => Step::Done(Box::new(found)),
+            false => Step::Done(Arc::new(found)),
         }
     }
 
@@ -456,7 +457,10 @@ impl Solve for DecompositionSolve {
 
     /// None: its answer is [`DecompositionSolve::decomposition`].
     fn answer(&self, _: &System) -> Option<Answer> {
-        self.decomposition().cloned().map(Answer::Decomposition)
+        match &self.state.step {
+            Step::Done(found) => Some(Answer::Decomposition(Arc::clone(found))),
+            _ => None,
+        }
     }
 }
 
@@ -666,7 +670,7 @@ mod tests {
         let Some(Answer::Decomposition(decomposition)) = solve.answer(system) else {
             panic!("a decomposition ends with one");
         };
-        (decomposition, kinds)
+        (Arc::unwrap_or_clone(decomposition), kinds)
     }
 
     #[test]

@@ -17,8 +17,6 @@ use serde::{Deserialize, Serialize};
 /// How often a dimension is begun with other combinations and at another generic system, where paths from mixed cells
 /// were lost.
 const MOST_BEGINNINGS: u32 = 8;
-/// How many of these give paths up soon: a whole beginning takes less than one of its hardest paths.
-const SOON_GIVEN_UP: u32 = 6;
 
 /// Dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,11 +151,13 @@ impl Slices {
         self.beginnings / 2 % 2 == 1
     }
 
-    /// The tracking of a beginning: all but the last give paths up soon, since in another beginning they are others.
+    /// The tracking of a beginning: all but the last give paths up, since in another beginning they are others, and a
+    /// whole beginning takes less than the hardest of its paths; every other one does that later.
     fn beginning(&self, with: &Tracking, seed: u64) -> Tracking {
-        let with = match self.beginnings < SOON_GIVEN_UP {
-            true => with.soon_given_up(),
-            false => with.clone(),
+        let with = match self.beginnings {
+            number if number + 1 == MOST_BEGINNINGS => with.clone(),
+            number if number % 2 == 1 => with.given_up_later(),
+            _ => with.soon_given_up(),
         };
         Tracking { seed, ..with }
     }

@@ -241,13 +241,13 @@ fn proofs(summary: &DecompositionSummary, look: Look) -> String {
         &format!(
             "{} of {} witness points alone in boxes, {} of them in boxes that meet no other, as solutions of the \
              slices and, in {} of {} components, of the given equations, in the others of combinations of them; \
-             {} unions of witness points are no components",
+             {} of witness points proved to be no component",
             count(all.points),
             count(points),
             count(all.distinct),
             count(given),
             count(components),
-            count(all.unions)
+            counted(all.unions, "union")
         ),
     );
     say(
