@@ -1,6 +1,6 @@
 //! Decompositions: systems whose components are known, each decomposed with several seeds and compared.
 //!
-//! `cargo run --release -p cognate-tests --bin decompositions -- [--seeds 3] [--first 1] [--limit 100] [--only NAME,NAME] [--method NAME] [--verify true] [--folder PATH]`
+//! `cargo run --release -p cognate-tests --bin decompositions -- [--seeds 3] [--first 1] [--limit 100] [--only NAME,NAME] [--method NAME] [--verify true] [--certify true] [--folder PATH]`
 //!
 //! The systems stand beside the repository in `../shared/systems` (`--folder` names another place): each a
 //! folder with `system.bertini`, and `expected.components` in its `meta.json`. Without them the program says so and ends
@@ -31,6 +31,7 @@ struct Wanted {
     only: Vec<String>,
     method: Option<Method>,
     verify: bool,
+    certify: bool,
     folder: PathBuf,
 }
 
@@ -42,6 +43,7 @@ fn wanted() -> Result<Wanted, String> {
         only: Vec::new(),
         method: None,
         verify: false,
+        certify: false,
         folder: Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/systems"),
     };
     for (word, value) in options()? {
@@ -52,10 +54,11 @@ fn wanted() -> Result<Wanted, String> {
             "--only" => wanted.only = value.split(',').map(str::to_owned).collect(),
             "--method" => wanted.method = method(&value)?,
             "--verify" => wanted.verify = number(&word, &value)?,
+            "--certify" => wanted.certify = number(&word, &value)?,
             "--folder" => wanted.folder = value.into(),
             _ => {
                 return Err(format!(
-                    "{word}: expected --seeds N, --first N, --limit SECONDS, --only NAMES, --method NAME, --verify true or --folder PATH"
+                    "{word}: expected --seeds N, --first N, --limit SECONDS, --only NAMES, --method NAME, --verify true, --certify true or --folder PATH"
                 ));
             }
         }
@@ -147,6 +150,7 @@ fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decom
         seed,
         method: wanted.method,
         verify: wanted.verify,
+        certify: wanted.certify,
         ..DecompositionOptions::default()
     };
     let solve = DecompositionSolve::new(system, &options).map_err(|e| e.to_string())?;
@@ -197,6 +201,35 @@ struct Tally {
     unfinished: u64,
     seconds: Vec<f64>,
     notes: Vec<String>,
+    proofs: Proofs,
+}
+
+/// What is proved, where proofs are asked for.
+#[derive(Default)]
+struct Proofs {
+    /// Components, and of these: all witness points in boxes, which meet no other; the given equations proved; no
+    /// proper union left.
+    components: u64,
+    whole: u64,
+    given: u64,
+    irreducible: u64,
+    unions: u64,
+}
+
+impl Proofs {
+    fn add(&mut self, found: &Decomposition) {
+        for set in &found.components {
+            let Some(proof) = set.evidence.proof else {
+                continue;
+            };
+            let whole = proof.points == set.degree && proof.distinct == set.degree;
+            self.components += 1;
+            self.whole += u64::from(whole);
+            self.given += u64::from(proof.all_equations);
+            self.irreducible += u64::from(proof.irreducible);
+            self.unions += proof.unions;
+        }
+    }
 }
 
 impl Tally {
@@ -217,6 +250,7 @@ impl Tally {
                 return self.notes.push(format!("seed {seed}: {error}"));
             }
         };
+        self.proofs.add(&found);
         let components = counted(&found);
         let mut what = Vec::new();
         if components != instance.expected {
@@ -278,6 +312,14 @@ fn main() -> ExitCode {
             tally.add(&instance, seed, found);
         }
         println!("{}", tally.line(&instance.name));
+        if wanted.certify {
+            let p = &tally.proofs;
+            println!(
+                "  proofs: {} components, {} with all points in boxes apart, {} of the given equations, {} irreducible \
+                 where no point is missing; {} unions excluded",
+                p.components, p.whole, p.given, p.irreducible, p.unions
+            );
+        }
         for note in &tally.notes {
             println!("  {note}");
         }

@@ -5,6 +5,7 @@ use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::witness::{self, Decomposition, TrackedPaths};
 use num_complex::Complex64;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What a finished solve has found. A new kind of answer is a variant here, one of `StoredAnswer` and one of
 /// `AnySummary` in the coordinator, which say how it is kept and told, and one of `Summary` in `solution.proto`.
@@ -13,7 +14,7 @@ pub enum Answer {
     /// Isolated solutions.
     Isolated(IsolatedSolutions),
     /// The irreducible components of all dimensions that were asked for.
-    Decomposition(Decomposition),
+    Decomposition(Arc<Decomposition>),
     /// What was asked of components that are known.
     Question(AnsweredQuestion),
 }

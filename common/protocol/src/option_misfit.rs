@@ -131,7 +131,7 @@ impl Options {
         let others = [
             ("start", self.start != StartKind::Auto),
             ("start_parameters", !self.start_parameters.is_empty()),
-            ("certify", self.certify),
+            ("certify", self.certify && self.question.is_some()),
             ("digits", self.digits.is_some()),
             ("deflate", self.deflate),
         ];
@@ -185,6 +185,20 @@ mod tests {
         assert_eq!(
             said(components),
             Err("options.idle_loops: does not go with options.decompose".to_owned())
+        );
+        let proved = Options {
+            decompose: Some(Decompose::default()),
+            certify: true,
+            ..Options::default()
+        };
+        assert_eq!(said(proved.clone()), Ok(()));
+        let sharpened = Options {
+            digits: Some(30),
+            ..proved
+        };
+        assert_eq!(
+            said(sharpened),
+            Err("options.digits: does not go with options.decompose".to_owned())
         );
         let given = Options {
             start: StartKind::Given,

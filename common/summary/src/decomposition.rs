@@ -4,13 +4,13 @@
 use super::about::{About, TimeBlock, WorkerBlock};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
-    Decomposition, Dimension, Doubt, Irreducible, TrackedPaths, Verification, WitnessSet,
+    Decomposition, Dimension, Doubt, Irreducible, Proof, TrackedPaths, Verification, WitnessSet,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// More isolated points than these stand together, by multiplicity.
-const MOST_POINTS_LISTED: usize = 1000;
+/// More components of one dimension than these stand together, those that are alike.
+const MOST_LISTED: usize = 1000;
 
 /// A finished decomposition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,7 +67,8 @@ pub struct DecompositionBlock {
     pub settled: bool,
     /// Lowest and highest dimension that were asked.
     pub asked: [u32; 2],
-    /// The components: by dimension, degree and multiplicity, largest first.
+    /// The components: by dimension, degree and multiplicity, largest first. More than 1000 of one dimension stand
+    /// together where they are alike.
     pub components: Vec<ComponentBlock>,
     /// The dimensions that were asked.
     pub by_dimension: BTreeMap<u32, DimensionBlock>,
@@ -79,10 +80,10 @@ pub struct DecompositionBlock {
     pub unsettled: Vec<String>,
 }
 
-/// A component, or many isolated points of one multiplicity.
+/// A component, or many that are alike.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComponentBlock {
-    /// Its name, such as `1.3`; of many points, that of the first.
+    /// Its name, such as `1.3`; of many, that of the first.
     pub id: String,
     /// Dimension; projective in homogeneous groups.
     pub dimension: u32,
@@ -102,7 +103,7 @@ pub struct ComponentBlock {
     pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
     /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
     pub self_conjugate: Option<bool>,
-    /// Witness points that are proved; none yet.
+    /// Witness points that are proved; `null` where no proof was asked for.
     pub certified: Option<u64>,
     /// What the claims rest on.
     pub evidence: EvidenceBlock,
@@ -125,6 +126,9 @@ pub struct EvidenceBlock {
     pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: Option<f64>,
+    /// What is proved; `null` where no proof was asked for.
+    #[serde(default)]
+    pub proof: Option<Proof>,
     /// Reasons why this part of the answer is not settled.
     pub doubts: Vec<Doubt>,
 }
@@ -188,32 +192,60 @@ fn finite(x: f64) -> Option<f64> {
 }
 
 fn components(sets: &[WitnessSet]) -> Vec<ComponentBlock> {
-    let points = sets.iter().filter(|set| set.dimension() == 0).count();
+    let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+    for set in sets {
+        *counts.entry(set.dimension()).or_default() += 1;
+    }
     let mut blocks: Vec<ComponentBlock> = Vec::new();
     for set in sets {
         let block = component(set);
-        let together = |known: &&mut ComponentBlock| {
-            let of = |b: &ComponentBlock| (b.multiplicity, b.tracked_multiplicity, b.irreducible);
-            known.dimension == 0
-                && of(known) == of(&block)
-                && known.deflation == block.deflation
-                && known.evidence.doubts == block.evidence.doubts
-        };
-        let many = set.dimension() == 0 && points > MOST_POINTS_LISTED;
-        match blocks.iter_mut().find(|known| many && together(known)) {
-            Some(known) => {
-                known.count += 1;
-                let (a, b) = (&mut known.evidence, &block.evidence);
-                // Where one is not finite the worst is not, either.
-                a.worst_condition = a
-                    .worst_condition
-                    .zip(b.worst_condition)
-                    .map(|(x, y)| x.max(y));
-            }
+        let many = counts[&set.dimension()] > MOST_LISTED;
+        match blocks
+            .iter_mut()
+            .find(|known| many && known.is_like(&block))
+        {
+            Some(known) => known.add(block),
             None => blocks.push(block),
         }
     }
     blocks
+}
+
+impl ComponentBlock {
+    /// Whether the two can stand together.
+    fn is_like(&self, other: &Self) -> bool {
+        let kind = |b: &Self| {
+            let multiplicity = (b.multiplicity, b.tracked_multiplicity);
+            (
+                b.dimension,
+                b.degree,
+                multiplicity,
+                b.irreducible,
+                b.self_conjugate,
+            )
+        };
+        kind(self) == kind(other)
+            && self.deflation == other.deflation
+            && self.evidence.doubts == other.evidence.doubts
+    }
+
+    /// Takes another that is like it: of the evidence what is worst.
+    fn add(&mut self, other: Self) {
+        self.count += other.count;
+        let (a, b) = (&mut self.evidence, other.evidence);
+        // Where one is not known the worst is not, either.
+        let worst = |x: Option<f64>, y: Option<f64>| x.zip(y).map(|(x, y)| x.max(y));
+        let least = |x: Option<f64>, y: Option<f64>| x.zip(y).map(|(x, y)| x.min(y));
+        a.trace_deviation = worst(a.trace_deviation, b.trace_deviation);
+        a.noise = worst(a.noise, b.noise);
+        a.smallest_wrong_union = least(a.smallest_wrong_union, b.smallest_wrong_union);
+        a.rank_gap = least(a.rank_gap, b.rank_gap);
+        a.worst_condition = worst(a.worst_condition, b.worst_condition);
+        if let (Some(known), Some(other)) = (&mut a.proof, b.proof) {
+            known.add(&other);
+        }
+        self.certified = a.proof.map(|proof| proof.points);
+    }
 }
 
 fn component(set: &WitnessSet) -> ComponentBlock {
@@ -229,7 +261,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
         deflation: set.deflation.clone(),
         multidegree: None,
         self_conjugate: set.self_conjugate,
-        certified: None,
+        certified: evidence.proof.map(|proof| proof.points),
         evidence: EvidenceBlock {
             trace_deviation: evidence.trace.and_then(|trace| finite(trace.deviation)),
             noise: evidence.trace.and_then(|trace| finite(trace.noise)),
@@ -238,6 +270,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
             precision_bits: evidence.trace.map(|trace| trace.precision_bits),
             rank_gap: evidence.rank_gap.and_then(finite),
             worst_condition: finite(evidence.worst_condition),
+            proof: evidence.proof,
             doubts: evidence.doubts.clone(),
         },
     }

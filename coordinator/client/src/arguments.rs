@@ -357,6 +357,9 @@ pub struct Decompose {
     /// The components of a decomposition that are meant.
     #[command(flatten)]
     pub components: ComponentArguments,
+    /// Prove every witness point by a box, and which unions of them are no components
+    #[arg(long, help_heading = "Components")]
+    pub certify: bool,
     /// Values of the parameters: Bertini's format or JSON, one set
     #[arg(long, value_name = "FILE", help_heading = "Problem")]
     pub target_parameters: Option<PathBuf>,
@@ -397,6 +400,7 @@ impl Decompose {
             target_parameters: self.target_parameters.clone(),
             groups: self.groups.clone(),
             seed: self.seed,
+            certify: self.certify,
             preset: self.preset,
             precision: self.precision,
             exact: self.exact,

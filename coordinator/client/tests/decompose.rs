@@ -108,6 +108,40 @@ fn components_stand_in_the_answer_and_in_files() {
 }
 
 #[test]
+fn proofs_stand_beside_evidence() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let options = ["--certify", "--seed", "1", "--format", "json"];
+    let output = decompose(folder.path(), UNION, &options);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let summary = json(&output);
+    assert_eq!(components(&summary), [(1, 2), (1, 1), (0, 1)]);
+    for (place, unions) in [(0, 1), (1, 0), (2, 0)] {
+        let component = &summary["decomposition"]["components"][place];
+        let proof = &component["evidence"]["proof"];
+        assert_eq!(component["certified"], component["degree"]);
+        assert_eq!(proof["distinct"], component["degree"]);
+        assert_eq!(
+            (&proof["irreducible"], &proof["unions"]),
+            (&true.into(), &unions.into())
+        );
+        // Two equations cut out the point; of the curves a combination of them is proved.
+        assert_eq!(proof["all_equations"], place == 2);
+    }
+    let output = decompose(folder.path(), UNION, &["--certify", "--seed", "1"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    let expected = [
+        "proved:   4 of 4 witness points alone in boxes",
+        "3 of 3 components are irreducible",
+        "evidence: that no witness point is missing",
+    ];
+    for part in expected {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let plain = json(&decompose(folder.path(), UNION, &options[1..]));
+    assert!(plain["decomposition"]["components"][0]["certified"].is_null());
+}
+
+#[test]
 fn what_cannot_be_decomposed_is_refused_with_its_reason() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let refused = |text: &str, options: &[&str], reason: &str| {

@@ -244,6 +244,7 @@ fn plan_decomposition(
         idle_loops: wanted.idle_loops.unwrap_or(default.idle_loops),
         method: wanted.method,
         verify: wanted.verify,
+        certify: options.certify,
         ..tracking_of_components(options)?
     };
     let solve = DecompositionSolve::new(system, &options)?;

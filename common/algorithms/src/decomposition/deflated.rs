@@ -13,7 +13,7 @@ use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::witness::Multiplicity;
 use cognate_systems::system::{System, VariableGroup};
-use cognate_systems::transform::{critical, deflate, fibre, slice};
+use cognate_systems::transform::{bent, critical, deflate, fibre, slice};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
@@ -269,6 +269,11 @@ impl Deflations {
             StageSystem::Tracked { ranks, dimension } => {
                 let tracked = problem.tracked(&self.system(problem, ranks), *dimension);
                 Arc::new(tracked.expect("derivatives of polynomials have degrees"))
+            }
+            StageSystem::Bent { ranks, dimension } => {
+                let (ranks, dimension) = (ranks.clone(), *dimension);
+                let tracked = StageSystem::Tracked { ranks, dimension };
+                Arc::new(bent(&self.of_stage(problem, &tracked)))
             }
         };
         self.of_stages.insert(wanted.clone(), Arc::clone(&made));

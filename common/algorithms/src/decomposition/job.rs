@@ -35,15 +35,31 @@ const FEW_BITS: u32 = 212;
 /// ... or where it fails more often.
 const FEW_RETRIES: u16 = 1;
 
+/// ... later, after so many steps, of which a repetition has more,
+const SOME_STEPS: u32 = 2500;
+/// ... where it needs more bits,
+const SOME_BITS: u32 = 424;
+/// ... or where it fails more often.
+const SOME_RETRIES: u16 = 2;
+
 impl Tracking {
     /// The same where paths may fail.
     pub fn soon_given_up(&self) -> Self {
+        self.limited(FEW_STEPS, FEW_BITS, FEW_RETRIES)
+    }
+
+    /// The same where paths may fail, though not as soon.
+    pub fn given_up_later(&self) -> Self {
+        self.limited(SOME_STEPS, SOME_BITS, SOME_RETRIES)
+    }
+
+    fn limited(&self, steps: u32, bits: u32, retries: u16) -> Self {
         let mut with = self.clone();
         let settings = &mut with.settings;
-        settings.max_steps = settings.max_steps.min(FEW_STEPS);
-        let most = FEW_BITS.max(settings.precision_bits);
+        settings.max_steps = settings.max_steps.min(steps);
+        let most = bits.max(settings.precision_bits);
         settings.max_precision_bits = settings.max_precision_bits.min(most);
-        with.max_retries = with.max_retries.min(FEW_RETRIES);
+        with.max_retries = with.max_retries.min(retries);
         with
     }
 }
@@ -97,6 +113,13 @@ pub(crate) enum StageSystem {
     },
     /// Combinations of the equations that are regular after these deflations, with the slices of this dimension.
     Tracked {
+        /// Rank of the Jacobian before each deflation.
+        ranks: Vec<u32>,
+        /// The dimension.
+        dimension: usize,
+    },
+    /// The same, with the equations of first and second derivatives by the slices.
+    Bent {
         /// Rank of the Jacobian before each deflation.
         ranks: Vec<u32>,
         /// The dimension.

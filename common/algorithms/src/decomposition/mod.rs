@@ -16,11 +16,14 @@ mod dimension_start;
 mod equations;
 pub(crate) mod job;
 mod junk;
+pub(crate) mod moved;
 mod options;
 pub(crate) mod problem;
+mod proof;
 mod slices;
 pub(crate) mod split;
 pub(crate) mod superset;
+mod unions;
 
 use crate::answer::Answer;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
@@ -43,6 +46,7 @@ use junk::JunkFilter;
 pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
+use proof::Proving;
 use serde::{Deserialize, Serialize};
 use slices::Slices;
 use split::Split;
@@ -61,8 +65,10 @@ enum Step {
     JunkFilter(JunkFilter),
     /// Set by set: components.
     Split(Split),
+    /// All is found: what of it is proved.
+    Prove(Box<Proving>),
     /// All is known.
-    Done(Box<Decomposition>),
+    Done(Arc<Decomposition>),
 }
 
 /// Why a decomposition is made.
@@ -199,6 +205,7 @@ impl DecompositionSolve {
                 state.paths_of_loops.add(&paths);
                 split.advance(made, done.as_ref())
             }
+            Step::Prove(proving) => proving.advance(made, done.as_ref()),
         }
     }
 
@@ -232,6 +239,11 @@ impl DecompositionSolve {
                     known.doubts.extend(dimension.doubts);
                 }
             }
+            Step::Prove(proving) => {
+                let found = proving.take(problem);
+                state.step = Step::Done(Arc::new(found));
+                return;
+            }
             Step::Done(_) => {}
         }
         self.state.step = match self.state.sets.is_empty() {
@@ -260,21 +272,29 @@ impl DecompositionSolve {
                 found.verify(&second);
                 found.paths = second.paths;
                 found.paths_of_loops = second.paths_of_loops;
-                return Step::Done(Box::new(found));
+                return self.last_step(found);
             }
             (Purpose::Again, Some(first)) if !found.settled() && fewer_doubts(&first, &found) => {
                 let second = std::mem::replace(&mut found, *first);
                 found.paths = second.paths;
                 found.paths_of_loops = second.paths_of_loops;
-                return Step::Done(Box::new(found));
+                return self.last_step(found);
             }
             (Purpose::Again, _) if verify && found.settled() => (Purpose::Verify, second),
-            _ => return Step::Done(Box::new(found)),
+            _ => return self.last_step(found),
         };
         self.state.first = Some(Box::new(found));
         self.state.purpose = purpose;
         self.state.method = method;
         first_step(method, &self.problem)
+    }
+
+    /// What comes when all ways are gone: proofs where they are asked for.
+    fn last_step(&self, found: Decomposition) -> Step {
+        match self.state.options.certify {
+            true => Step::Prove(Box::new(Proving::new(found))),
+            false => Step::Done(Arc::new(found)),
+        }
     }
 
     /// Whether the cascade follows where the first way leaves something in doubt: where a way was not asked for, and
@@ -426,6 +446,7 @@ impl Solve for DecompositionSolve {
                 Step::Slices(slices) => slices.description(&self.problem),
                 Step::JunkFilter(_) => "telling junk from witness points".into(),
                 Step::Split(_) => "telling components apart".into(),
+                Step::Prove(proving) => proving.description(),
                 Step::Done(_) => "done".into(),
             },
             stages: self.state.stages.clone(),
@@ -436,7 +457,10 @@ impl Solve for DecompositionSolve {
 
     /// None: its answer is [`DecompositionSolve::decomposition`].
     fn answer(&self, _: &System) -> Option<Answer> {
-        self.decomposition().cloned().map(Answer::Decomposition)
+        match &self.state.step {
+            Step::Done(found) => Some(Answer::Decomposition(Arc::clone(found))),
+            _ => None,
+        }
     }
 }
 
@@ -646,7 +670,7 @@ mod tests {
         let Some(Answer::Decomposition(decomposition)) = solve.answer(system) else {
             panic!("a decomposition ends with one");
         };
-        (decomposition, kinds)
+        (Arc::unwrap_or_clone(decomposition), kinds)
     }
 
     #[test]
@@ -664,6 +688,7 @@ mod tests {
             for &method in methods {
                 let options = DecompositionOptions {
                     method: Some(method),
+                    certify: true,
                     ..DecompositionOptions::default()
                 };
                 let solve = DecompositionSolve::new(system, &options).unwrap();
@@ -683,6 +708,7 @@ mod tests {
             "Track Parameter",
             "LocalDimension",
             "Bend",
+            "Certify",
         ];
         for kind in kinds {
             assert!(done.contains(kind), "{kind}");

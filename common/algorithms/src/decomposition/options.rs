@@ -22,6 +22,8 @@ pub struct DecompositionOptions {
     pub method: Option<Method>,
     /// Whether a second way is compared with the first.
     pub verify: bool,
+    /// Whether witness points are proved, and which unions of them are no components.
+    pub certify: bool,
     /// How paths are tracked.
     pub settings: Settings,
     /// How verdicts are reached.
@@ -43,6 +45,7 @@ impl Default for DecompositionOptions {
             dimensions: None,
             method: None,
             verify: false,
+            certify: false,
             settings: Settings::default(),
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,

@@ -40,6 +40,12 @@ pub enum ProblemError {
     /// Nothing is cut out.
     #[error("every equation is identically 0: every point is a solution")]
     Everything,
+    /// Doubles do not hold its values, as of a product of hundreds of factors.
+    #[error(
+        "equation `{0}` has values beyond the range of doubles at points of size 1; expected an equation that can be \
+         divided by a number or written as several"
+    )]
+    Range(String),
     /// No set has such a dimension.
     #[error(
         "dimensions {lowest} to {highest} are asked; components have dimensions {least} to {most}"
@@ -131,7 +137,7 @@ impl Problem {
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
         let factors = FactorValues::new(&given, seed)?;
-        let levels = rank_at_random(&plain, variables, seed).min(given.equation_count());
+        let levels = rank_at_random(&plain, &given, seed)?.min(given.equation_count());
         if levels == 0 {
             return Err(ProblemError::Everything);
         }
@@ -502,12 +508,50 @@ pub(crate) fn with_values<'a>(
     Ok(Cow::Owned(fix_parameters(system, &exact)?))
 }
 
-fn rank_at_random(equations: &SlicedEquations, variables: usize, seed: u64) -> usize {
+/// Rank of the Jacobian at a random point; an error where a row of it is not finite, or 0 for its size.
+fn rank_at_random(
+    equations: &SlicedEquations,
+    given: &System,
+    seed: u64,
+) -> Result<usize, ProblemError> {
     let mut random = RandomStream::new(seed, Purpose::Probe, u64::MAX);
-    let point: Vec<Number> = (0..variables).map(|_| exactly(random.unit())).collect();
+    let point: Vec<Number> = (0..given.variable_count())
+        .map(|_| exactly(random.unit()))
+        .collect();
     let (_, columns) = equations.linear_part(&point, 0);
+    for (row, name) in given.equation_names.iter().enumerate() {
+        let size: f64 = columns.iter().map(|c| c[row].norm_sqr()).sum();
+        if !size.is_normal() {
+            return Err(ProblemError::Range(name.clone()));
+        }
+    }
     let values = Svd::of(columns).values;
     let largest = values.first().copied().unwrap_or(0.0);
     let clear = values.iter().filter(|&&s| s > RANK_AT_RANDOM * largest);
-    clear.count()
+    Ok(clear.count())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_beyond_the_range_of_doubles_are_refused_by_name() {
+        let product = |count: usize| {
+            let factors: Vec<String> = (1..=count)
+                .map(|k| format!("(90000000{}*x - 3*y + 7)*(3*x - 90000000{k}*y)", 60 + k))
+                .collect();
+            let text = format!(
+                "CONFIG\nEND;\nINPUT\nvariable_group x, y; function many; many = {};\nEND;\n",
+                factors.join("*")
+            );
+            let system = cognate_systems::formats::read("test", text.as_bytes())
+                .unwrap()
+                .system;
+            Problem::of_options(&system, &DecompositionOptions::default()).map(|_| ())
+        };
+        // The square of its values is beyond the range; the values are not.
+        assert_eq!(product(100), Ok(()));
+        assert_eq!(product(400), Err(ProblemError::Range("many".into())));
+    }
 }

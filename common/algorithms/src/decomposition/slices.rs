@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 /// How often a dimension is begun with other combinations and at another generic system, where paths from mixed cells
 /// were lost.
-const MOST_BEGINNINGS: u32 = 6;
+const MOST_BEGINNINGS: u32 = 8;
 
 /// Dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -151,11 +151,13 @@ impl Slices {
         self.beginnings / 2 % 2 == 1
     }
 
-    /// The tracking of a beginning: every other one gives paths up soon, since in another beginning they are others.
+    /// The tracking of a beginning: all but the last give paths up, since in another beginning they are others, and a
+    /// whole beginning takes less than the hardest of its paths; every other one does that later.
     fn beginning(&self, with: &Tracking, seed: u64) -> Tracking {
-        let with = match self.beginnings % 2 {
-            0 => with.soon_given_up(),
-            _ => with.clone(),
+        let with = match self.beginnings {
+            number if number + 1 == MOST_BEGINNINGS => with.clone(),
+            number if number % 2 == 1 => with.given_up_later(),
+            _ => with.soon_given_up(),
         };
         Tracking { seed, ..with }
     }

@@ -8,8 +8,10 @@
 
 use super::deflated::{Deflations, PureSet};
 use super::job::Job;
+use super::moved::{MovedPoints, bounded, is_closed};
 use super::problem::Problem;
-use cognate_continuation::bend::{Bend, Number, RefinedPoint, length, rounded};
+use super::proof::moving_slices;
+use cognate_continuation::bend::{length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_systems::slices::form;
@@ -23,14 +25,8 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A sum is 0 within this many times its error,
-const CLOSED: f64 = 1e3;
-/// ... and clearly not 0 above this many times its error.
+/// A sum is clearly not 0 above this many times its error.
 const OPEN: f64 = 1e7;
-/// Errors above this part of the derivatives tell nothing.
-const NOISY: f64 = 1e-16;
-/// Errors are not believed to be smaller than this part of the derivatives.
-const LEAST_NOISE: f64 = 1e-28;
 /// Most classes of which all unions are tried.
 const MOST_CLASSES: usize = 16;
 /// Most parts of a class of which all unions are tried, to tell a false loop.
@@ -72,7 +68,7 @@ enum Loops {
 pub(super) struct Split {
     set: PureSet,
     /// How the points move; `None` while that is asked.
-    bends: Option<Vec<Bend>>,
+    bends: Option<MovedPoints>,
     classes: Vec<Class>,
     smallest_wrong: Option<f64>,
     loops: u32,
@@ -133,7 +129,7 @@ impl Split {
             let Some(job) = done else {
                 return Some(self.ask_bends(problem));
             };
-            self.bends = Some(self.read_bends(job.answers()));
+            self.bends = Some(self.read_bends(job.answers(), own));
             let next = self.next_loop(problem, deflations);
             return next.or_else(|| self.mirror(problem, deflations));
         };
@@ -191,34 +187,23 @@ impl Split {
     /// The stage that asks how the points move when the slices do.
     fn ask_bends(&self, problem: &Problem) -> Job {
         let dimension = self.set.dimension;
-        let mut random = RandomStream::new(problem.seed(), Purpose::Detour, dimension as u64);
-        let slices = problem.slices(dimension);
-        let start = slices.concat();
-        let mut moved = slices;
-        for row in &mut moved {
-            row[0] += random.unit();
-        }
-        let ends = [start, moved.concat()];
+        let ends = moving_slices(problem, dimension);
         let points = self.set.doubles();
         Job::bend(self.set.whole(), ends, &points, &problem.tracking)
     }
 
     /// What workers found; where one found nothing, any error may be in the derivatives.
-    fn read_bends(&self, results: &[ItemResult]) -> Vec<Bend> {
-        let found = |(result, point): (&ItemResult, &RefinedPoint)| {
-            let length = point.point.len();
+    fn read_bends(&self, results: &[ItemResult], own: usize) -> MovedPoints {
+        let mut moved = MovedPoints::with_capacity(results.len(), own);
+        for (result, point) in results.iter().zip(&self.set.points) {
             let ItemResult::Bend(result) = result else {
                 unreachable!("a stage that asks for derivatives has no {result:?}")
             };
             let known = result.fact().map(|bend| &**bend);
-            let known = known.filter(|bend| bend.acceleration.len() == length);
-            known.cloned().unwrap_or_else(|| Bend {
-                velocity: vec![Number::zero(()); length],
-                acceleration: vec![Number::zero(()); length],
-                error: f64::INFINITY,
-            })
-        };
-        results.iter().zip(&self.set.points).map(found).collect()
+            let length = point.point.len();
+            moved.push(known.filter(|bend| bend.acceleration.len() == length));
+        }
+        moved
     }
 
     /// The next loop, where there are classes that it may bring together.
@@ -228,18 +213,13 @@ impl Split {
         let open = self.open().count();
         let more = self.idle < problem.idle_loops && self.loops < MOST_LOOPS;
         let untested = self.open().any(|class| self.is_untested(class, own));
-        if (open <= 1 && !untested) || self.hopeless(own) || !more {
+        if (open <= 1 && !untested) || self.hopeless() || !more {
             return None;
         }
         self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
         self.travellers.sort_unstable();
         let points = self.travelling();
         Some(self.track(problem, deflations, &points))
-    }
-
-    /// How the points move; empty where that was not asked.
-    fn bends(&self) -> &[Bend] {
-        self.bends.as_deref().unwrap_or(&[])
     }
 
     fn open(&self) -> impl Iterator<Item = &Class> {
@@ -312,21 +292,34 @@ impl Split {
 
     /// The witness point to which each path came back; `None` where they are no permutation.
     fn images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
+        let point = |k: usize| self.set.points[k].point[..own].iter().map(rounded);
+        // No two points are nearer than their values of a form of length 1.
+        let mut random = RandomStream::new(0, Purpose::Probe, 4);
+        let weight = 1.0 / (own as f64).sqrt();
+        let form: Vec<Complex64> = (0..own).map(|_| random.unit() * weight).collect();
+        let value = |x: &mut dyn Iterator<Item = Complex64>| -> f64 {
+            x.zip(&form).map(|(x, c)| (x * c).re).sum()
+        };
+        let travellers = self.travellers.iter();
+        let mut order: Vec<(f64, usize)> = travellers.map(|&k| (value(&mut point(k)), k)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut images = Vec::with_capacity(ends.len());
         for end in ends {
-            let distance = |&k: &usize| {
-                let point = self.set.points[k].point[..own].iter().map(rounded);
-                let pairs = point.zip(end).map(|(x, &y)| (x, x - y));
+            let size = 1.0 + end.iter().map(|y| y.norm_sqr()).sum::<f64>();
+            let distance = |k: usize| {
+                let pairs = point(k).zip(end).map(|(x, &y)| (x, x - y));
                 let (size, apart) = pairs.fold((1.0, 0.0), |(size, apart), (x, d)| {
                     (size + x.norm_sqr(), apart + d.norm_sqr())
                 });
                 apart / size
             };
-            let nearest = self
-                .travellers
+            let (at, reach) = (value(&mut end.iter().copied()), 2.0 * BACK * size.sqrt());
+            let first = order.partition_point(|(value, _)| *value < at - reach);
+            let near = order[first..]
                 .iter()
-                .map(|k| (distance(k), *k))
-                .min_by(|a, b| a.0.total_cmp(&b.0))?;
+                .take_while(|(value, _)| *value <= at + reach);
+            let near = near.map(|&(_, k)| (distance(k), k));
+            let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
             if nearest.0 > BACK * BACK {
                 return None;
             }
@@ -338,14 +331,18 @@ impl Split {
     }
 
     /// The sum of second derivatives over these points.
-    fn trace(&self, points: impl Iterator<Item = usize>, own: usize) -> Trace {
-        trace_of(points.map(|k| &self.bends()[k]), own)
+    fn trace(&self, points: impl Iterator<Item = usize>) -> Trace {
+        let moved = self.bends.as_ref();
+        moved.map_or_else(
+            || MovedPoints::default().trace(std::iter::empty()),
+            |m| m.trace(points),
+        )
     }
 
     /// Whether not even all open points together are closed: some are missing, and no loop helps.
-    fn hopeless(&self, own: usize) -> bool {
+    fn hopeless(&self) -> bool {
         let all = self.open().flat_map(|class| class.points.iter().copied());
-        !is_closed(&self.trace(all, own))
+        !is_closed(&self.trace(all))
     }
 
     /// Takes back what loops did in which paths jumped from one component to another: classes that one loop brought
@@ -374,7 +371,7 @@ impl Split {
 
     /// What the loops are worth that brought a class together, where it is closed.
     fn loops_of(&self, class: &Class, own: usize) -> Loops {
-        if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied(), own)) {
+        if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied())) {
             return Loops::Sound;
         }
         let places = class.points.iter().enumerate();
@@ -396,8 +393,7 @@ impl Split {
 
     /// Whether a proper union of these parts is closed.
     fn has_closed_part(&self, parts: &[Vec<usize>], own: usize) -> bool {
-        let sums: Vec<(Vec<Complex64>, f64)> =
-            parts.iter().map(|part| self.rough(part, own)).collect();
+        let sums: Vec<(Vec<Complex64>, f64)> = parts.iter().map(|part| self.rough(part)).collect();
         let closed = |mask: u32| {
             let members = (0..parts.len()).filter(|k| mask >> k & 1 == 1);
             let mut sum = vec![Complex64::default(); own];
@@ -409,7 +405,7 @@ impl Split {
                 }
             }
             let points = members.flat_map(|k| parts[k].iter().copied());
-            length(&sum) <= 1e-10 * lengths && is_closed(&self.trace(points, own))
+            length(&sum) <= 1e-10 * lengths && is_closed(&self.trace(points))
         };
         (1..(1u32 << parts.len()) - 1).any(closed)
     }
@@ -424,7 +420,7 @@ impl Split {
         self.take_jumps_back(own);
         for k in 0..self.classes.len() {
             if self.classes[k].closed.is_none() && !self.is_untested(&self.classes[k], own) {
-                let trace = self.trace(self.classes[k].points.iter().copied(), own);
+                let trace = self.trace(self.classes[k].points.iter().copied());
                 match is_closed(&trace) {
                     true => self.classes[k].closed = Some(trace),
                     false => self.wrong(&trace),
@@ -465,7 +461,7 @@ impl Split {
         // Sums in doubles leave few unions to be looked at in all digits.
         let rough: Vec<(Vec<Complex64>, f64)> = open
             .iter()
-            .map(|&k| self.rough(&self.classes[k].points, own))
+            .map(|&k| self.rough(&self.classes[k].points))
             .collect();
         for mask in masks {
             let chosen = (0..open.len()).filter(|k| mask >> k & 1 == 1);
@@ -485,7 +481,7 @@ impl Split {
             }
             let members: Vec<usize> = chosen.map(|k| open[k]).collect();
             let points = members.iter().flat_map(|&k| self.classes[k].points.clone());
-            let trace = self.trace(points, own);
+            let trace = self.trace(points);
             match is_closed(&trace) {
                 true => return Some((members, trace)),
                 false => self.wrong(&trace),
@@ -494,19 +490,9 @@ impl Split {
         None
     }
 
-    fn rough(&self, points: &[usize], own: usize) -> (Vec<Complex64>, f64) {
-        let mut sum = vec![Complex64::default(); own];
-        let mut lengths = 0.0;
-        for &k in points {
-            let bend = &self.bends()[k];
-            let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
-            let t = of(&bend.acceleration);
-            lengths += length(&t) + length(&of(&bend.velocity));
-            for (sum, t) in sum.iter_mut().zip(t) {
-                *sum += t;
-            }
-        }
-        (sum, lengths)
+    fn rough(&self, points: &[usize]) -> (Vec<Complex64>, f64) {
+        let moved = self.bends.as_ref();
+        moved.map_or_else(Default::default, |moved| moved.rough(points))
     }
 
     /// What was found of the set, and what it says of its dimension.
@@ -515,7 +501,6 @@ impl Split {
         problem: &Problem,
         deflations: &mut Deflations,
     ) -> (Vec<WitnessSet>, Dimension) {
-        let own = problem.variables();
         let kind = (self.set.dimension, self.set.ranks.as_slice());
         let points = self.set.points.iter().take(GAPS_ASKED);
         let gaps = points.map(|point| deflations.rank_gap(problem, kind, point));
@@ -557,7 +542,7 @@ impl Split {
         }
         if !left.is_empty() {
             left.sort_unstable();
-            let trace = self.trace(left.iter().copied(), own);
+            let trace = self.trace(left.iter().copied());
             if !is_closed(&trace) {
                 doubts.push(Doubt::PointsMissing);
             }
@@ -637,6 +622,7 @@ impl Split {
                     .map(condition)
                     .fold(0.0, f64::max)
                     .min(f64::MAX),
+                proof: None,
                 doubts,
             },
         }
@@ -672,51 +658,27 @@ fn parts<'a>(
 
 /// Joins the classes of each of these pairs of points.
 fn join(classes: &mut Vec<Class>, pairs: &[[usize; 2]]) {
-    let place = |classes: &[Class], point: usize| {
-        let holds = |class: &Class| class.points.contains(&point);
-        let place = classes.iter().position(holds);
-        place.expect("every point has a class")
-    };
-    for &[from, to] in pairs {
-        let (a, b) = (place(classes, from), place(classes, to));
-        if a != b {
-            let joined = classes.remove(a.max(b));
-            classes[a.min(b)].points.extend(joined.points);
+    let mut place: BTreeMap<usize, usize> = BTreeMap::new();
+    for (k, class) in classes.iter().enumerate() {
+        place.extend(class.points.iter().map(|&point| (point, k)));
+    }
+    let places: Vec<usize> = (0..classes.len()).collect();
+    let identity: BTreeMap<usize, usize> = places.iter().map(|&k| (k, k)).collect();
+    let joined: Vec<[usize; 2]> = pairs
+        .iter()
+        .map(|pair| pair.map(|point| place[&point]))
+        .collect();
+    let together = parts(&places, &identity, joined.iter());
+    let mut before: Vec<Option<Class>> = std::mem::take(classes).into_iter().map(Some).collect();
+    for members in together {
+        let mut taken = members.into_iter().filter_map(|k| before[k].take());
+        if let Some(mut first) = taken.next() {
+            for other in taken {
+                first.points.extend(other.points);
+            }
+            classes.push(first);
         }
     }
-}
-
-/// The number, or the largest where it is none.
-fn bounded(x: f64) -> f64 {
-    match x.is_finite() {
-        true => x,
-        false => f64::MAX,
-    }
-}
-
-/// The sum of second derivatives of these points in the first `own` unknowns.
-pub(crate) fn trace_of<'a>(bends: impl Iterator<Item = &'a Bend>, own: usize) -> Trace {
-    let mut sum = vec![Number::zero(()); own];
-    let (mut lengths, mut errors) = (0.0, 0.0);
-    for bend in bends {
-        let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
-        lengths += length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
-        errors += bend.error;
-        for (sum, t) in sum.iter_mut().zip(&bend.acceleration) {
-            sum.add(t);
-        }
-    }
-    let sum: Vec<Complex64> = sum.iter().map(rounded).collect();
-    Trace {
-        deviation: bounded(length(&sum) / lengths),
-        noise: bounded(errors / lengths).max(LEAST_NOISE),
-        precision_bits: 106,
-    }
-}
-
-/// Whether points with this sum are whole components.
-pub(crate) fn is_closed(trace: &Trace) -> bool {
-    trace.noise < NOISY && trace.deviation <= CLOSED * trace.noise
 }
 
 /// Where all paths of a stage arrived, in their order; `None` where one did not, or some met.
@@ -737,13 +699,13 @@ fn arrivals(job: &Job) -> Option<Vec<Vec<Complex64>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate_continuation::bend::{RefinedPoint, exactly};
+    use cognate_continuation::bend::{Bend, RefinedPoint, exactly};
     use cognate_solutions::witness::Multiplicity;
 
     /// Two components of so many points each, whose second derivatives sum to 0.
     fn two_components(degree: usize) -> Split {
         let mut random = RandomStream::new(5, Purpose::Test, 1);
-        let mut bends = Vec::new();
+        let mut bends = MovedPoints::with_capacity(2 * degree, 1);
         for _ in 0..2 {
             let mut sum = Complex64::default();
             for k in 0..degree {
@@ -753,11 +715,11 @@ mod tests {
                 let z = Complex64::new(part(&mut random), part(&mut random));
                 let z = if k + 1 == degree { -sum } else { z };
                 sum += z;
-                bends.push(Bend {
+                bends.push(Some(&Bend {
                     velocity: vec![exactly(Complex64::new(1.0, 0.0))],
                     acceleration: vec![exactly(z)],
                     error: 1e-28,
-                });
+                }));
             }
         }
         let point = |k: usize| RefinedPoint {
@@ -839,5 +801,35 @@ mod tests {
         assert!(closed(&split).is_empty());
         go_around(&mut split, &around);
         assert_eq!((closed(&split), split.broken), (components.to_vec(), 1));
+    }
+
+    #[test]
+    fn a_loop_that_is_no_permutation_brings_nothing_together() {
+        const DEGREE: usize = 20;
+        let around = |by: usize| -> Vec<usize> {
+            let mut images: Vec<usize> = (0..2 * DEGREE).collect();
+            images[..DEGREE].rotate_left(by);
+            images[DEGREE..].rotate_left(by);
+            images
+        };
+        let mut split = two_components(DEGREE);
+        // Two paths come to one point: one of them has left its way, perhaps to the other component.
+        let mut broken = around(1);
+        broken[3] = DEGREE + 4;
+        go_around(&mut split, &broken);
+        assert_eq!((split.classes.len(), split.broken), (2 * DEGREE, 1));
+        // A path comes to no witness point.
+        let place = |k: &usize| vec![Complex64::new(*k as f64, 0.0)];
+        let mut ends: Vec<Vec<Complex64>> = around(1).iter().map(place).collect();
+        ends[7][0] += 0.5;
+        split.close_loop(&ends, 1);
+        assert_eq!((split.classes.len(), split.broken), (2 * DEGREE, 2));
+        // Sound loops do what they do without broken ones.
+        go_around(&mut split, &around(1));
+        go_around(&mut split, &around(3));
+        let all: Vec<usize> = (0..2 * DEGREE).collect();
+        let expected = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        assert_eq!(closed(&split), expected);
+        assert_eq!((split.loops, split.broken), (4, 2));
     }
 }

@@ -3,7 +3,7 @@
 
 use super::{Context, Operand};
 use crate::decomposition::job::{Job, StageSystem};
-use crate::decomposition::split::{is_closed, trace_of};
+use crate::decomposition::moved::{MovedPoints, is_closed};
 use cognate_continuation::bend::{Bend, doubles_of};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
@@ -59,7 +59,9 @@ impl Check {
             self.bending = false;
             let operand = &with.operands[self.found.len()];
             let bends: Vec<&Bend> = job.answers().iter().filter_map(bend_of).collect();
-            let trace = trace_of(bends.iter().copied(), with.problem.variables());
+            let mut moved = MovedPoints::with_capacity(bends.len(), with.problem.variables());
+            bends.iter().for_each(|bend| moved.push(Some(*bend)));
+            let trace = moved.whole();
             self.found.push(CheckedComponent {
                 id: operand.id,
                 closed: bends.len() == operand.degree() && is_closed(&trace),

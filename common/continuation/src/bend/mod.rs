@@ -10,10 +10,11 @@ pub mod stage;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::scalar::{Complex, DoubleDouble, Jet, Real};
-use cognate_systems::evaluation::{Evaluate, Interpreter};
+use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
 
 /// A number of about 32 digits.
 pub type Number = Complex<DoubleDouble<f64>>;
@@ -37,7 +38,13 @@ pub struct SlicedEquations {
     slices: Vec<Vec<Complex64>>,
     /// Values of the parameters.
     parameters: Vec<Number>,
+    /// Work spaces with the constants rounded, which are copied: rounding them takes longer than an evaluation.
+    doubled: Scratch<DoubleDouble<f64>>,
+    series: OnceLock<Scratch<Series>>,
 }
+
+/// A number with its derivatives along a line.
+type Series = Jet<DoubleDouble<f64>>;
 
 /// A witness point with all its digits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -135,8 +142,11 @@ impl SlicedEquations {
     pub fn new(system: &System, slices: Vec<Vec<Complex64>>) -> Self {
         let variables = system.variable_count();
         let (e, equations) = (&system.expressions, &system.equations);
+        let equations = Interpreter::compile(e, equations, variables, 0);
         Self {
-            equations: Interpreter::compile(e, equations, variables, 0),
+            doubled: equations.scratch(()),
+            series: OnceLock::new(),
+            equations,
             variables,
             slices,
             parameters: Vec::new(),
@@ -148,8 +158,11 @@ impl SlicedEquations {
     pub fn at_parameters(system: &System, values: &[Complex64]) -> Self {
         let variables = system.variable_count();
         let (e, equations) = (&system.expressions, &system.equations);
+        let equations = Interpreter::compile(e, equations, variables, values.len());
         Self {
-            equations: Interpreter::compile(e, equations, variables, values.len()),
+            doubled: equations.scratch(()),
+            series: OnceLock::new(),
+            equations,
             variables,
             slices: Vec::new(),
             parameters: values.iter().map(|&z| exactly(z)).collect(),
@@ -168,7 +181,7 @@ impl SlicedEquations {
     fn linearize(&self, x: &[Number]) -> Matrix<DoubleDouble<f64>> {
         let (rows, n) = (self.rows(), self.variables);
         let mut matrix = Matrix::zeros((), rows, n + 2);
-        let mut scratch = Evaluate::<DoubleDouble<f64>>::scratch(&self.equations, ());
+        let mut scratch = self.doubled.clone();
         self.equations
             .jacobian(x, &self.parameters, &mut matrix, &mut scratch);
         let mut all = Matrix::zeros((), rows + self.slices.len(), n + 1);
@@ -305,7 +318,6 @@ impl SlicedEquations {
     /// The first and the second derivative in s of the equations along x + s u, where the parameters change
     /// by s q.
     fn derivatives(&self, x: &[Number], u: &[Number], q: &[Number]) -> Vec<[Number; 2]> {
-        type Series = Jet<DoubleDouble<f64>>;
         let zero = || DoubleDouble::from_f64((), 0.0);
         let series = |c0: &DoubleDouble<f64>, c1: &DoubleDouble<f64>| -> Series {
             Jet([*c0, *c1, zero(), zero(), zero()])
@@ -321,7 +333,8 @@ impl SlicedEquations {
         };
         let (x, parameters) = (along(x, u), along(&self.parameters, q));
         let mut values = vec![Complex::<Series>::zero(()); self.rows()];
-        let mut scratch = Evaluate::<Series>::scratch(&self.equations, ());
+        let made = || Evaluate::<Series>::scratch(&self.equations, ());
+        let mut scratch = self.series.get_or_init(made).clone();
         self.equations
             .value(&x, &parameters, &mut values, &mut scratch);
         let both = |z: &Complex<Series>| {

@@ -10,14 +10,14 @@ mod distinct;
 mod line;
 mod reality;
 
+pub use boxes::Groups;
+pub use distinct::{Distinctness, judge};
 pub use line::{Attempt, CertifiedCoordinate, CertifiedSystem, SolutionCertificate};
 
 use crate::involution::Involution;
 use crate::solution_set::SolutionSet;
-use boxes::Groups;
 use cognate_continuation::certification::{Certificate, certified_system};
 use cognate_systems::system::System;
-use distinct::Distinctness;
 use num_complex::Complex64;
 
 /// Adds to a finished set what was certified of its solutions.

@@ -77,6 +77,16 @@ pub enum Doubt {
         /// How many loops.
         loops: u64,
     },
+    /// No box proves these witness points, where proofs were asked for.
+    NotProved {
+        /// How many.
+        points: u64,
+    },
+    /// The boxes of these witness points may meet others of the dimension.
+    NotDistinct {
+        /// How many.
+        points: u64,
+    },
 }
 
 /// In formats for people an object with its kind and its fields; elsewhere as a variant by number, since a format
@@ -188,7 +198,48 @@ impl fmt::Display for Doubt {
                     counted(loops, "loop")
                 )
             }
+            Self::NotProved { points } => {
+                write!(f, "{} without a proof", counted(points, "witness point"))
+            }
+            Self::NotDistinct { points } => write!(
+                f,
+                "{} that may be others of the dimension again",
+                counted(points, "witness point")
+            ),
         }
+    }
+}
+
+/// What is proved of a witness set, by boxes that hold its points and their derivatives along a moving slice.
+///
+/// What stays evidence: that the points lie on components of this dimension where only combinations of the equations
+/// are proved to hold, that none is missing, and that the slice is general.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Proof {
+    /// Witness points that are each alone in a box: the only solution there of the slice and of as many combinations
+    /// of the equations as are tracked.
+    pub points: u64,
+    /// ... of which the boxes meet no other of the dimension.
+    pub distinct: u64,
+    /// Whether these are the given equations themselves.
+    pub all_equations: bool,
+    /// Unions of witness points that are no components: intervals of their sums of second derivatives do not hold 0.
+    pub unions: u64,
+    /// Where the points are those of whole components, none of these has a smaller degree.
+    pub least_degree: u64,
+    /// Where they are, they are those of one: no proper union is left.
+    pub irreducible: bool,
+}
+
+impl Proof {
+    /// Takes another witness set beside this one.
+    pub fn add(&mut self, other: &Self) {
+        self.points += other.points;
+        self.distinct += other.distinct;
+        self.all_equations &= other.all_equations;
+        self.unions += other.unions;
+        self.least_degree = self.least_degree.min(other.least_degree);
+        self.irreducible &= other.irreducible;
     }
 }
 
@@ -207,6 +258,9 @@ pub struct Evidence {
     pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: f64,
+    /// What is proved; `None` where no proof was asked for.
+    #[serde(default)]
+    pub proof: Option<Proof>,
     /// What is not clear.
     pub doubts: Vec<Doubt>,
 }

@@ -16,7 +16,7 @@ pub mod witness_set;
 
 pub use answer::Answer;
 pub use decomposition::{Decomposition, Dimension, TrackedPaths};
-pub use evidence::{Doubt, Evidence, Trace};
+pub use evidence::{Doubt, Evidence, Proof, Trace};
 pub use method::{Method, Verification};
 pub use question::Question;
 pub use witness_set::{ComponentId, Irreducible, Multiplicity, WitnessSet};

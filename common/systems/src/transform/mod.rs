@@ -1,6 +1,7 @@
 //! Systems made from systems.
 
 mod affine_chart;
+mod bent;
 pub mod clear_denominators;
 mod combine;
 mod critical;
@@ -14,6 +15,7 @@ mod rescale;
 mod slice;
 
 pub use affine_chart::affine_chart;
+pub use bent::bent;
 pub use combine::{combine, combine_few, equilibrate};
 pub use critical::{MOST_CRITICAL_VARIABLES, critical, fibre};
 pub use deflate::deflate;

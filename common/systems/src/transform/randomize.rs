@@ -124,7 +124,12 @@ pub(super) fn scaled(system: &System, out: &mut Expressions, seed: u64) -> Vec<N
             .collect();
         program.value(&x, &p, &mut values, &mut scratch);
         for (size, value) in sizes.iter_mut().zip(&values) {
-            *size = size.max(value.norm_sqr().sqrt());
+            let square = value.norm_sqr();
+            // A product of many factors has a square beyond what doubles hold.
+            *size = size.max(match square.is_normal() {
+                true => square.sqrt(),
+                false => value.re.hypot(value.im),
+            });
         }
     }
     system

@@ -7,7 +7,7 @@ use super::json;
 use super::table::Lines;
 use super::text::{Columns, Look, count, counted, magnitude, seconds, wrapped};
 use crate::error::{ClientError, Exit};
-use cognate_solutions::witness::Irreducible;
+use cognate_solutions::witness::{Irreducible, Proof};
 use cognate_summary::decomposition::{ComponentBlock, DecompositionSummary};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
@@ -34,6 +34,7 @@ pub fn table(summary: &DecompositionSummary, files: Option<&Path>, look: Look) -
     }
     text.push_str(&indented(&dimensions(summary, look)));
     text.push('\n');
+    text.push_str(&proofs(summary, look));
     let (paths, loops) = (&summary.paths.superset, &summary.paths.loops);
     let number = (count(paths.total.max(loops.total)).len() + 1).max(6);
     let mut lines = Lines::new(look, number);
@@ -206,6 +207,75 @@ fn evidence(alike: &[ComponentBlock]) -> String {
         Some(least) => format!("{trace}, wrong {}", magnitude(least)),
         None => trace,
     }
+}
+
+/// What is proved, and what stays evidence; empty where no proof was asked for.
+fn proofs(summary: &DecompositionSummary, look: Look) -> String {
+    let found = &summary.decomposition.components;
+    let proved = found.iter().filter_map(|c| Some((c, c.evidence.proof?)));
+    let proved: Vec<(&ComponentBlock, Proof)> = proved.collect();
+    let Some(mut all) = proved.first().map(|(_, proof)| *proof) else {
+        return String::new();
+    };
+    proved[1..].iter().for_each(|(_, proof)| all.add(proof));
+    let points: u64 = found.iter().map(|c| c.degree * c.count).sum();
+    let counted_if = |is: &dyn Fn(&Proof) -> bool| -> u64 {
+        let of = proved.iter().filter(|(_, proof)| is(proof));
+        of.map(|(c, _)| c.count).sum()
+    };
+    let components: u64 = found.iter().map(|c| c.count).sum();
+    let (given, whole) = (
+        counted_if(&|proof| proof.all_equations),
+        counted_if(&|proof| proof.irreducible),
+    );
+    let mut text = String::new();
+    let mut say = |lead: &str, what: &str| {
+        let blank = " ".repeat(lead.len());
+        for (i, line) in wrapped(what, look.width - lead.len()).iter().enumerate() {
+            let lead = if i == 0 { lead } else { &blank };
+            let _ = writeln!(text, "{lead}{line}");
+        }
+    };
+    say(
+        "  proved:   ",
+        &format!(
+            "{} of {} witness points alone in boxes, {} of them in boxes that meet no other, as solutions of the \
+             slices and, in {} of {} components, of the given equations, in the others of combinations of them; \
+             {} of witness points proved to be no component",
+            count(all.points),
+            count(points),
+            count(all.distinct),
+            count(given),
+            count(components),
+            counted(all.unions, "union")
+        ),
+    );
+    say(
+        "            ",
+        &format!(
+            "given that no witness point is missing, {} of {} components are irreducible",
+            count(whole),
+            count(components)
+        ),
+    );
+    for (component, proof) in proved
+        .iter()
+        .filter(|(_, proof)| !proof.irreducible)
+        .take(DOUBTS_SHOWN)
+    {
+        let (id, least) = (&component.id, proof.least_degree);
+        say(
+            "            ",
+            &format!("{id}: none in it has a degree below {}", count(least)),
+        );
+    }
+    say(
+        "  evidence: ",
+        "that no witness point is missing: traces and counts; what loops brought together; equations that are not among \
+         the combinations",
+    );
+    text.push('\n');
+    text
 }
 
 fn dimensions(summary: &DecompositionSummary, look: Look) -> String {

@@ -1,0 +1,384 @@
+//! Proofs of a decomposition that is found: witness points in boxes, and which unions of them are no components.
+//!
+//! For all components of one dimension with the same equations two stages follow one another: derivatives of the
+//! witness points along a moving slice, and Krawczyk's test of the equations that points and derivatives solve together
+//! ([`cognate_systems::transform::bent`]). Its boxes enclose both. A point that is a component has no derivatives:
+//! its box is that of the point alone.
+
+use super::deflated::Deflations;
+use super::job::{Job, StageSystem};
+use super::problem::Problem;
+use super::unions::{Enclosed, exclude};
+use cognate_continuation::bend::{Bend, doubles_of};
+use cognate_continuation::certification::Certificate;
+use cognate_continuation::item_result::ItemResult;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::certificates::{Distinctness, Groups, judge};
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::witness::{Decomposition, Doubt, Irreducible, Proof};
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+/// Components with the same equations: dimension, highest first, and rank of the Jacobian before each deflation.
+type Kind = (Reverse<u32>, Vec<u32>);
+
+/// A witness point: the place of its component, and its own place there.
+type Place = (usize, usize);
+
+/// What is proved so far, kind of component by kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Proving {
+    found: Decomposition,
+    /// Kinds of components that are done.
+    done: usize,
+    /// Points of the kind that is next, with the start values of the stage that proves them; empty before their
+    /// derivatives are known.
+    asked: Vec<Place>,
+    bending: bool,
+    /// Witness points and derivatives in their boxes.
+    proved: Vec<(Place, Certificate)>,
+}
+
+impl Proving {
+    pub fn new(found: Decomposition) -> Self {
+        Self {
+            found,
+            done: 0,
+            asked: Vec::new(),
+            bending: false,
+            proved: Vec::new(),
+        }
+    }
+
+    /// Components by kind.
+    fn kinds(&self) -> BTreeMap<Kind, Vec<usize>> {
+        let mut kinds: BTreeMap<Kind, Vec<usize>> = BTreeMap::new();
+        for (place, set) in self.found.components.iter().enumerate() {
+            let kind = (Reverse(set.dimension()), set.deflation.clone());
+            kinds.entry(kind).or_default().push(place);
+        }
+        kinds
+    }
+
+    /// Learns from the stage that is done, and says which comes next.
+    pub fn advance(
+        &mut self,
+        (problem, deflations): (&Problem, &mut Deflations),
+        done: Option<&Job>,
+    ) -> Option<Job> {
+        let kinds = self.kinds();
+        let mut left = kinds.into_iter().skip(self.done);
+        let ((Reverse(dimension), ranks), members) = left.next()?;
+        let dimension = dimension as usize;
+        let tracked = StageSystem::Tracked {
+            ranks: ranks.clone(),
+            dimension,
+        };
+        match done {
+            Some(job) if self.bending => {
+                self.bending = false;
+                let points = self.with_derivatives(job);
+                let system = StageSystem::Bent { ranks, dimension };
+                let [slices, moved] = moving_slices(problem, dimension);
+                let velocity = moved.iter().zip(&slices).map(|(to, from)| to - from);
+                let parameters = slices.iter().copied().chain(velocity).collect();
+                return Some(Job::certify(system, parameters, &points, &problem.tracking));
+            }
+            Some(job) => {
+                let pairs = std::mem::take(&mut self.asked).into_iter();
+                let pairs = pairs.zip(job.answers());
+                let proved =
+                    pairs.filter_map(|(place, result)| Some((place, certificate(result)?)));
+                self.proved.extend(proved);
+                self.done += 1;
+                return self.advance((problem, deflations), None);
+            }
+            None => {}
+        }
+        let mut points = Vec::new();
+        for component in members {
+            let own = &self.found.components[component].points;
+            let own: Vec<_> = own.iter().map(|p| problem.to_unknowns(p)).collect();
+            let slices = problem.slices(dimension);
+            let refined = deflations.points_on(problem, (&slices, &ranks), &own);
+            for (place, point) in refined.into_iter().enumerate() {
+                if let Some(point) = point {
+                    self.asked.push((component, place));
+                    points.push(doubles_of(&point.point));
+                }
+            }
+        }
+        if points.is_empty() {
+            self.done += 1;
+            return self.advance((problem, deflations), None);
+        }
+        let [slices, moved] = moving_slices(problem, dimension);
+        let with = &problem.tracking;
+        if dimension == 0 {
+            return Some(Job::certify(tracked, slices, &points, with));
+        }
+        self.bending = true;
+        Some(Job::bend(tracked, [slices, moved], &points, with))
+    }
+
+    /// The points with their derivatives, those that have none left out.
+    fn with_derivatives(&mut self, job: &Job) -> Vec<Vec<Complex64>> {
+        let mut points = Vec::new();
+        let mut places = std::mem::take(&mut self.asked).into_iter();
+        for result in job.answers() {
+            let place = places.next();
+            let ItemResult::Bend(result) = result else {
+                continue;
+            };
+            if let (Some(place), Some(bend)) = (place, result.fact()) {
+                let Bend {
+                    velocity,
+                    acceleration,
+                    ..
+                } = &**bend;
+                let all = [
+                    result.point.clone(),
+                    doubles_of(velocity),
+                    doubles_of(acceleration),
+                ];
+                points.push(all.concat());
+                self.asked.push(place);
+            }
+        }
+        points
+    }
+
+    /// The decomposition with what is proved of it. What was asked to be proved and is not is in doubt.
+    pub fn take(&mut self, problem: &Problem) -> Decomposition {
+        let own = problem.variables();
+        let proved = std::mem::take(&mut self.proved);
+        let distinct = self.distinct(&proved, own, problem.seed());
+        let mut of_component: BTreeMap<usize, Vec<(&Certificate, bool)>> = BTreeMap::new();
+        for (((component, _), certificate), distinct) in proved.iter().zip(distinct) {
+            let known = of_component.entry(*component).or_default();
+            known.push((certificate, distinct));
+        }
+        for (place, set) in self.found.components.iter_mut().enumerate() {
+            let codimension = own - set.dimension() as usize;
+            let known = of_component.remove(&place).unwrap_or_default();
+            let mut proof = Proof {
+                points: known.len() as u64,
+                distinct: known.iter().filter(|(_, distinct)| *distinct).count() as u64,
+                all_equations: set.deflation.is_empty()
+                    && problem.given.equation_count() == codimension,
+                ..Proof::default()
+            };
+            let mut doubts = Vec::new();
+            if proof.points < set.degree {
+                let points = set.degree - proof.points;
+                doubts.push(Doubt::NotProved { points });
+            } else if set.dimension() == 0 {
+                (proof.least_degree, proof.irreducible) = (1, true);
+            } else {
+                let derivatives = known.iter().map(|(c, _)| second_derivative(c, own));
+                let derivatives: Vec<Enclosed> = derivatives.collect();
+                let found = exclude(&derivatives, problem.seed());
+                proof.unions = found.unions;
+                proof.least_degree = found.least_degree;
+                proof.irreducible = found.all && found.whole_may_be_closed;
+                let refuted = !found.whole_may_be_closed || found.closed_part;
+                if refuted && set.irreducible == Irreducible::Yes {
+                    set.irreducible = Irreducible::Unsettled;
+                    doubts.push(match found.whole_may_be_closed {
+                        true => Doubt::Open { classes: 1 },
+                        false => Doubt::PointsMissing,
+                    });
+                }
+            }
+            if proof.distinct < proof.points {
+                let points = proof.points - proof.distinct;
+                doubts.push(Doubt::NotDistinct { points });
+            }
+            set.evidence.doubts.extend(doubts);
+            set.evidence.proof = Some(proof);
+        }
+        for dimension in &mut self.found.dimensions {
+            let own = self.found.components.iter();
+            let mut own = own.filter(|set| set.dimension() == dimension.number);
+            let doubted = own.any(|set| set.evidence.doubts.contains(&Doubt::PointsMissing));
+            if doubted && dimension.complete == Completeness::Yes {
+                dimension.complete = Completeness::NotKnown;
+            }
+        }
+        self.found.clone()
+    }
+
+    /// Whether each box meets no other of its dimension.
+    fn distinct(&self, proved: &[(Place, Certificate)], own: usize, seed: u64) -> Vec<bool> {
+        let mut distinct = vec![false; proved.len()];
+        let mut by_dimension: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (k, ((component, _), _)) in proved.iter().enumerate() {
+            let dimension = self.found.components[*component].dimension();
+            by_dimension.entry(dimension).or_default().push(k);
+        }
+        let groups = Groups {
+            homogeneous: Vec::new(),
+            affine: (0..own).collect(),
+        };
+        for members in by_dimension.into_values() {
+            let boxes: Vec<Certificate> = members
+                .iter()
+                .map(|&k| of_point(&proved[k].1, own))
+                .collect();
+            let verdicts = judge(&boxes.iter().collect::<Vec<_>>(), &groups, seed);
+            for (k, verdict) in members.into_iter().zip(verdicts) {
+                distinct[k] = verdict == Distinctness::Proved;
+            }
+        }
+        distinct
+    }
+
+    /// How many kinds of components are done, and of how many.
+    pub fn description(&self) -> String {
+        let (done, all) = (self.done, self.kinds().len());
+        format!("proving witness points: {done} of {all} kinds of components")
+    }
+}
+
+/// Coefficients of the slices of a dimension, and those to which they move.
+pub(super) fn moving_slices(problem: &Problem, dimension: usize) -> [Vec<Complex64>; 2] {
+    let mut random = RandomStream::new(problem.seed(), Purpose::Detour, dimension as u64);
+    let slices = problem.slices(dimension);
+    let start = slices.concat();
+    let mut moved = slices;
+    for row in &mut moved {
+        row[0] += random.unit();
+    }
+    [start, moved.concat()]
+}
+
+fn certificate(result: &ItemResult) -> Option<Certificate> {
+    match result {
+        ItemResult::Certify(result) => result.fact()?.certificate().cloned(),
+        _ => None,
+    }
+}
+
+/// The box of the point alone, in the first coordinates.
+fn of_point(certificate: &Certificate, own: usize) -> Certificate {
+    Certificate {
+        centre: certificate.centre[..own].to_vec(),
+        radius: certificate.radius[..own].to_vec(),
+        error: certificate.error[..own].to_vec(),
+        ..*certificate
+    }
+}
+
+/// The box of the second derivative of the first coordinates.
+fn second_derivative(certificate: &Certificate, own: usize) -> Enclosed {
+    let unknowns = certificate.dimension() / 3;
+    let all = certificate.lies_in::<f64>(());
+    all[2 * unknowns..2 * unknowns + own].to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decomposition::{DecompositionOptions, DecompositionSolve, Step, run_locally};
+    use cognate_systems::formats;
+    use cognate_systems::system::System;
+    use std::collections::BTreeSet;
+
+    fn system(text: &str) -> System {
+        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
+        formats::read("test", text.as_bytes()).unwrap().system
+    }
+
+    fn proved(text: &str) -> Decomposition {
+        let options = DecompositionOptions {
+            certify: true,
+            ..DecompositionOptions::default()
+        };
+        let solve = DecompositionSolve::new(&system(text), &options).unwrap();
+        run_locally(solve, 8).unwrap()
+    }
+
+    #[test]
+    fn every_kind_of_component_is_proved() {
+        // A surface, a double curve, lines, and points of multiplicities 1 to 3.
+        let found = proved(
+            "variable_group x, y, z; function f, g, h; \
+             f = (x^2 + y^2 + z^2 - 4)*(y - x^2)^2*(x - 1)*(x - 3); \
+             g = (x^2 + y^2 + z^2 - 4)*(z - x*y)*(y - 1)*(y - 5*x); \
+             h = (x^2 + y^2 + z^2 - 4)*(z - x*y)*(z^2 - 7)*(z + x - 9);",
+        );
+        assert!(found.settled());
+        let mut kinds = BTreeSet::new();
+        for set in &found.components {
+            let proof = set.evidence.proof.unwrap();
+            assert_eq!((proof.points, proof.distinct), (set.degree, set.degree));
+            assert!(proof.irreducible && proof.least_degree == set.degree);
+            let reduced = set.deflation.is_empty();
+            assert_eq!(proof.all_equations, set.dimension() == 0 && reduced);
+            kinds.insert((set.dimension(), reduced));
+        }
+        let expected = [(0, false), (0, true), (1, false), (1, true), (2, true)];
+        assert_eq!(kinds.into_iter().collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn a_wrong_answer_is_not_proved() {
+        // Two circles and a parabola.
+        let text = "variable_group x, y; function f; \
+                    f = (x^2 + y^2 - 4)*(x^2 + 3*y^2 - 5)*(y - x^2);";
+        let right = proved(text);
+        let again = |spoil: &dyn Fn(&mut Decomposition)| {
+            let mut found = right.clone();
+            found
+                .components
+                .iter_mut()
+                .for_each(|set| set.evidence.proof = None);
+            spoil(&mut found);
+            let options = DecompositionOptions::default();
+            let mut solve = DecompositionSolve::new(&system(text), &options).unwrap();
+            solve.state.step = Step::Prove(Box::new(Proving::new(found)));
+            run_locally(solve, 8).unwrap()
+        };
+        assert_eq!(again(&|_| {}), right);
+        let proof = |found: &Decomposition, k: usize| found.components[k].evidence.proof.unwrap();
+        // Points of two components are exchanged.
+        let swapped = again(&|found| {
+            let point = found.components[0].points[1].clone();
+            let other = std::mem::replace(&mut found.components[1].points[0], point);
+            found.components[0].points[1] = other;
+        });
+        assert!(!swapped.settled());
+        for k in [0, 1] {
+            assert!(!proof(&swapped, k).irreducible);
+            let doubts = &swapped.components[k].evidence.doubts;
+            assert_eq!(*doubts, [Doubt::PointsMissing]);
+        }
+        assert_eq!(swapped.components[2], right.components[2]);
+        // Two components are taken for one.
+        let joined = again(&|found| {
+            let second = found.components.remove(1);
+            found.components[0].points.extend(second.points);
+            found.components[0].degree = 4;
+        });
+        assert_eq!(proof(&joined, 0).least_degree, 2);
+        assert!(!proof(&joined, 0).irreducible && !joined.settled());
+        // A point is there twice, in two components.
+        let twice = again(&|found| {
+            let point = found.components[0].points[1].clone();
+            found.components[1].points.push(point);
+            found.components[1].degree = 3;
+        });
+        let doubts = &twice.components[1].evidence.doubts;
+        assert!(
+            doubts.contains(&Doubt::NotDistinct { points: 1 }),
+            "{doubts:?}"
+        );
+        // A point is none.
+        let moved = again(&|found| found.components[2].points[0][1] += 0.01);
+        let doubts = &moved.components[2].evidence.doubts;
+        assert_eq!(*doubts, [Doubt::NotProved { points: 1 }]);
+        assert_eq!(proof(&moved, 2).points, 1);
+    }
+}
