@@ -552,6 +552,6 @@ mod tests {
         };
         // The square of its values is beyond the range; the values are not.
         assert_eq!(product(8), Ok(()));
-        assert_eq!(product(40), Err(ProblemError::Range("many".into())));
+        assert_eq!(product(100), Err(ProblemError::Range("many".into())));
     }
 }
