@@ -128,7 +128,7 @@ pub(super) fn scaled(system: &System, out: &mut Expressions, seed: u64) -> Vec<N
             // A product of many factors has a square beyond what doubles hold.
             *size = size.max(match square.is_normal() {
                 true => square.sqrt(),
-                false => value.re.hypot(value.im),
+                false => value.re.abs().max(value.im.abs()),
             });
         }
     }
