@@ -7,6 +7,7 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_systems::transform::slice;
 use cognate_tests::measures::cpu_seconds;
 use num_complex::Complex64;
@@ -41,11 +42,12 @@ fn main() {
         .expect("a problem")
         .system;
     let sliced = slice(&system, 1, UNKNOWNS);
-    let coefficient = |k: usize| Complex64::from_polar(1.0, 1.0 + k as f64);
-    let forms = point.iter().enumerate().map(|(k, x)| coefficient(k) * x);
+    let mut random = RandomStream::new(1, Purpose::Test, 0);
+    let coefficients: Vec<Complex64> = (0..UNKNOWNS).map(|_| random.unit()).collect();
+    let forms = point.iter().zip(&coefficients).map(|(x, c)| c * x);
     let constant = -forms.sum::<Complex64>();
     let mut start = vec![constant];
-    start.extend((0..UNKNOWNS).map(coefficient));
+    start.extend(coefficients);
     let mut target = start.clone();
     target[0] += Complex64::new(0.6, 0.8);
     let near = |k: usize| {
