@@ -181,41 +181,7 @@ impl<R: Real> Lockstep<'_, R> {
                 infinity_turns,
                 power_sum,
             } => {
-                let path = &self.lanes[lane];
-                let homotopy = self.tracking.homotopy;
-                let far_out = match winding_number {
-                    Some(1) => {
-                        far_out::find_isolated(homotopy, settings, &path.cauchy.mean(), target)
-                    }
-                    _ => None,
-                };
-                let (end, endpoint) = match far_out {
-                    Some((report, endpoint)) => (
-                        End {
-                            outcome: PathOutcome::Regular,
-                            t: Complex64::default(),
-                            report,
-                            winding_number,
-                            infinity_turns: Vec::new(),
-                        },
-                        endpoint,
-                    ),
-                    None => (
-                        End {
-                            outcome: PathOutcome::Diverging,
-                            t: Complex64::new(path.cauchy.radius(), 0.0),
-                            report: Report {
-                                accuracy: power_sum.unwrap_or(f64::INFINITY),
-                                ..Report::unknown()
-                            },
-                            winding_number,
-                            infinity_turns,
-                        },
-                        homotopy.endpoint(&self.point),
-                    ),
-                };
-                self.record(lane, end, endpoint);
-                self.refill(lane);
+                self.diverge(lane, winding_number, infinity_turns, power_sum);
             }
             cauchy::Next::Finer => {
                 let path = &mut self.lanes[lane];
@@ -228,6 +194,52 @@ impl<R: Real> Lockstep<'_, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
+    }
+
+    /// Turns have taken a path for one to infinity: it is, unless it ends far out.
+    fn diverge(
+        &mut self,
+        lane: usize,
+        winding_number: Option<u32>,
+        infinity_turns: Vec<i32>,
+        power_sum: Option<f64>,
+    ) {
+        let path = &self.lanes[lane];
+        let homotopy = self.tracking.homotopy;
+        let far_out = match winding_number {
+            Some(1) => {
+                let mean = path.cauchy.mean();
+                far_out::find_isolated(homotopy, &self.settings, &mean, path.target)
+            }
+            _ => None,
+        };
+        let (end, endpoint) = match far_out {
+            Some((report, endpoint)) => (
+                End {
+                    outcome: PathOutcome::Regular,
+                    t: Complex64::default(),
+                    report,
+                    winding_number,
+                    infinity_turns: Vec::new(),
+                },
+                endpoint,
+            ),
+            None => (
+                End {
+                    outcome: PathOutcome::Diverging,
+                    t: Complex64::new(path.cauchy.radius(), 0.0),
+                    report: Report {
+                        accuracy: power_sum.unwrap_or(f64::INFINITY),
+                        ..Report::unknown()
+                    },
+                    winding_number,
+                    infinity_turns,
+                },
+                homotopy.endpoint(&self.point),
+            ),
+        };
+        self.record(lane, end, endpoint);
+        self.refill(lane);
     }
 
     /// The endgame's generic form of how far a path is from where its turns began: on the higher
