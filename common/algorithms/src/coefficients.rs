@@ -13,7 +13,7 @@ use std::borrow::Cow;
 const WIDE_RANGE: f64 = 20.0;
 /// The same where they may have been rounded.
 const WIDE_RANGE_OF_ROUNDED: f64 = 40.0;
-/// A binary fraction with a larger denominator was rounded, as a decimal with more digits was.
+/// A fraction with a larger denominator was rounded, as a decimal with more digits was.
 const LARGEST_DENOMINATOR: u32 = 100_000_000;
 /// Ranges are told apart up to here: a double holds its inverse.
 const WIDEST_RANGE: f64 = 900.0;
@@ -23,8 +23,6 @@ pub(crate) struct Coefficients {
     fit: Fit,
     /// Whether they are integers and fractions that somebody chose.
     chosen: bool,
-    /// Binary digits of the longest.
-    digits: f64,
 }
 
 impl Coefficients {
@@ -44,11 +42,10 @@ impl Coefficients {
                 })
                 .into();
         }
-        let nodes = system.expressions.nodes();
         Self {
             fit: fit(system, &parameters),
-            chosen: system.parameters.is_empty() && nodes.iter().all(is_chosen),
-            digits: nodes.iter().map(digits).fold(0.0, f64::max),
+            chosen: system.parameters.is_empty()
+                && system.expressions.nodes().iter().all(is_chosen),
         }
     }
 
@@ -67,13 +64,7 @@ impl Coefficients {
     /// detail that they have in the system's units: solutions so far out are found, or doubted, that count as infinite
     /// otherwise.
     pub fn resolved(&self, settings: &Settings) -> Option<Settings> {
-        // What solutions are made up of may differ by as little as a product of two such differences.
-        let differences = match self.chosen {
-            true => 0.5 * self.digits,
-            false => 0.0,
-        };
-        let range = self.fit.coefficient_range.max(differences);
-        let range = range.min(WIDEST_RANGE);
+        let range = self.fit.coefficient_range.min(WIDEST_RANGE);
         let exact = settings.data_accuracy == 0.0;
         let wide = match self.chosen {
             true => range > WIDE_RANGE,
@@ -91,25 +82,12 @@ impl Coefficients {
     }
 }
 
-/// Whether a node is no number that was rounded: a long binary fraction was a double, or is made up of some.
+/// Whether a node is no number that was rounded.
 fn is_chosen(node: &Node) -> bool {
     match node {
         Node::Constant(number) => [&number.re, &number.im]
             .into_iter()
-            .all(|part| *part.denom() <= LARGEST_DENOMINATOR || !part.denom().is_power_of_two()),
+            .all(|part| *part.denom() <= LARGEST_DENOMINATOR),
         _ => true,
-    }
-}
-
-/// Binary digits of a number: of its numerator or its denominator, without zeros at the end.
-fn digits(node: &Node) -> f64 {
-    match node {
-        Node::Constant(number) => [&number.re, &number.im]
-            .into_iter()
-            .flat_map(|part| [part.numer(), part.denom()])
-            .map(|number| number.significant_bits() - number.find_one(0).unwrap_or(0))
-            .max()
-            .map_or(0.0, f64::from),
-        _ => 0.0,
     }
 }
