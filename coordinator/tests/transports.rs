@@ -8,6 +8,7 @@ use cognate_coordinator::config::Rules;
 use cognate_protocol::v1;
 use cognate_protocol::v1::Verdict;
 use cognate_worker::config::TransportChoice;
+use cognate_worker::transport::shared_memory::place::CALLS;
 use std::time::{Duration, Instant};
 use support::{FakeWorker, House, MANY_PATHS, text};
 use tonic::Code;
@@ -241,6 +242,32 @@ async fn many_calls_at_once_are_all_answered() {
     }
     assert!(stages.iter().all(|stage| *stage == stages[0]));
     assert!(one.route.by_shared_memory() && two.route.by_shared_memory());
+    house.server.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 4)]
+async fn calls_that_take_the_places_of_called_off_ones_are_answered() {
+    let house = house().await;
+    let mut worker = worker(&house, "one", TransportChoice::SharedMemory).await;
+    for _ in 0..20 {
+        // As many as a worker may have open, none answered before it is called off.
+        let waiting = (0..CALLS).map(|_| {
+            let (mut api, question) = (worker.api.clone(), worker.question(1, 20_000));
+            tokio::spawn(async move { api.pull(question).await.map(drop) })
+        });
+        let waiting = waiting.collect::<Vec<_>>();
+        tokio::time::sleep(Duration::from_millis(20)).await;
+        let next = (0..CALLS).map(|_| {
+            let mut api = worker.api.clone();
+            tokio::spawn(async move { api.get_shared_memory(v1::GetSharedMemoryRequest {}).await })
+        });
+        let next = next.collect::<Vec<_>>();
+        waiting.iter().for_each(tokio::task::JoinHandle::abort);
+        for call in next {
+            call.await.unwrap().unwrap();
+        }
+        assert!(worker.route.by_shared_memory());
+    }
     house.server.shutdown().await;
 }
 

@@ -13,6 +13,7 @@ use cognate_worker::transport::shared_memory::place::{
 use http_body_util::{BodyExt, Full, Limited};
 use iceoryx2::active_request::ActiveRequest;
 use iceoryx2::node::NodeView;
+use iceoryx2::port::ReceiveError;
 use iceoryx2::port::listener::Listener;
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::port::server::Server;
@@ -29,6 +30,8 @@ use tower::ServiceExt;
 
 /// Whether the service is to stop is looked at so often where nobody rings. Default 200 ms.
 const LOOK: Duration = Duration::from_millis(200);
+/// Where a worker has more calls open than it may have, the next is taken after this.
+const FULL: Duration = Duration::from_millis(1);
 /// What killed workers left behind is cleared away so often. Default 2 s: until then their waiting
 /// calls may still be given chunks, which come back only with the end of their leases.
 const CLEAN: Duration = Duration::from_secs(2);
@@ -125,13 +128,21 @@ impl SharedMemoryListener {
     ) -> Result<(), Unusable> {
         let mut open: Vec<OpenCall> = Vec::new();
         let mut cleaned = Instant::now();
+        let mut wait = LOOK;
         loop {
-            let rung = self.listener.timed_wait(|_| {}, LOOK);
+            let rung = self.listener.timed_wait(|_| {}, wait);
             rung.map_err(failed("the bell is broken"))?;
-            while let Some(request) = self.server.receive().map_err(failed("not received"))? {
-                open.push(self.take(request, routes, runtime));
-            }
+            // Before the next are taken: a worker's calls that have ended make room for its others.
             open.retain(OpenCall::is_wanted);
+            wait = loop {
+                match self.server.receive() {
+                    Ok(Some(request)) => open.push(self.take(request, routes, runtime)),
+                    Ok(None) => break LOOK,
+                    // An answered call is held a moment longer than its worker waits for it.
+                    Err(ReceiveError::ExceedsMaxBorrows) => break FULL,
+                    Err(error) => return Err(failed("not received")(error)),
+                }
+            };
             if stopping.is_cancelled() && open.is_empty() {
                 return Ok(());
             }
