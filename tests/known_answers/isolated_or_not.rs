@@ -241,3 +241,21 @@ fn multiple_roots_in_one_unknown_lie_on_no_set() {
         }
     }
 }
+
+/// The 40 paths of one cycle end at the origin, whose multiplicity is 40; 23 simple points besides. That the origin
+/// is isolated takes more deflations than are tried: it is said to be undecided, and no path fails.
+/// (`ZeroDim.example_31` of symbolicdata.org; 24 points, 63 with multiplicities, by a Groebner basis.)
+#[test]
+fn a_cycle_of_40_sheets_closes() {
+    let system = written(
+        "variable_group x, y; function f, g;
+         f = 3*x^2*y^9 + y^9 + 5*x^4;
+         g = 9*x^3*y^8 + 11*y^10 + 9*x*y^8;",
+    );
+    let (_, sets) = solve(&system, &PlanOptions::default(), &|_| None);
+    let set = &sets[0];
+    let paths = &set.paths;
+    assert_eq!((paths.total, paths.finite, paths.failed), (67, 23, 0));
+    let undecided = |said: &&String| said.contains("40 paths end") && said.contains("not decided");
+    assert_eq!(set.warnings.iter().filter(undecided).count(), 1);
+}

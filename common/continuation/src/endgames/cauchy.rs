@@ -55,6 +55,11 @@ const STEADY_ENOUGH: f64 = 0.1;
 /// Or where it has not fallen over so many radii: that of a coordinate with a limit falls to 0, while
 /// fractional powers of t that come closer and closer to a leading one may creep for ever.
 const UNFALLING: u32 = 4;
+/// A path that has made so many turns without closing is believed to diverge where valuations say so.
+const BELIEVED: u32 = 32;
+/// Where many sheets meet, valuations are small: a path that has not closed after c turns goes on turning where they
+/// are below so many times 1/c.
+const MANY_SHEETS: f64 = 2.0;
 /// A path has closed where it is nearer to its beginning than this part of how far it went away.
 const RETURNED: f64 = 1e-3;
 /// Means over all samples and over every other one must agree to this before a mean is looked at.
@@ -303,12 +308,14 @@ impl Cauchy {
             // A solution as near to infinity as t^(1/c) is here belongs to c sheets, which close: what
             // looks like divergence is believed where more sheets than are tried meet.
             let most = settings.max_winding_number;
-            let patience = (FIRST_TURNS << (self.unclosed / 2).min(16)).min(most);
-            if self.turns >= patience && !self.powers_here() {
+            let believed = BELIEVED.min(most);
+            let patience = (FIRST_TURNS << (self.unclosed / 2).min(16)).min(believed);
+            let diverges = self.turns >= patience && self.powers_here();
+            if self.turns >= patience && !diverges && !self.many_sheets() {
                 self.powers.clear();
                 return self.not_closed(settings);
             }
-            if self.turns >= most {
+            if self.turns >= most || diverges && self.turns >= believed {
                 return self.does_not_close(settings);
             }
             self.add(point, form, &homogenizing);
@@ -482,6 +489,14 @@ impl Cauchy {
     fn powers_here(&self) -> bool {
         let groups = self.infinity.len();
         (0..groups).any(|k| power(self.valuations.iter().skip(k).step_by(groups)).is_some())
+    }
+
+    /// Whether the homogenising coordinates change by less than so many turns would explain: those of c sheets
+    /// that end at one finite point do by t^(1/c).
+    fn many_sheets(&self) -> bool {
+        let least = MANY_SHEETS / f64::from(self.turns);
+        let still = |v: &Complex64| v.norm_sqr() <= least * least;
+        self.valuations.iter().all(still)
     }
 
     /// The path does not close within as many turns as are tried: it may diverge all the same.

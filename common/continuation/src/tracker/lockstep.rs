@@ -73,6 +73,11 @@ pub(super) const ENDGAME_BITS: u32 = 212;
 /// This part of all steps that a path may take is enough for its turns in doubles.
 const LABOUR: u32 = 8;
 
+/// After so many steps in doubles,
+const MANY_STEPS: u32 = 500;
+/// those shorter than this part of the way left are too short: the rest would take ten times as many.
+const SHORT: f64 = 1e-4;
+
 /// The point from which a path is tracked in a context.
 enum Entry {
     Start(Vec<Complex64>),
@@ -769,10 +774,19 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
     }
 
-    /// Whether a path takes very many steps around 0, or past the endgame's boundary, in doubles: it is their
-    /// noise that it follows.
+    /// Whether a path takes very many steps in doubles around 0, or past the endgame's boundary, or so short
+    /// ones before it that it will not get there: it is their noise that it follows.
     fn labours(&self, lane: usize) -> bool {
         let path = &self.lanes[lane];
+        let (t, h) = (self.batch.t(lane), self.batch.h.lane(lane));
+        if path.phase == Phase::Approaching
+            && self.tracking.bits == DOUBLE
+            && self.tracking.up
+            && path.steps_here >= MANY_STEPS
+            && h < SHORT * t.re
+        {
+            return true;
+        }
         let in_endgame = match path.phase {
             Phase::Turning | Phase::Inward => true,
             Phase::Approaching => self.batch.t(lane).re <= self.settings.endgame_boundary,

@@ -60,7 +60,7 @@ impl Default for Settings {
             endgame_boundary: 0.1,
             endgame_radius: 1e-3,
             endgame_min_radius: 1e-14,
-            max_winding_number: 32,
+            max_winding_number: 128,
             singular_condition: 1e8,
             endgame_tolerance: 1e-8,
             data_accuracy: 0.0,
