@@ -78,7 +78,7 @@ fn drawn(count: usize) -> Vec<(String, System)> {
     plain.take(count).map(read).collect()
 }
 
-/// Most seconds of one solve: longer ones are left out, and named on the error stream.
+/// Most CPU time of one solve: longer ones are left out, and named on the error stream.
 const LIMIT: Duration = Duration::from_secs(3);
 
 /// Regular solutions, and whether the answer is settled; the verdict where there is no answer.
