@@ -3,9 +3,9 @@
 use super::Planted;
 use crate::dice::Dice;
 use crate::measures::cpu_seconds;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_algorithms::run_locally::drive;
-use cognate_algorithms::{PathAlgorithm, PlanOptions, plan};
+use cognate_algorithms::{PathAlgorithm, SolveOptions, plan};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -116,13 +116,13 @@ fn missing(planted: &Planted, found: &[Vec<Complex64>]) -> u64 {
 }
 
 /// A start for this throw: mostly the one that is chosen by itself.
-pub fn start(dice: &mut Dice) -> StartChoice {
+pub fn start(dice: &mut Dice) -> SolveMethod {
     match dice.below(10) {
-        0..=4 => StartChoice::Auto,
-        5 | 6 => StartChoice::TotalDegree,
-        7 => StartChoice::Polyhedral,
-        8 => StartChoice::LinearProduct,
-        _ => StartChoice::Multihomogeneous,
+        0..=4 => SolveMethod::Auto,
+        5 | 6 => SolveMethod::TotalDegree,
+        7 => SolveMethod::Polyhedral,
+        8 => SolveMethod::LINEAR_PRODUCT,
+        _ => SolveMethod::Multihomogeneous,
     }
 }
 
@@ -132,7 +132,7 @@ pub fn start(dice: &mut Dice) -> StartChoice {
 /// The verdict where there is none: [`Verdict::NoEnd`] or [`Verdict::Refused`].
 pub fn solve_within(
     system: &System,
-    options: &PlanOptions,
+    options: &SolveOptions,
     limit: Duration,
 ) -> Result<SolutionSet, Verdict> {
     let refused = |error: String| Verdict::Refused(error);
@@ -170,16 +170,16 @@ pub fn solve_within(
 }
 
 /// Solves with one start and seed, within this CPU time.
-pub fn solve(planted: &Planted, start: StartChoice, seed: u64, limit: Duration) -> Verdict {
+pub fn solve(planted: &Planted, start: SolveMethod, seed: u64, limit: Duration) -> Verdict {
     let text = planted.file("");
     let system = match formats::read("planted", text.as_bytes()) {
         Ok(problem) => problem.system,
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    let options = PlanOptions {
-        start,
+    let options = SolveOptions {
+        method: start,
         seed,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let set = match solve_within(&system, &options, limit) {
         Ok(set) => set,
