@@ -269,7 +269,7 @@ fn proofs_and_digits_are_in_the_units_of_the_variables() {
     let with = SolveOptions {
         closings: ClosingOptions {
             certify: true,
-            digits: 40,
+            digits: Some(40),
             ..ClosingOptions::default()
         },
         ..options(1, SolveMethod::Auto)

@@ -134,7 +134,7 @@ fn a_solution_beside_infinity_is_told_from_it() {
 fn multiple_roots_get_their_digits_by_deflation() {
     let deflating = SolveOptions {
         closings: ClosingOptions {
-            digits: 40,
+            digits: Some(40),
             deflate: true,
             ..ClosingOptions::default()
         },

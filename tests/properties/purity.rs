@@ -85,11 +85,11 @@ work_conformance! {
     );
     sharpen, Work::Sharpen { .. }, closing(
         &example("three_rpr.bertini"),
-        SolveOptions { closings: ClosingOptions { digits: 60, ..ClosingOptions::default() }, ..SolveOptions::default() },
+        SolveOptions { closings: ClosingOptions { digits: Some(60), ..ClosingOptions::default() }, ..SolveOptions::default() },
     );
     deflate, Work::Sharpen { .. }, closing(
         DEFLATED,
-        SolveOptions { closings: ClosingOptions { digits: 40, deflate: true, ..ClosingOptions::default() }, ..SolveOptions::default() },
+        SolveOptions { closings: ClosingOptions { digits: Some(40), deflate: true, ..ClosingOptions::default() }, ..SolveOptions::default() },
     );
     local_dimension, Work::LocalDimension, Subject::of(
         &written(CURVE_AND_POINTS),

@@ -30,6 +30,7 @@ use cognate_continuation::start_systems::polyhedral::branches::CellBranches;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_continuation::start_systems::slices;
 use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_solutions::streamed::PathFilter;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
@@ -86,9 +87,9 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
         start => plan_start_system(system, start, options),
     }?;
     let closings = options.closings;
-    if (closings.more_digits() || closings.certify)
-        && plan.paths.is_some_and(|paths| paths > MAX_PATHS)
-    {
+    let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
+    let more_digits = digits > DIGITS_OF_DOUBLES || closings.deflate;
+    if (more_digits || closings.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
         // What closes a solve takes all endpoints at once.
         return Err(PlanError::TooManyPaths {
             start: plan.start,
@@ -96,8 +97,8 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             instead: String::new(),
         });
     }
-    if closings.more_digits() {
-        let digits = Digits::new(closings.digits, closings.deflate);
+    if more_digits {
+        let digits = Digits::new(digits, closings.deflate);
         plan.algorithm.close_with(Closing::Digits(digits));
     }
     if closings.certify {
@@ -895,7 +896,10 @@ mod tests {
                 certify: true,
                 ..none
             },
-            ClosingOptions { digits: 50, ..none },
+            ClosingOptions {
+                digits: Some(50),
+                ..none
+            },
             ClosingOptions {
                 deflate: true,
                 ..none

@@ -7,7 +7,7 @@ use crate::retried_stage::MAX_RETRIES;
 use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_solutions::classification::Tolerances;
-use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
+pub use cognate_solutions::closing_options::ClosingOptions;
 use num_complex::Complex64;
 
 /// How a system is solved; the seed decides everything random.
@@ -163,33 +163,5 @@ impl Default for TrackingOptions {
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,
         }
-    }
-}
-
-/// What follows once the solutions are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClosingOptions {
-    /// Whether the solutions are certified.
-    pub certify: bool,
-    /// Decimal digits of the solutions.
-    pub digits: u32,
-    /// Whether isolated singular solutions are brought to their digits by deflation.
-    pub deflate: bool,
-}
-
-impl Default for ClosingOptions {
-    fn default() -> Self {
-        Self {
-            certify: false,
-            digits: DIGITS_OF_DOUBLES,
-            deflate: false,
-        }
-    }
-}
-
-impl ClosingOptions {
-    /// Whether solutions are brought to more digits than doubles have.
-    pub fn more_digits(&self) -> bool {
-        self.digits > DIGITS_OF_DOUBLES || self.deflate
     }
 }

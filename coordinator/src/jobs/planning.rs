@@ -131,12 +131,11 @@ pub fn solve_options(
             ..TrackingOptions::default()
         },
         closings: ClosingOptions {
-            certify: options.certify,
-            digits: options.digits.unwrap_or(match options.precision {
-                PrecisionChoice::Bits(bits) => digits_of(bits),
-                PrecisionChoice::Double | PrecisionChoice::Adaptive => DIGITS_OF_DOUBLES,
+            digits: options.closings.digits.or(match options.precision {
+                PrecisionChoice::Bits(bits) => Some(digits_of(bits)),
+                PrecisionChoice::Double | PrecisionChoice::Adaptive => None,
             }),
-            deflate: options.deflate,
+            ..options.closings
         },
         ..SolveOptions::default()
     })

@@ -114,7 +114,7 @@ mod tests {
             method: SolveMethod::TotalDegree,
             seed: 5,
             closings: ClosingOptions {
-                digits,
+                digits: Some(digits),
                 deflate,
                 ..ClosingOptions::default()
             },
