@@ -4,7 +4,7 @@ mod support;
 
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
-use support::{House, MANY_PATHS, text};
+use support::{House, MANY_PATHS, WOKEN, text};
 use tonic::Code;
 
 /// The most memory that this process has had, in MiB.
@@ -302,7 +302,7 @@ async fn silent_connections_are_closed() {
     let rules = Rules {
         connections: ConnectionLimits {
             most: 8,
-            patience: Duration::from_millis(500),
+            patience: Duration::from_secs(2),
         },
         ..Rules::default()
     };
@@ -323,12 +323,12 @@ async fn silent_connections_are_closed() {
             .await
             .unwrap();
     };
-    let answered = tokio::time::timeout(Duration::from_secs(10), answered).await;
+    let answered = tokio::time::timeout(WOKEN, answered).await;
     answered.expect("a call is answered beside silent connections");
     for stream in &mut silent {
         // What the server says of itself may come first; then it closes.
         let closed = async { while stream.read(&mut [0; 64]).await.is_ok_and(|read| read > 0) {} };
-        let closed = tokio::time::timeout(Duration::from_secs(10), closed).await;
+        let closed = tokio::time::timeout(WOKEN, closed).await;
         closed.expect("a silent connection is closed");
     }
     println!("all are closed after {:?}", begin.elapsed());

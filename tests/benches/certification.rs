@@ -5,7 +5,7 @@
 //! a worker makes it once for each piece of a chunk.
 
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_continuation::certification::Krawczyk;
 use cognate_tests::measures::cpu_seconds;
 use num_complex::Complex64;
@@ -32,9 +32,9 @@ fn main() {
         let system = cognate_systems::formats::read(name, &content)
             .expect("a problem")
             .system;
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed: 1,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let mut planned = plan(&system, &options).expect("a plan");
         let before = cpu_seconds().ok();

@@ -5,8 +5,9 @@
 //! `families.md`.
 
 use cognate_algorithms::plan::GivenStart;
+use cognate_algorithms::plan::{KnownSolutions, SolveMethod};
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_continuation::start_points::StoredPoints;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::point_shape::PointShape;
@@ -32,7 +33,7 @@ const SAME: f64 = 1e-8;
 /// Solves; CPU seconds with it, all that planning and classifying takes among them.
 fn solved(
     family: &Family,
-    options: &PlanOptions,
+    options: &SolveOptions,
     starts: Option<&Arc<StoredPoints>>,
 ) -> Result<(u64, Vec<SolutionSet>, f64), Failure> {
     let before = cpu_seconds()?;
@@ -77,10 +78,10 @@ fn measure(family: &Family, members: usize) -> Result<bool, Failure> {
         .iter()
         .map(|_| random.unit())
         .collect();
-    let first = PlanOptions {
+    let first = SolveOptions {
         target_parameters: vec![general.clone()],
         seed: GENERAL,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let (paths, sets, seconds) = solved(family, &first, None)?;
     let found = points(&sets[0]);
@@ -105,16 +106,14 @@ fn measure(family: &Family, members: usize) -> Result<bool, Failure> {
         let values = (family.member)(&mut draw);
         values.iter().map(|&v| Complex64::new(v, 0.0)).collect()
     };
-    let others = PlanOptions {
-        start_points: Some(GivenStart {
-            object: stored.digest(),
-            count: stored.len() as u64,
-            dimension: stored.dimension,
+    let others = SolveOptions {
+        method: SolveMethod::Given(KnownSolutions {
+            points: Some(GivenStart::of(&stored)),
+            parameters: Some(general),
         }),
-        start_parameters: Some(general),
         target_parameters: (0..members).map(real).collect(),
         seed: GENERAL,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let (paths, sets, seconds) = solved(family, &others, Some(&stored))?;
     let mut complete = 0;

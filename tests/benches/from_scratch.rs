@@ -5,9 +5,9 @@
 //! `all` the whole solve, on two threads, each path tracked again at most RETRIES times (a variable of
 //! the environment); its solutions go to the file SOLUTIONS. What it gave: `from_scratch.md`.
 
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_algorithms::run_locally::drive;
-use cognate_algorithms::{Next, PathAlgorithm, Plan, PlanOptions, plan};
+use cognate_algorithms::{Next, PathAlgorithm, Plan, SolveOptions, plan};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PreparedStage;
@@ -42,18 +42,18 @@ fn main() -> Result<(), Failure> {
     };
     let (seed, bits) = (number(3, 1)?, number(4, 1024)?);
     let system = cognate_systems::formats::read(file, &std::fs::read(file)?)?.system;
-    let mut options = PlanOptions {
-        start: StartChoice::Multihomogeneous,
+    let mut options = SolveOptions {
+        method: SolveMethod::Multihomogeneous,
         seed,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     if values != "-" {
         let content = std::fs::read(values)?;
         options.target_parameters = read_parameters(values, &content, &system.parameters)?;
     }
-    options.settings.max_precision_bits = bits as u32;
+    options.tracking.settings.max_precision_bits = bits as u32;
     if let Ok(n) = std::env::var("RETRIES") {
-        options.max_retries = n.parse()?;
+        options.tracking.max_retries = n.parse()?;
     }
     let mut planned = plan(&system, &options)?;
     if all {

@@ -5,10 +5,11 @@
 //! at the end the joints are turned into axes and compared with the arm's other equations. What it
 //! gave: `regeneration.md`.
 
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::plan::SolveMethod;
+use cognate_algorithms::plan::TrackingOptions;
 use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::run_locally::{drive, run_locally};
-use cognate_algorithms::{Opening, PathAlgorithm, PlanOptions, plan};
+use cognate_algorithms::{Opening, PathAlgorithm, SolveOptions, plan};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
@@ -98,13 +99,16 @@ type Objects = HashMap<Digest, Arc<StoredPoints>>;
 
 /// Whether all loops that were found are the arm's postures, and no two the same.
 fn compare(seed: u64, max_retries: u16) -> Result<bool, Failure> {
-    let options = |start| PlanOptions {
-        start,
+    let options = |start| SolveOptions {
+        method: start,
         seed,
-        max_retries,
-        ..PlanOptions::default()
+        tracking: TrackingOptions {
+            max_retries,
+            ..TrackingOptions::default()
+        },
+        ..SolveOptions::default()
     };
-    let mut planned = plan(&by_its_axes(), &options(StartChoice::Multihomogeneous))?;
+    let mut planned = plan(&by_its_axes(), &options(SolveMethod::Multihomogeneous))?;
     let other = run_locally(&planned.system, &mut planned.algorithm, &|_| None, WIDTH)?;
     let expected = points(&other[0]);
     println!(
@@ -114,7 +118,7 @@ fn compare(seed: u64, max_retries: u16) -> Result<bool, Failure> {
         other[0].paths.failed
     );
     let begun = cpu_seconds()?;
-    let mut planned = plan(&as_a_loop(), &options(StartChoice::Regeneration))?;
+    let mut planned = plan(&as_a_loop(), &options(SolveMethod::Regeneration))?;
     let mut made = Objects::new();
     drive::<Failure, _>(&mut planned.algorithm, &mut |opening| {
         let objects = opening.objects.iter();

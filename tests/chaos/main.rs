@@ -19,11 +19,11 @@ use std::fmt;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Work must go on so long after a fault and the length of a lease: three seconds are promised, and
-/// two more are left to a machine with other work.
-const GOES_ON: Duration = Duration::from_secs(5);
-/// What is promised: no longer than this after the length of a lease.
+/// What is promised: work goes on no longer than this after a fault and the length of a lease. A machine with
+/// other work may break it now and then, so it is a promise about the median fault ...
 const PROMISED: Duration = Duration::from_secs(3);
+/// ... and none may take longer than this and the length of a lease, on any machine.
+const GOES_ON: Duration = Duration::from_secs(30);
 /// One of several coordinators stands still for longer than its right to drive a job, 5 s.
 const STANDSTILL: Duration = Duration::from_secs(6);
 /// No job takes longer.
@@ -467,9 +467,29 @@ fn report(
     );
     let limit = wanted.lease + GOES_ON;
     let late = faults.iter().filter(|(_, time)| *time > limit).count();
-    if again > bound || late > 0 || begun < paths {
-        println!("  NOT AS PROMISED: {late} faults took longer than {limit:?}");
-        return ExitCode::FAILURE;
+    let mut broken = Vec::new();
+    if late > 0 {
+        broken.push(format!("{late} faults took longer than {limit:?}"));
     }
-    ExitCode::SUCCESS
+    if later > faults.len() / 2 {
+        broken.push(format!(
+            "most of {} faults took longer than {promised:?}",
+            faults.len()
+        ));
+    }
+    if again > bound {
+        broken.push(format!("{again} paths were tracked again"));
+    }
+    if begun < paths {
+        broken.push(format!(
+            "the logs show {begun} paths that were begun, of {paths}"
+        ));
+    }
+    for what in &broken {
+        println!("  NOT AS PROMISED: {what}");
+    }
+    match broken.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
 }

@@ -1,7 +1,7 @@
 //! `check`: one system, ten seeds, the numbers that must come out.
 
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -38,7 +38,7 @@ const WIDTH: usize = 8;
 /// Solves with one seed; all sets, one for each target.
 pub fn solve(
     system: &System,
-    options: &PlanOptions,
+    options: &SolveOptions,
     objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
 ) -> (u64, Vec<SolutionSet>) {
     let mut plan = match plan(system, options) {
@@ -102,10 +102,10 @@ pub fn complaints(set: &SolutionSet, answer: &Answer) -> String {
 }
 
 /// Ten seeds; one panic with everything that is wrong.
-pub fn check(name: &str, system: &System, options: &PlanOptions, answer: Answer) {
+pub fn check(name: &str, system: &System, options: &SolveOptions, answer: Answer) {
     let mut report = String::new();
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
             ..options.clone()
         };

@@ -1,8 +1,8 @@
 //! Classical systems by name; each count has its source in `systems/named`.
 
 use crate::check::{Answer, check};
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_systems::named::{Named, cyclic, katsura, noon};
 
 /// By total degree: regular finite solutions, and all other paths at infinity.
@@ -11,9 +11,9 @@ pub fn check_named(name: &str, named: &Named, paths: u64, finite: u64) {
     check(
         name,
         &named.system,
-        &PlanOptions {
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+        &SolveOptions {
+            method: SolveMethod::TotalDegree,
+            ..SolveOptions::default()
         },
         Answer {
             paths,

@@ -2,8 +2,9 @@
 
 use crate::check::{SEEDS, solve};
 use crate::parameter_homotopies::solve_from;
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod;
+use cognate_algorithms::plan::TrackingOptions;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_systems::named::cyclic;
 use cognate_tests::close_paths::ClosePaths;
@@ -15,9 +16,9 @@ fn paths_beside_a_branch_point_keep_their_sheets() {
         let close = ClosePaths::at(exponent);
         let mut highest = 0;
         for seed in SEEDS {
-            let options = PlanOptions {
+            let options = SolveOptions {
                 seed,
-                ..PlanOptions::default()
+                ..SolveOptions::default()
             };
             let sets = solve_from(&close.system, close.starts.concat(), options);
             let paths = &sets[0].paths;
@@ -55,11 +56,14 @@ fn robust_steps_keep_their_sheets() {
                 max_step: 0.25,
                 ..Settings::default()
             };
-            let options = PlanOptions {
+            let options = SolveOptions {
                 seed,
-                settings: coarse.robust(),
-                max_retries: 0,
-                ..PlanOptions::default()
+                tracking: TrackingOptions {
+                    settings: coarse.robust(),
+                    max_retries: 0,
+                    ..TrackingOptions::default()
+                },
+                ..SolveOptions::default()
             };
             let sets = solve_from(&close.system, close.starts.concat(), options);
             assert_eq!(sets[0].paths.finite, 4, "1e-{exponent}, seed {seed}");
@@ -89,12 +93,15 @@ fn robust_steps_do_not_jump_where_others_do() {
     let crossings_and_lost = |settings: &Settings, max_retries: u16| {
         let mut of_all = (0, 0);
         for seed in SEEDS {
-            let options = PlanOptions {
+            let options = SolveOptions {
+                method: SolveMethod::TotalDegree,
                 seed,
-                start: StartChoice::TotalDegree,
-                settings: settings.clone(),
-                max_retries,
-                ..PlanOptions::default()
+                tracking: TrackingOptions {
+                    settings: settings.clone(),
+                    max_retries,
+                    ..TrackingOptions::default()
+                },
+                ..SolveOptions::default()
             };
             let (_, sets) = solve(&cyclic(5).system, &options, &|_| None);
             let (paths, counts) = (&sets[0].paths, &sets[0].counts);

@@ -1,9 +1,9 @@
 //! The same solutions by every start that applies: linear products and regeneration beside the others.
 
 use crate::check::{Answer, SEEDS, check, solve};
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice::{
-    self, LinearProduct, Monodromy, Multihomogeneous, Polyhedral, Regeneration, TotalDegree,
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod::{
+    self, Multihomogeneous, Polyhedral, Regeneration, TotalDegree,
 };
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
@@ -11,21 +11,21 @@ use cognate_systems::named::{Named, caprasse, cyclic, eco, katsura, noon, reimer
 use cognate_systems::system::System;
 use cognate_tests::systems::{shared, six_revolute_axis_vectors, written};
 
-fn options(start: StartChoice, seed: u64) -> PlanOptions {
-    PlanOptions {
-        start,
+fn options(start: SolveMethod, seed: u64) -> SolveOptions {
+    SolveOptions {
+        method: start,
         seed,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     }
 }
 
-fn solved(system: &System, start: StartChoice, seed: u64) -> SolutionSet {
+fn solved(system: &System, start: SolveMethod, seed: u64) -> SolutionSet {
     let (_, mut sets) = solve(system, &options(start, seed), &|_| None);
     sets.remove(0)
 }
 
 /// Every start finds this many nonsingular solutions, the same ones, and no path fails.
-fn check_same(name: &str, system: &System, nonsingular: u64, starts: &[StartChoice]) {
+fn check_same(name: &str, system: &System, nonsingular: u64, starts: &[SolveMethod]) {
     check_same_with(5, name, system, nonsingular, starts);
 }
 
@@ -35,13 +35,13 @@ fn check_same_with(
     name: &str,
     system: &System,
     nonsingular: u64,
-    starts: &[StartChoice],
+    starts: &[SolveMethod],
 ) {
     for seed in SEEDS.take(seeds) {
         let mut first: Option<Vec<Vec<num_complex::Complex64>>> = None;
-        for &start in starts {
-            let set = solved(system, start, seed);
-            let at = format!("{name}, {start:?}, seed {seed}");
+        for start in starts {
+            let set = solved(system, start.clone(), seed);
+            let at = format!("{name}, {}, seed {seed}", start.name());
             assert_eq!(set.paths.failed, 0, "{at}: {:?}", set.failed);
             assert_eq!(
                 set.counts.nonsingular, nonsingular,
@@ -72,23 +72,23 @@ fn check_same_with(
     }
 }
 
-fn check_named(named: &Named, name: &str, starts: &[StartChoice]) {
+fn check_named(named: &Named, name: &str, starts: &[SolveMethod]) {
     let count = named.finite_solutions.unwrap_or(0);
     check_same(name, &named.system, count, starts);
 }
 
-const ALL: &[StartChoice] = &[
+const ALL: &[SolveMethod] = &[
     TotalDegree,
-    LinearProduct,
+    SolveMethod::LINEAR_PRODUCT,
     Polyhedral,
     Regeneration,
-    Monodromy,
+    SolveMethod::MONODROMY,
 ];
 
 /// The larger ones, once each.
 #[test]
 fn larger_classical_systems_by_every_start() {
-    let once = |name: &str, named: &Named, starts: &[StartChoice]| {
+    let once = |name: &str, named: &Named, starts: &[SolveMethod]| {
         let count = named.finite_solutions.unwrap_or(0);
         check_same_with(1, name, &named.system, count, starts);
     };
@@ -96,7 +96,7 @@ fn larger_classical_systems_by_every_start() {
     once("noon-5", &noon(5), ALL);
     once("reimer-5", &reimer(5), ALL);
     // By linear products most paths of these end on sets at infinity, and take long.
-    let others = [Polyhedral, Regeneration, Monodromy];
+    let others = [Polyhedral, Regeneration, SolveMethod::MONODROMY];
     once(
         "cyclic-6",
         &cyclic(6),
@@ -117,7 +117,12 @@ fn mechanisms_by_every_start() {
     let by_groups = [&[Multihomogeneous], ALL].concat();
     // The 256 paths from its total degree take minutes: not here.
     let arm = shared("six_revolute_manseur_doty_tm8");
-    let starts = [Multihomogeneous, Polyhedral, Regeneration, Monodromy];
+    let starts = [
+        Multihomogeneous,
+        Polyhedral,
+        Regeneration,
+        SolveMethod::MONODROMY,
+    ];
     check_same_with(1, "6R", &arm, 32, &starts);
     let poses = shared("burmester_five_poses_real4");
     check_same_with(2, "five poses", &poses, 4, &by_groups);
@@ -142,11 +147,11 @@ fn classical_systems_by_every_start() {
 fn three_rpr_platform() {
     let starts = [
         TotalDegree,
-        StartChoice::Multihomogeneous,
-        LinearProduct,
+        SolveMethod::Multihomogeneous,
+        SolveMethod::LINEAR_PRODUCT,
         Polyhedral,
         Regeneration,
-        Monodromy,
+        SolveMethod::MONODROMY,
     ];
     check_same_with(2, "3-RPR", &shared("three_rpr_real6"), 6, &starts);
 }
@@ -154,7 +159,7 @@ fn three_rpr_platform() {
 /// Sixteen postures of a general arm (Tsai and Morgan 1985).
 #[test]
 fn six_revolute_arm_by_its_axes() {
-    let starts = [StartChoice::Auto, Regeneration];
+    let starts = [SolveMethod::Auto, Regeneration];
     check_same("6R by axes", &six_revolute_axis_vectors(), 16, &starts);
 }
 
@@ -166,7 +171,7 @@ fn noon_5_by_linear_products_has_no_path_too_many() {
         nonsingular: 233,
         ..Answer::default()
     };
-    let by_products = options(LinearProduct, 0);
+    let by_products = options(SolveMethod::LINEAR_PRODUCT, 0);
     check(
         "noon-5, linear product",
         &noon(5).system,
@@ -179,7 +184,7 @@ fn noon_5_by_linear_products_has_no_path_too_many() {
 #[test]
 fn caprasse_keeps_its_multiplicities_by_linear_products() {
     for seed in [1, 2, 3] {
-        let set = solved(&caprasse().system, LinearProduct, seed);
+        let set = solved(&caprasse().system, SolveMethod::LINEAR_PRODUCT, seed);
         assert_eq!(set.paths.failed, 0, "{:?}", set.failed);
         assert_eq!((set.counts.nonsingular, set.counts.singular), (24, 8));
         assert_eq!(set.counts.with_multiplicity, 56);
@@ -238,6 +243,6 @@ fn regeneration_says_what_it_may_miss() {
 fn auto_never_chooses_a_start_without_paths() {
     let text = "f = x*y - 1; g = x*y - 2; h = x^9*y^9*z - 3;";
     let system = written(&format!("variable_group x, y, z; function f, g, h; {text}"));
-    let set = solved(&system, StartChoice::Auto, 1);
+    let set = solved(&system, SolveMethod::Auto, 1);
     assert_eq!(set.counts.distinct, 0, "{:?}", set.paths);
 }

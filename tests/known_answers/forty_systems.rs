@@ -4,9 +4,9 @@
 //! system does not apply to it, and one that says that it is not settled is left out; regeneration and loops may say that they do not know whether they have
 //! all, and then what they have must be among the others' solutions.
 
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice::{
-    self, LinearProduct, Monodromy, Multihomogeneous, Polyhedral, Regeneration, TotalDegree,
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod::{
+    self, Multihomogeneous, Polyhedral, Regeneration, TotalDegree,
 };
 use cognate_systems::formats;
 use cognate_systems::named::{caprasse, cyclic, eco, katsura, noon, reimer};
@@ -18,13 +18,13 @@ use num_complex::Complex64;
 use std::fmt::Write;
 use std::time::Duration;
 
-const STARTS: [StartChoice; 6] = [
+const STARTS: [SolveMethod; 6] = [
     TotalDegree,
     Multihomogeneous,
-    LinearProduct,
+    SolveMethod::LINEAR_PRODUCT,
     Polyhedral,
     Regeneration,
-    Monodromy,
+    SolveMethod::MONODROMY,
 ];
 
 /// Largest distance of one solution by two starts, relative to the largest coordinate or 1.
@@ -78,15 +78,15 @@ fn drawn(count: usize) -> Vec<(String, System)> {
     plain.take(count).map(read).collect()
 }
 
-/// Most seconds of one solve: longer ones are left out, and named on the error stream.
+/// Most CPU time of one solve: longer ones are left out, and named on the error stream.
 const LIMIT: Duration = Duration::from_secs(3);
 
 /// Regular solutions, and whether the answer is settled; the verdict where there is no answer.
-fn solved(system: &System, start: StartChoice) -> Result<(Vec<Vec<Complex64>>, bool), Verdict> {
-    let options = PlanOptions {
-        start,
+fn solved(system: &System, start: SolveMethod) -> Result<(Vec<Vec<Complex64>>, bool), Verdict> {
+    let options = SolveOptions {
+        method: start,
         seed: 1,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let set = solve_within(system, &options, LIMIT)?;
     let regular = set.solutions.iter().filter(|solution| !solution.singular);
@@ -107,19 +107,19 @@ fn the_same_solutions_by_every_start() {
     assert_eq!(all.len(), 40);
     let mut wrong = String::new();
     for (name, system) in &all {
-        let mut reference: Option<(StartChoice, Vec<Vec<Complex64>>)> = None;
+        let mut reference: Option<(SolveMethod, Vec<Vec<Complex64>>)> = None;
         let mut applied = 0;
         for start in STARTS {
-            let (points, settled) = match solved(system, start) {
+            let (points, settled) = match solved(system, start.clone()) {
                 Ok(solved) => solved,
                 Err(Verdict::NoEnd) => {
-                    eprintln!("{name}: {start:?} did not end");
+                    eprintln!("{name}: {} did not end", start.name());
                     continue;
                 }
                 Err(_) => continue,
             };
             if !settled {
-                eprintln!("{name}: {start:?} says that it is not settled");
+                eprintln!("{name}: {} says that it is not settled", start.name());
                 continue;
             }
             applied += 1;
@@ -134,12 +134,14 @@ fn the_same_solutions_by_every_start() {
                 .iter()
                 .filter(|p| !expected.iter().any(|e| near(e, p)));
             let (missing, more) = (missing.count(), more.count());
-            let may_miss = matches!(start, Regeneration | Monodromy);
+            let may_miss = matches!(start, Regeneration | SolveMethod::Monodromy(_));
             if more > 0 || (missing > 0 && !may_miss) {
                 writeln!(
                     wrong,
-                    "{name}: {start:?} lacks {missing} of the {} by {first:?} and has {more} others",
-                    expected.len()
+                    "{name}: {} lacks {missing} of the {} by {} and has {more} others",
+                    start.name(),
+                    expected.len(),
+                    first.name()
                 )
                 .expect("text takes all");
             }

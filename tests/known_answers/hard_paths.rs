@@ -4,8 +4,8 @@
 
 use crate::check::solve;
 use crate::classical_systems::check_named;
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_systems::named::{eco, katsura, reimer};
 
 /// By total degree, at most four of its 162 paths come so near to others (1e-14 and less, half-way,
@@ -14,10 +14,10 @@ use cognate_systems::named::{eco, katsura, reimer};
 #[test]
 fn eco_6_names_every_path_that_it_does_not_settle() {
     for seed in 1..=2 {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed,
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&eco(6).system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
@@ -35,10 +35,10 @@ fn eco_6_names_every_path_that_it_does_not_settle() {
 #[test]
 fn what_doubles_lose_begins_again_with_more_digits() {
     for seed in 1..=2 {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed,
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&eco(5).system, &options, &|_| None);
         let paths = &sets[0].paths;
@@ -54,9 +54,9 @@ fn what_doubles_lose_begins_again_with_more_digits() {
 #[test]
 fn paths_may_begin_with_any_number_of_bits() {
     for bits in [106, 212, 512, 2048] {
-        let mut options = PlanOptions::default();
-        options.settings.precision_bits = bits;
-        options.settings.max_precision_bits = bits;
+        let mut options = SolveOptions::default();
+        options.tracking.settings.precision_bits = bits;
+        options.tracking.settings.max_precision_bits = bits;
         let (_, sets) = solve(&katsura(3).system, &options, &|_| None);
         let paths = &sets[0].paths;
         assert_eq!((paths.finite, paths.failed), (8, 0), "{bits} bits");
@@ -77,10 +77,10 @@ fn reimer_4_has_36_solutions() {
 #[test]
 fn no_path_of_eco_8_passes_by_infinity() {
     for seed in [55, 1_913_475_225] {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::Polyhedral,
             seed,
-            start: StartChoice::Polyhedral,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&eco(8).system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);

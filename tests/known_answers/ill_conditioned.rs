@@ -1,7 +1,7 @@
 //! Systems with exact answers whose solutions are hard to tell: far away, or sensitive to every digit.
 
 use crate::check::{Answer, SEEDS, check, solve};
-use cognate_algorithms::PlanOptions;
+use cognate_algorithms::SolveOptions;
 use cognate_tests::systems::written;
 use std::fmt::Write as _;
 
@@ -26,9 +26,9 @@ fn chandra_6_has_32_solutions_one_of_them_far_away() {
     }
     let system = written(&text);
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
@@ -61,9 +61,9 @@ fn small_coordinates_beside_a_huge_one_have_their_digits() {
          f3 = 4*x^2 - 4*x*z + 40002/5*x + z^2 - 20001/5*z + 800;",
     );
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         assert_eq!(sets[0].counts.real, Some(6), "seed {seed}");
@@ -88,9 +88,9 @@ fn solutions_beyond_every_digit_are_doubted_not_dropped() {
          f3 = 4*x^2 + 8*x*y - 12*x*z + 4*y^2 - 12*y*z + 9*z^2 + 1/15625;",
     );
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let right = sets[0].counts.distinct == 8;
@@ -127,8 +127,8 @@ fn wilkinson_12_has_its_roots() {
         real: Some(Some(12)),
         ..Answer::default()
     };
-    check("Wilkinson-12", &system, &PlanOptions::default(), answer);
-    let (_, sets) = solve(&system, &PlanOptions::default(), &|_| None);
+    check("Wilkinson-12", &system, &SolveOptions::default(), answer);
+    let (_, sets) = solve(&system, &SolveOptions::default(), &|_| None);
     let mut roots: Vec<f64> = sets[0]
         .solutions
         .iter()
@@ -149,9 +149,9 @@ fn points_that_doubles_do_not_tell_apart_are_two() {
          g = y - 1 + 1/10000000000000000 + x/3*(y - 1)^2;",
     );
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let counts = &sets[0].counts;

@@ -2,17 +2,17 @@
 
 use crate::check::{Answer, SEEDS, check, complaints, solve};
 use crate::singular_endpoints::multiplicities;
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_systems::named::{cyclic, hyperbola_in_a_plane, kss, ojika_1};
 use cognate_systems::system::System;
 use cognate_tests::systems::written;
 
 /// By total degree, so that the number of paths does not depend on groups that are found.
 fn check_default(name: &str, system: &System, answer: Answer) {
-    let options = PlanOptions {
-        start: StartChoice::TotalDegree,
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::TotalDegree,
+        ..SolveOptions::default()
     };
     check(name, system, &options, answer);
 }
@@ -20,10 +20,10 @@ fn check_default(name: &str, system: &System, answer: Answer) {
 /// Ten seeds; multiplicities of all solutions, ascending, and no doubt about them.
 fn check_multiplicities(name: &str, system: &System, answer: Answer, expected: &[u64]) {
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed,
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(system, &options, &|_| None);
         let wrong = complaints(&sets[0], &answer);
@@ -77,7 +77,7 @@ fn a_sixth_power_has_a_point_of_multiplicity_6() {
         ..Answer::default()
     };
     check_multiplicities("(x - 10)^6", &system, answer, &[6]);
-    let options = PlanOptions::default();
+    let options = SolveOptions::default();
     let (_, sets) = solve(&system, &options, &|_| None);
     assert_eq!(sets[0].solutions[0].cycles, [6]);
 }
@@ -88,10 +88,10 @@ fn a_sixth_power_has_a_point_of_multiplicity_6() {
 fn cyclic_4_has_no_isolated_solution() {
     let system = cyclic(4).system;
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed,
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
@@ -106,10 +106,10 @@ fn cyclic_4_has_no_isolated_solution() {
 fn a_hyperbola_in_a_plane_is_no_isolated_solution() {
     let system = hyperbola_in_a_plane().system;
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed,
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
@@ -143,10 +143,10 @@ fn a_point_beside_a_line_is_told_from_it() {
 fn a_point_beside_a_double_line_is_told_from_it() {
     let system = written("variable_group x, y; function f, g; f = x^2*(x - 1); g = x^2*(y - 2);");
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed,
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
@@ -173,10 +173,10 @@ fn kss_6_has_a_point_of_multiplicity_42() {
         singular: Some(1),
         ..Answer::default()
     };
-    let options = PlanOptions {
+    let options = SolveOptions {
+        method: SolveMethod::TotalDegree,
         seed: 1,
-        start: StartChoice::TotalDegree,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let (_, sets) = solve(&kss(6).system, &options, &|_| None);
     let wrong = complaints(&sets[0], &answer);
@@ -192,9 +192,9 @@ fn quadruple_and_eightfold_points_lie_on_no_curve() {
                 f = (x - 1)^2*(x + 2); g = (y - 3)^2*(y - x); h = (z + x)^2*(z - 5);";
     let system = written(text);
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let paths = &sets[0].paths;
@@ -221,9 +221,9 @@ fn multiple_roots_in_one_unknown_lie_on_no_set() {
     ] {
         let system = written(&format!("variable_group x; function f; {text}"));
         for seed in SEEDS {
-            let options = PlanOptions {
+            let options = SolveOptions {
                 seed,
-                ..PlanOptions::default()
+                ..SolveOptions::default()
             };
             let (_, sets) = solve(&system, &options, &|_| None);
             let paths = &sets[0].paths;

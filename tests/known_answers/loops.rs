@@ -4,9 +4,10 @@
 use crate::check::SEEDS;
 use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::monodromy::counts::Stop;
-use cognate_algorithms::plan::{GivenStart, StartChoice};
+use cognate_algorithms::plan::{GivenStart, SolveMethod};
+use cognate_algorithms::plan::{KnownSolutions, MonodromyOptions};
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_solutions::completeness::Completeness;
 use cognate_systems::formats;
@@ -32,16 +33,20 @@ fn all_six_revolute_arms_from_one_far_posture() {
         coordinates: points.into_iter().flatten().collect(),
     });
     for seed in SEEDS {
-        let options = PlanOptions {
-            start: StartChoice::Monodromy,
-            start_points: Some(GivenStart {
-                object: stored.digest(),
-                count: 1,
-                dimension: stored.dimension,
+        let options = SolveOptions {
+            method: SolveMethod::Monodromy(MonodromyOptions {
+                known: KnownSolutions {
+                    points: Some(GivenStart {
+                        object: stored.digest(),
+                        count: 1,
+                        dimension: stored.dimension,
+                    }),
+                    parameters: Some(parameters[0].clone()),
+                },
+                ..MonodromyOptions::default()
             }),
-            start_parameters: Some(parameters[0].clone()),
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let mut plan = plan(&system, &options).expect("it can be planned");
         let find = |_: Digest| Some(Arc::clone(&stored));
@@ -60,13 +65,15 @@ fn an_expected_number_makes_an_answer_complete() {
     let system = cognate_tests::systems::written(
         "variable_group x; parameter p, q; function f; f = x^3 + p*x + q;",
     );
-    let options = PlanOptions {
-        start: StartChoice::Monodromy,
-        loops: LoopLimits {
-            count: Some(3),
-            ..LoopLimits::default()
-        },
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            limits: LoopLimits {
+                count: Some(3),
+                ..LoopLimits::default()
+            },
+            ..MonodromyOptions::default()
+        }),
+        ..SolveOptions::default()
     };
     let mut plan = plan(&system, &options).expect("it can be planned");
     run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8).expect("it can be solved");
@@ -83,10 +90,10 @@ fn no_confidence_where_loops_do_not_mix() {
     let system =
         cognate_tests::systems::written("variable_group x; parameter p; function f; f = x^7 - p;");
     for seed in SEEDS {
-        let options = PlanOptions {
-            start: StartChoice::Monodromy,
+        let options = SolveOptions {
+            method: SolveMethod::MONODROMY,
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let mut plan = plan(&system, &options).expect("it can be planned");
         let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);

@@ -1,13 +1,13 @@
 //! Mechanisms: the counts of the survey, and what was found with other programs where it has none.
 
 use crate::check::{Answer, check};
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_systems::system::System;
 use cognate_tests::systems::{from_file, shared, with_conjugates};
 
 fn check_mechanism(name: &str, system: &System, answer: Answer) {
-    check(name, system, &PlanOptions::default(), answer);
+    check(name, system, &SolveOptions::default(), answer);
 }
 
 /// Regular finite solutions and paths to infinity.
@@ -32,9 +32,9 @@ fn three_rpr_platform_has_6_real_assemblies() {
         &paired,
         answer(6, 6, Some(6)),
     );
-    let total = PlanOptions {
-        start: StartChoice::TotalDegree,
-        ..PlanOptions::default()
+    let total = SolveOptions {
+        method: SolveMethod::TotalDegree,
+        ..SolveOptions::default()
     };
     check(
         "three_rpr_real6 by total degree",

@@ -2,9 +2,10 @@
 
 use cognate_algorithms::monodromy::LoopLimits;
 use cognate_algorithms::monodromy::counts::Stop;
-use cognate_algorithms::plan::{GivenStart, StartChoice};
+use cognate_algorithms::plan::{GivenStart, SolveMethod};
+use cognate_algorithms::plan::{KnownSolutions, MonodromyOptions};
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::stage::PreparedStage;
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
@@ -333,17 +334,20 @@ fn one_linkage_leads_to_all() {
         dimension: 8,
         coordinates: four_bar.variables.clone(),
     });
-    let options = PlanOptions {
-        start: StartChoice::Monodromy,
-        start_points: Some(GivenStart {
-            object: start.digest(),
-            count: 1,
-            dimension: 8,
+    let options = SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            known: KnownSolutions {
+                points: Some(GivenStart {
+                    object: start.digest(),
+                    count: 1,
+                    dimension: 8,
+                }),
+                parameters: Some(four_bar.parameters.clone()),
+            },
+            limits: LoopLimits::default(),
         }),
-        start_parameters: Some(four_bar.parameters.clone()),
-        loops: LoopLimits::default(),
         seed: SEED,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let mut plan = plan(&system, &options).expect("a plan");
     let find = |digest: Digest| (digest == start.digest()).then(|| Arc::clone(&start));

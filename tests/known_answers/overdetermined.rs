@@ -1,8 +1,8 @@
 //! More equations than unknowns: combinations are tracked, and what solves only those is excess.
 
 use crate::check::{Answer, SEEDS, check, complaints, solve};
-use cognate_algorithms::plan::StartChoice;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::plan::SolveMethod;
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_tests::builders::example;
 use cognate_tests::systems::{shared, written};
 
@@ -18,9 +18,9 @@ fn system_35_has_exactly_3_solutions() {
         ..Answer::default()
     };
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let wrong = complaints(&sets[0], &answer);
@@ -48,7 +48,7 @@ fn a_homogeneous_system_keeps_its_common_points() {
     check(
         "conics and a cubic",
         &system,
-        &PlanOptions::default(),
+        &SolveOptions::default(),
         Answer {
             paths: 6,
             nonsingular: 1,
@@ -69,7 +69,7 @@ fn a_repeated_equation_changes_nothing() {
     check(
         "repeated",
         &system,
-        &PlanOptions::default(),
+        &SolveOptions::default(),
         Answer {
             paths: 4,
             nonsingular: 4,
@@ -90,10 +90,10 @@ fn a_loop_of_six_joints_keeps_its_circles() {
     };
     assert_eq!((system.equation_count(), system.dimension()), (18, 12));
     for seed in SEEDS.take(3) {
-        let options = PlanOptions {
-            start: StartChoice::TotalDegree,
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let paths = plan(&system, &options).map(|plan| plan.paths);
         assert_eq!(paths.ok().flatten(), Some(2_u64.pow(6) * 3_u64.pow(6)));

@@ -1,8 +1,9 @@
 //! Given starts: parameter homotopies to many targets, and homotopies of the user's own.
 
 use crate::check::{Answer, SEEDS, complaints, solve};
-use cognate_algorithms::PlanOptions;
+use cognate_algorithms::SolveOptions;
 use cognate_algorithms::plan::GivenStart;
+use cognate_algorithms::plan::{KnownSolutions, SolveMethod};
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_systems::system::System;
 use cognate_tests::systems::written;
@@ -17,7 +18,7 @@ fn number(re: f64, im: f64) -> Complex64 {
 pub fn solve_from(
     system: &System,
     points: Vec<Complex64>,
-    options: PlanOptions,
+    options: SolveOptions,
 ) -> Vec<cognate_solutions::solution_set::SolutionSet> {
     let dimension = system.variables.len();
     let stored = Arc::new(StoredPoints {
@@ -25,12 +26,13 @@ pub fn solve_from(
         coordinates: points,
     });
     let object = Digest([7; 32]);
-    let options = PlanOptions {
-        start_points: Some(GivenStart {
-            object,
-            count: stored.len() as u64,
-            dimension,
-        }),
+    let given = GivenStart {
+        object,
+        count: stored.len() as u64,
+        dimension,
+    };
+    let options = SolveOptions {
+        method: options.method.with_points(given),
         ..options
     };
     let find = move |digest| (digest == object).then(|| stored.clone());
@@ -54,11 +56,14 @@ fn many_targets_are_solved_from_one_start() {
     ];
     let real = [Some(2), Some(0), None, Some(2)];
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::Given(KnownSolutions {
+                points: None,
+                parameters: Some(vec![number(4.0, 0.0)]),
+            }),
             seed,
-            start_parameters: Some(vec![number(4.0, 0.0)]),
             target_parameters: targets.iter().map(|&p| vec![p]).collect(),
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let sets = solve_from(&system, starts.clone(), options);
         assert_eq!(sets.len(), targets.len());
@@ -85,11 +90,14 @@ fn many_targets_are_solved_from_one_start() {
 fn a_special_target_has_a_multiple_solution() {
     let system = written("variable_group x; parameter p; function f; f = x^2 - p;");
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
+            method: SolveMethod::Given(KnownSolutions {
+                points: None,
+                parameters: Some(vec![number(1.0, 0.0)]),
+            }),
             seed,
-            start_parameters: Some(vec![number(1.0, 0.0)]),
             target_parameters: vec![vec![number(0.0, 0.0)]],
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let sets = solve_from(&system, vec![number(1.0, 0.0), number(-1.0, 0.0)], options);
         let answer = Answer {
@@ -116,7 +124,7 @@ fn a_homotopy_of_the_users_own_is_followed() {
     let sets = solve_from(
         &system,
         vec![number(1.0, 0.0), root, root.conj()],
-        PlanOptions::default(),
+        SolveOptions::default(),
     );
     let answer = Answer {
         paths: 3,
@@ -132,10 +140,13 @@ fn a_homotopy_of_the_users_own_is_followed() {
 #[test]
 fn a_wrong_start_solution_is_a_failed_path() {
     let system = written("variable_group x; parameter p; function f; f = x^2 - p;");
-    let options = PlanOptions {
-        start_parameters: Some(vec![number(1.0, 0.0)]),
+    let options = SolveOptions {
+        method: SolveMethod::Given(KnownSolutions {
+            points: None,
+            parameters: Some(vec![number(1.0, 0.0)]),
+        }),
         target_parameters: vec![vec![number(2.0, 0.0)]],
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let sets = solve_from(&system, vec![number(1.0, 0.0), number(0.3, 0.0)], options);
     assert_eq!((sets[0].paths.finite, sets[0].paths.failed), (1, 1));

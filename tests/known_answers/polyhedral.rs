@@ -1,8 +1,8 @@
 //! The same answers from mixed cells: as many paths as the mixed volume, and nothing lost.
 
 use crate::check::{Answer, check, solve};
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::{StartChoice, plan};
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::{SolveMethod, plan};
 use cognate_algorithms::start_costs::StartKind;
 use cognate_systems::named::{Named, caprasse, cyclic, eco, katsura, noon, reimer};
 use cognate_systems::system::System;
@@ -10,9 +10,9 @@ use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use cognate_tests::systems::{shared, with_conjugates, written};
 
 fn check_polyhedral(name: &str, system: &System, answer: Answer) {
-    let options = PlanOptions {
-        start: StartChoice::Polyhedral,
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::Polyhedral,
+        ..SolveOptions::default()
     };
     check(&format!("{name}, polyhedral"), system, &options, answer);
 }
@@ -40,10 +40,10 @@ fn cyclic_5_and_6_and_7() {
 #[test]
 fn cyclic_6_and_7_counted_by_workers() {
     for (n, volume) in [(6, 156), (7, 924)] {
-        let options = PlanOptions {
-            start: StartChoice::Polyhedral,
+        let options = SolveOptions {
+            method: SolveMethod::Polyhedral,
             counting_operations: 1000,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let system = cyclic(n).system;
         let planned = plan(&system, &options).map(|plan| plan.paths);
@@ -118,9 +118,9 @@ fn sparse_polynomials_of_high_degree() {
         "variable_group x, y; function f, g; \
          f = x^40*y - 3*y^2 + x*y^17 - 7*x + 2; g = x^3*y^30 + 5*x^2 - 11*y^9 + 1/2;",
     );
-    let options = PlanOptions {
-        start: StartChoice::Polyhedral,
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::Polyhedral,
+        ..SolveOptions::default()
     };
     let volume = plan(&system, &options).ok().and_then(|plan| plan.paths);
     let volume = volume.unwrap_or_default();
@@ -137,7 +137,7 @@ fn sparse_polynomials_of_high_degree() {
 #[test]
 fn auto_takes_it_where_it_saves_paths() {
     let chosen = |system: &System| {
-        let plan = plan(system, &PlanOptions::default());
+        let plan = plan(system, &SolveOptions::default());
         plan.map(|plan| (plan.start, plan.paths, plan.why))
     };
     let (start, paths, why) = chosen(&cyclic(7).system).expect("it can be solved");
@@ -146,9 +146,9 @@ fn auto_takes_it_where_it_saves_paths() {
     let (start, paths, why) = chosen(&katsura(6).system).expect("it can be solved");
     assert_eq!((start, paths), (StartKind::TotalDegree, Some(64)), "{why}");
     let homogeneous = written("hom_variable_group x, y; function f; f = x^2 - 2*y^2;");
-    let asked = PlanOptions {
-        start: StartChoice::Polyhedral,
-        ..PlanOptions::default()
+    let asked = SolveOptions {
+        method: SolveMethod::Polyhedral,
+        ..SolveOptions::default()
     };
     let refusal = plan(&homogeneous, &asked)
         .err()
@@ -182,9 +182,9 @@ fn a_zero_below_the_line_is_no_solution() {
         ..Answer::default()
     };
     check_polyhedral("quotients", &system, answer);
-    let options = PlanOptions {
-        start: StartChoice::TotalDegree,
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::TotalDegree,
+        ..SolveOptions::default()
     };
     let (paths, sets) = solve(&system, &options, &|_| None);
     assert_eq!((paths, sets[0].counts.nonsingular), (4, 4));

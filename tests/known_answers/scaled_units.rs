@@ -2,8 +2,9 @@
 //! systems in random units.
 
 use crate::check::solve;
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::ClosingOptions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::expression::Node;
@@ -14,11 +15,11 @@ use cognate_tests::systems::written;
 use num_complex::Complex64;
 use std::collections::HashMap;
 
-fn options(seed: u64, start: StartChoice) -> PlanOptions {
-    PlanOptions {
+fn options(seed: u64, start: SolveMethod) -> SolveOptions {
+    SolveOptions {
+        method: start,
         seed,
-        start,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     }
 }
 
@@ -33,7 +34,7 @@ fn values(set: &SolutionSet) -> Vec<Vec<Complex64>> {
 fn first_values(text: &str, expected: &[f64]) {
     let system = written(text);
     for seed in 1..=5 {
-        let (_, sets) = solve(&system, &options(seed, StartChoice::Auto), &|_| None);
+        let (_, sets) = solve(&system, &options(seed, SolveMethod::Auto), &|_| None);
         let set = &sets[0];
         let mut found: Vec<f64> = values(set).iter().map(|point| point[0].re).collect();
         found.sort_by(f64::total_cmp);
@@ -75,7 +76,7 @@ fn a_solution_as_far_out_as_a_coefficient_is_none_at_infinity() {
              f = (x - 3)*(x - 10^{exponent}) + y*x; g = x*y - 2*x + 5;"
         ));
         for seed in 1..=3 {
-            let (_, sets) = solve(&system, &options(seed, StartChoice::Auto), &|_| None);
+            let (_, sets) = solve(&system, &options(seed, SolveMethod::Auto), &|_| None);
             let set = &sets[0];
             let counts = (set.counts.nonsingular, set.counts.singular, set.counts.real);
             let what = format!("{exponent}, seed {seed}: {:?}", set.paths);
@@ -98,7 +99,7 @@ fn a_solution_that_turns_take_for_infinite_is_not_lost_in_silence() {
          g = y^3 - 8*y^2 + 2500000021*y - 5000000018;",
     );
     for (seed, is_sure) in [(496_851_144, true), (2, true), (1, false), (4, false)] {
-        let of = options(seed, StartChoice::LinearProduct);
+        let of = options(seed, SolveMethod::LINEAR_PRODUCT);
         let (_, sets) = solve(&system, &of, &|_| None);
         let set = &sets[0];
         let counts = (set.counts.nonsingular, set.counts.real);
@@ -161,8 +162,8 @@ fn in_other_units(system: &System, units: &[i32], factors: &[i32]) -> System {
 
 /// The system has the same counts in random units, and its solutions are the same points.
 #[track_caller]
-fn same_in_other_units(name: &str, system: &System, start: StartChoice, rounds: u64) {
-    let (_, plain) = solve(system, &options(1, start), &|_| None);
+fn same_in_other_units(name: &str, system: &System, start: SolveMethod, rounds: u64) {
+    let (_, plain) = solve(system, &options(1, start.clone()), &|_| None);
     let plain = &plain[0];
     for round in 0..rounds {
         let mut random = RandomStream::new(round, Purpose::Test, 0);
@@ -174,7 +175,7 @@ fn same_in_other_units(name: &str, system: &System, start: StartChoice, rounds: 
         }
         let factors: Vec<i32> = system.equations.iter().map(|_| exponent(200)).collect();
         let other = in_other_units(system, &units, &factors);
-        let (_, sets) = solve(&other, &options(round + 1, start), &|_| None);
+        let (_, sets) = solve(&other, &options(round + 1, start.clone()), &|_| None);
         let set = &sets[0];
         let context = format!("{name}, round {round}, units {units:?}: {:?}", set.paths);
         let counts = |set: &SolutionSet| {
@@ -220,7 +221,7 @@ fn known_systems_are_the_same_in_random_units() {
         ("caprasse", named::caprasse().system),
         ("reimer-3", named::reimer(3).system),
     ] {
-        same_in_other_units(name, &system, StartChoice::Auto, 4);
+        same_in_other_units(name, &system, SolveMethod::Auto, 4);
     }
 }
 
@@ -228,13 +229,13 @@ fn known_systems_are_the_same_in_random_units() {
 fn every_start_is_the_same_in_random_units() {
     let system = named::katsura(4).system;
     for start in [
-        StartChoice::TotalDegree,
-        StartChoice::Multihomogeneous,
-        StartChoice::LinearProduct,
-        StartChoice::Polyhedral,
-        StartChoice::Regeneration,
+        SolveMethod::TotalDegree,
+        SolveMethod::Multihomogeneous,
+        SolveMethod::LINEAR_PRODUCT,
+        SolveMethod::Polyhedral,
+        SolveMethod::Regeneration,
     ] {
-        same_in_other_units(&format!("katsura-4 by {start:?}"), &system, start, 2);
+        same_in_other_units(&format!("katsura-4 by {}", start.name()), &system, start, 2);
     }
 }
 
@@ -242,7 +243,7 @@ fn every_start_is_the_same_in_random_units() {
 fn more_equations_than_unknowns_are_the_same_in_random_units() {
     let text = "variable_group x, y; function f1, f2, f3; f1 = x^2 + y^2 - 5; f2 = x*y - 2; \
                 f3 = x^3 - 3*x*y^2 + 5*y + x - 0 - (x^3 - 3*x*y^2 + 5*y + x)*(x*y - 1);";
-    same_in_other_units("three conics", &written(text), StartChoice::Auto, 3);
+    same_in_other_units("three conics", &written(text), SolveMethod::Auto, 3);
 }
 
 #[test]
@@ -255,7 +256,7 @@ fn homogeneous_groups_are_the_same_in_random_units() {
         let mut random = RandomStream::new(round, Purpose::Test, 1);
         let units: Vec<i32> = (0..3).map(|_| random.below(81) as i32 - 40).collect();
         let other = in_other_units(&system, &units, &[150, -150]);
-        let (_, sets) = solve(&other, &options(round, StartChoice::Auto), &|_| None);
+        let (_, sets) = solve(&other, &options(round, SolveMethod::Auto), &|_| None);
         let counts = (sets[0].counts.nonsingular, sets[0].paths.failed);
         assert_eq!(counts, (6, 0), "round {round}: {:?}", sets[0].paths);
     }
@@ -265,10 +266,13 @@ fn homogeneous_groups_are_the_same_in_random_units() {
 #[test]
 fn proofs_and_digits_are_in_the_units_of_the_variables() {
     let system = written("variable_group x, y; function f, g; f = x^2 - 2e-20; g = x*y - 1e30;");
-    let with = PlanOptions {
-        certify: true,
-        digits: 40,
-        ..options(1, StartChoice::Auto)
+    let with = SolveOptions {
+        closings: ClosingOptions {
+            certify: true,
+            digits: Some(40),
+            ..ClosingOptions::default()
+        },
+        ..options(1, SolveMethod::Auto)
     };
     let (_, sets) = solve(&system, &with, &|_| None);
     let set = &sets[0];

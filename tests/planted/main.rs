@@ -7,7 +7,7 @@
 //! solved by a process of its own (`--one NUMBER`), so that a path without end is stopped after
 //! `--seconds`; a process that breaks is named like a silent error.
 
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::dice::Dice;
 use cognate_tests::planted::kinds::{KINDS, planted};
@@ -69,7 +69,7 @@ struct Tally {
 }
 
 /// The start and the seed with which a system of a series is solved.
-fn throw(series: u64, number: u64) -> (StartChoice, u64) {
+fn throw(series: u64, number: u64) -> (SolveMethod, u64) {
     let mut dice = Dice(series ^ number.rotate_left(20));
     let start = start(&mut dice);
     (start, dice.below(1 << 32))
@@ -159,13 +159,16 @@ fn main() -> ExitCode {
             continue;
         }
         let line = format!(
-            "{word}: system {number} of seed {}, {}, start {start:?}, seed {seed}:{wrong}",
-            wanted.seed, system.kind
+            "{word}: system {number} of seed {}, {}, start {}, seed {seed}:{wrong}",
+            wanted.seed,
+            system.kind,
+            start.name()
         );
         eprintln!("{line}");
         if let Some(folder) = &wanted.folder {
             let name = format!("{word}_{}_{number}.bertini", wanted.seed);
-            let note = format!("; --start {start:?} --seed {seed}: {word}{wrong}").to_lowercase();
+            let note =
+                format!("; --start {} --seed {seed}: {word}{wrong}", start.name()).to_lowercase();
             let written = std::fs::write(folder.join(name), system.file(&note));
             or_exit(written.map_err(|e| format!("{}: {e}", folder.display())));
         }

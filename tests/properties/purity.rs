@@ -3,9 +3,10 @@
 //! and has a golden hash, which notices a change of compiler or of the order of operations.
 
 use crate::subject::Subject;
-use cognate_algorithms::PlanOptions;
+use cognate_algorithms::SolveOptions;
 use cognate_algorithms::monodromy::LoopLimits;
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::plan::SolveMethod;
+use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, MonodromyOptions, TrackingOptions};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::Work;
@@ -62,46 +63,42 @@ macro_rules! homotopy_conformance {
 
 work_conformance! {
     // Paths: regular ends, several groups, ends at infinity, singular ends, generic systems.
-    katsura_6, Work::Track, first(StartChoice::Auto, &katsura(6));
-    three_rpr, Work::Track, first(StartChoice::Auto, &example("three_rpr.bertini"));
+    katsura_6, Work::Track, first(SolveMethod::Auto, &katsura(6));
+    three_rpr, Work::Track, first(SolveMethod::Auto, &example("three_rpr.bertini"));
     stewart_gough, Work::Track,
-        first(StartChoice::Auto, &example("stewart_gough_dietmaier.bertini"));
-    cyclic_5, Work::Track, first(StartChoice::TotalDegree, &example("cyclic_5.bertini"));
-    double_root, Work::Track, Subject::of(&double_root_system(), PlanOptions::default(), &|_| true);
+        first(SolveMethod::Auto, &example("stewart_gough_dietmaier.bertini"));
+    cyclic_5, Work::Track, first(SolveMethod::TotalDegree, &example("cyclic_5.bertini"));
+    double_root, Work::Track, Subject::of(&double_root_system(), SolveOptions::default(), &|_| true);
     cyclic_5_polyhedral, Work::Track,
-        first(StartChoice::Polyhedral, &example("cyclic_5.bertini"));
+        first(SolveMethod::Polyhedral, &example("cyclic_5.bertini"));
     // As every path is tracked again that met another: by Taylor series, then with more digits.
     robust_cyclic_5, Work::Track, robust(1, &example("cyclic_5.bertini"));
     robust_stewart_gough, Work::Track, robust(1, &example("stewart_gough_dietmaier.bertini"));
     robust_twice_cyclic_5, Work::Track, robust(2, &example("cyclic_5.bertini"));
     certify, Work::Certify, closing(
         &example("three_rpr.bertini"),
-        PlanOptions { certify: true, ..PlanOptions::default() },
+        SolveOptions { closings: ClosingOptions { certify: true, ..ClosingOptions::default() }, ..SolveOptions::default() },
     );
     certify_close_pairs, Work::Certify, closing(
         CLOSE_PAIRS,
-        PlanOptions { certify: true, ..PlanOptions::default() },
+        SolveOptions { closings: ClosingOptions { certify: true, ..ClosingOptions::default() }, ..SolveOptions::default() },
     );
     sharpen, Work::Sharpen { .. }, closing(
         &example("three_rpr.bertini"),
-        PlanOptions { digits: 60, ..PlanOptions::default() },
+        SolveOptions { closings: ClosingOptions { digits: Some(60), ..ClosingOptions::default() }, ..SolveOptions::default() },
     );
     deflate, Work::Sharpen { .. }, closing(
         DEFLATED,
-        PlanOptions { digits: 40, deflate: true, ..PlanOptions::default() },
+        SolveOptions { closings: ClosingOptions { digits: Some(40), deflate: true, ..ClosingOptions::default() }, ..SolveOptions::default() },
     );
     local_dimension, Work::LocalDimension, Subject::of(
         &written(CURVE_AND_POINTS),
-        PlanOptions { start: StartChoice::TotalDegree, ..PlanOptions::default() },
+        SolveOptions { method: SolveMethod::TotalDegree, ..SolveOptions::default() },
         &|stage| stage.work == Work::LocalDimension,
     );
     count_mixed_cells, Work::CountMixedCells, Subject::of(
         &read(&example("cyclic_5.bertini")),
-        PlanOptions {
-            start: StartChoice::Polyhedral,
-            counting_operations: 10,
-            ..PlanOptions::default()
-        },
+        SolveOptions { method: SolveMethod::Polyhedral, counting_operations: 10, ..SolveOptions::default() },
         &|stage| stage.work == Work::CountMixedCells,
     );
     // A set that is regular, and one that is deflated.
@@ -117,25 +114,25 @@ work_conformance! {
 
 homotopy_conformance! {
     straight_line, HomotopyKind::StraightLine { .. },
-        of_kind(&katsura(5), StartChoice::TotalDegree, |h| {
+        of_kind(&katsura(5), SolveMethod::TotalDegree, |h| {
             matches!(h, HomotopyKind::StraightLine { .. })
         });
     parameter, HomotopyKind::Parameter { .. }, many_targets();
     path_variable, HomotopyKind::PathVariable { .. }, homotopy_of_the_users_own();
     toric, HomotopyKind::Toric,
-        of_kind(&example("cyclic_5.bertini"), StartChoice::Polyhedral, |h| {
+        of_kind(&example("cyclic_5.bertini"), SolveMethod::Polyhedral, |h| {
             matches!(h, HomotopyKind::Toric)
         });
     generic, HomotopyKind::Generic { .. },
-        of_kind(&example("cyclic_5.bertini"), StartChoice::Polyhedral, |h| {
+        of_kind(&example("cyclic_5.bertini"), SolveMethod::Polyhedral, |h| {
             matches!(h, HomotopyKind::Generic { .. })
         });
     slide, HomotopyKind::MoveSlice { .. },
-        of_kind(&katsura(4), StartChoice::Regeneration, |h| {
+        of_kind(&katsura(4), SolveMethod::Regeneration, |h| {
             matches!(h, HomotopyKind::MoveSlice { level, .. } if *level > 1)
         });
     intersect, HomotopyKind::ProductToEquation { .. },
-        of_kind(&katsura(4), StartChoice::Regeneration, |h| {
+        of_kind(&katsura(4), SolveMethod::Regeneration, |h| {
             matches!(h, HomotopyKind::ProductToEquation { level, .. } if *level > 1)
         });
     sections, HomotopyKind::Sections { .. }, sections_of_cubics();
@@ -170,36 +167,39 @@ fn read(text: &str) -> System {
 }
 
 /// The first stage of a solve.
-fn first(start: StartChoice, text: &str) -> Subject {
-    let options = PlanOptions {
-        start,
-        ..PlanOptions::default()
+fn first(start: SolveMethod, text: &str) -> Subject {
+    let options = SolveOptions {
+        method: start,
+        ..SolveOptions::default()
     };
     Subject::of(&read(text), options, &|_| true)
 }
 
 /// The first stage by total degree, with the settings of this attempt at paths that met.
 fn robust(attempt: u16, text: &str) -> Subject {
-    let options = PlanOptions {
-        start: StartChoice::TotalDegree,
-        settings: Settings::default().tightened(attempt).robust(),
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::TotalDegree,
+        tracking: TrackingOptions {
+            settings: Settings::default().tightened(attempt).robust(),
+            ..TrackingOptions::default()
+        },
+        ..SolveOptions::default()
     };
     Subject::of(&read(text), options, &|_| true)
 }
 
 /// The stage of a solve that certifies or sharpens what was found.
-fn closing(text: &str, options: PlanOptions) -> Subject {
+fn closing(text: &str, options: SolveOptions) -> Subject {
     Subject::of(&read(text), options, &|stage| {
         matches!(stage.work, Work::Certify | Work::Sharpen { .. })
     })
 }
 
 /// The first stage of a solve that tracks by such a homotopy.
-fn of_kind(text: &str, start: StartChoice, kind: fn(&HomotopyKind) -> bool) -> Subject {
-    let options = PlanOptions {
-        start,
-        ..PlanOptions::default()
+fn of_kind(text: &str, start: SolveMethod, kind: fn(&HomotopyKind) -> bool) -> Subject {
+    let options = SolveOptions {
+        method: start,
+        ..SolveOptions::default()
     };
     Subject::of(&read(text), options, &|stage| {
         stage.work == Work::Track && kind(&stage.homotopy)
@@ -214,13 +214,16 @@ fn real(values: &[f64]) -> Vec<Complex64> {
 fn many_targets() -> Subject {
     let system =
         written("variable_group x, y; parameter p; function f, g; f = x^2 - p; g = y*(x - 3) - 1;");
-    let options = PlanOptions {
-        start_parameters: Some(real(&[4.0])),
+    let options = SolveOptions {
+        method: SolveMethod::Given(KnownSolutions {
+            points: None,
+            parameters: Some(real(&[4.0])),
+        }),
         target_parameters: [5.0, -1.0, 0.0, 1e6, 9.0]
             .iter()
             .map(|&p| real(&[p]))
             .collect(),
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     Subject::from(&system, real(&[2.0, -1.0, -2.0, -0.2]), options, &|_| true)
 }
@@ -232,17 +235,19 @@ fn homotopy_of_the_users_own() -> Subject {
     );
     let root = Complex64::new(-0.5, 0.75f64.sqrt());
     let start = vec![Complex64::new(1.0, 0.0), root, root.conj()];
-    Subject::from(&system, start, PlanOptions::default(), &|_| true)
+    Subject::from(&system, start, SolveOptions::default(), &|_| true)
 }
 
 fn sections_of_cubics() -> Subject {
-    let options = PlanOptions {
-        start: StartChoice::Monodromy,
-        loops: LoopLimits {
-            trace_test: true,
-            ..LoopLimits::default()
-        },
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            limits: LoopLimits {
+                trace_test: true,
+                ..LoopLimits::default()
+            },
+            ..MonodromyOptions::default()
+        }),
+        ..SolveOptions::default()
     };
     Subject::of(&written(CUBICS), options, &|stage| {
         let sections = matches!(stage.homotopy, HomotopyKind::Sections { .. });

@@ -3,7 +3,7 @@
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::plan::GivenStart;
 use cognate_algorithms::run_locally::drive;
-use cognate_algorithms::{PathAlgorithm, PlanOptions, Root, plan};
+use cognate_algorithms::{PathAlgorithm, Root, SolveOptions, plan};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
@@ -38,7 +38,7 @@ impl Subject {
     ///
     /// # Panics
     /// When the solve has no such stage.
-    pub fn of(system: &System, options: PlanOptions, wanted: &dyn Fn(&Stage) -> bool) -> Self {
+    pub fn of(system: &System, options: SolveOptions, wanted: &dyn Fn(&Stage) -> bool) -> Self {
         Self::from(system, Vec::new(), options, wanted)
     }
 
@@ -46,21 +46,17 @@ impl Subject {
     pub fn from(
         system: &System,
         start: Vec<Complex64>,
-        options: PlanOptions,
+        options: SolveOptions,
         wanted: &dyn Fn(&Stage) -> bool,
     ) -> Self {
         let mut points = HashMap::new();
-        let mut options = PlanOptions { seed: 7, ..options };
+        let mut options = SolveOptions { seed: 7, ..options };
         if !start.is_empty() {
             let given = StoredPoints {
                 dimension: system.variables.len(),
                 coordinates: start,
             };
-            options.start_points = Some(GivenStart {
-                object: given.digest(),
-                count: given.len() as u64,
-                dimension: given.dimension,
-            });
+            options.method = options.method.with_points(GivenStart::of(&given));
             points.insert(given.digest(), Arc::new(given));
         }
         let mut plan = plan(system, &options).expect("a plan");

@@ -4,6 +4,7 @@
 use crate::worker_lost::{problem, quiet_answer, slow_worker};
 use cognate_tests::client::{accepted, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions};
+use cognate_tests::processes::PATIENCE;
 use std::time::{Duration, Instant};
 
 /// So long a worker keeps what it has without a word.
@@ -53,7 +54,7 @@ fn a_worker_that_stands_still_does_not_hold_up_the_end() {
     cluster.workers[0].thaw();
     let mut other = cluster.workers.remove(1);
     other.terminate();
-    other.wait(Duration::from_secs(10));
+    other.wait(PATIENCE);
     assert!(client.solve(&problem()) == *expected);
     assert!(client.answer(&job) == *expected, "nothing came too late");
     cluster.stop();

@@ -6,6 +6,7 @@ use cognate_protocol::v1::Verdict;
 use cognate_tests::builders::katsura;
 use cognate_tests::client::{Submission, accepted, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
+use cognate_tests::processes::PATIENCE;
 use std::time::Duration;
 
 #[test]
@@ -36,7 +37,7 @@ fn a_frozen_worker_is_replaced_and_goes_on_when_it_wakes() {
     cluster.workers[0].thaw();
     let mut other = cluster.workers.remove(1);
     other.terminate();
-    other.wait(Duration::from_secs(10));
+    other.wait(PATIENCE);
     assert_eq!(
         client
             .solve(&Submission::of(katsura(3)))

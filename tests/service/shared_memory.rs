@@ -5,6 +5,7 @@ use cognate_tests::client::{accepted, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::processes::until;
 use cognate_tests::skip::skip;
+use std::time::Duration;
 
 /// Whether the coordinator offers shared memory here; where not, why is printed.
 fn offered(cluster: &Cluster) -> bool {
@@ -113,6 +114,35 @@ fn workers_outlive_their_coordinator_and_meet_the_next() {
     until("shared memory again, with the next coordinator", || {
         (log().matches("by shared memory").count() >= 2).then_some(())
     });
+    cluster.stop();
+}
+
+#[test]
+fn whoever_is_stopped_and_goes_on_keeps_shared_memory() {
+    let mut cluster = Cluster::start(nervous());
+    if !offered(&cluster) {
+        return;
+    }
+    cluster.add_worker(&by("shared-memory"));
+    until("it works by shared memory", || {
+        let log = cluster.workers[0].log();
+        log.contains("by shared memory").then_some(())
+    });
+    // Both wait for a bell meanwhile.
+    for _ in 0..5 {
+        for process in [&mut cluster.coordinator, &mut cluster.workers[0]] {
+            process.freeze();
+            std::thread::sleep(Duration::from_millis(50));
+            process.thaw();
+        }
+    }
+    let client = cluster.client();
+    assert!(client.solve(&problem()) == *quiet_answer());
+    for process in [&cluster.coordinator, &cluster.workers[0]] {
+        let log = process.log();
+        assert!(!log.contains("shared memory ended"), "{log}");
+    }
+    assert_eq!(client.workers()[0].transport, "shared-memory");
     cluster.stop();
 }
 

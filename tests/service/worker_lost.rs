@@ -3,6 +3,7 @@
 use cognate_tests::builders::katsura;
 use cognate_tests::client::{Answer, Submission, accepted, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
+use cognate_tests::processes::PATIENCE;
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -110,7 +111,7 @@ fn a_drained_worker_gives_back_at_once() {
     client.progress_once(&job, "a chunk is leased", leased);
     let mut drained = cluster.workers.remove(0);
     drained.terminate();
-    let status = drained.wait(Duration::from_secs(10));
+    let status = drained.wait(PATIENCE);
     assert_eq!(status.code(), Some(0), "it ends well");
     let after = client.progress(&job).expect("the coordinator is there");
     assert!(!leased(&after), "everything is given back: {after:?}");

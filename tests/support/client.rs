@@ -1,5 +1,6 @@
 //! Client: the service's calls as a test makes them, one after the other.
 
+use crate::processes::PATIENCE;
 use cognate_protocol::v1;
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::v1::worker_api_client::WorkerApiClient;
@@ -7,8 +8,8 @@ use std::future::Future;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use tokio::runtime::Runtime;
-use tonic::Status;
 use tonic::transport::{Channel, Endpoint, Uri};
+use tonic::{Code, Status};
 
 /// A system to submit.
 #[derive(Clone, Debug)]
@@ -137,14 +138,21 @@ impl Client {
         self.call(call).map(|response| response.into_inner().job)
     }
 
-    /// Submits; the job's id.
+    /// Submits, as `cognate submit` does: while the coordinator is unavailable, the same request again. The
+    /// job's id.
     ///
     /// # Panics
     /// When the coordinator does not take it.
     pub fn submit(&self, submission: &Submission) -> String {
-        match self.try_submit(submission) {
-            Ok(job) => job,
-            Err(status) => panic!("not submitted: {status}"),
+        let begin = Instant::now();
+        loop {
+            match self.try_submit(submission) {
+                Ok(job) => return job,
+                Err(status) if status.code() == Code::Unavailable && begin.elapsed() < PATIENCE => {
+                    std::thread::sleep(Duration::from_millis(100));
+                }
+                Err(status) => panic!("not submitted: {status}"),
+            }
         }
     }
 

@@ -24,8 +24,9 @@ const MOST_FETCHES: u32 = 10;
 /// A worker without free slots is heard of at least so often.
 const HEARTBEAT: Duration = Duration::from_secs(10);
 
-/// Longest wait for work where there are several coordinators.
-const POLL_OF_SEVERAL: Duration = Duration::from_secs(5);
+/// Longest wait for work where there are several coordinators: so long, and the time for an answer, an idle worker
+/// may lose to one that stands still.
+const POLL_OF_SEVERAL: Duration = Duration::from_secs(2);
 
 /// Why a worker did not begin.
 #[derive(Debug, thiserror::Error)]

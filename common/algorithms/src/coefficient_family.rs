@@ -86,7 +86,7 @@ pub fn coefficient_family(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{PlanOptions, StartChoice, plan};
+    use crate::plan::{SolveMethod, SolveOptions, plan};
     use crate::run_locally::run_locally;
     use crate::start_costs::cell_supports;
     use crate::synthetic::declared;
@@ -109,10 +109,10 @@ mod tests {
         let (family, values) = coefficient_family(&system, &supports).unwrap();
         assert_eq!((family.parameters.len(), values.len()), (5, 5));
         for seed in 1..=5 {
-            let options = PlanOptions {
-                start: StartChoice::Monodromy,
+            let options = SolveOptions {
+                method: SolveMethod::MONODROMY,
                 seed,
-                ..PlanOptions::default()
+                ..SolveOptions::default()
             };
             let mut plan = plan(&system, &options).unwrap();
             let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8).unwrap();

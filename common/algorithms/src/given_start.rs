@@ -3,7 +3,7 @@
 use crate::limits::MAX_PATHS;
 use crate::plan_error::PlanError;
 use crate::start_kind::StartKind;
-use cognate_continuation::start_points::Digest;
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +16,17 @@ pub struct GivenStart {
     pub count: u64,
     /// Coordinates of each point: the variables of the system, in order.
     pub dimension: usize,
+}
+
+impl GivenStart {
+    /// These points, which the object holds that has their digest.
+    pub fn of(points: &StoredPoints) -> Self {
+        Self {
+            object: points.digest(),
+            count: points.len() as u64,
+            dimension: points.dimension,
+        }
+    }
 }
 
 /// Whether as many start solutions, of so many coordinates, can be followed.

@@ -52,6 +52,7 @@ pub mod retried_stage;
 pub mod run_locally;
 mod set_structures;
 pub mod solve;
+pub mod solve_options;
 pub mod start_costs;
 pub mod start_kind;
 pub mod start_pair;
@@ -62,10 +63,13 @@ pub use any_algorithm::{AnyAlgorithm, AnySolve, RestoreError};
 pub use completeness_claim::CompletenessClaim;
 pub use finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
 pub use opening::Opening;
-pub use plan::{Plan, PlanOptions, plan};
+pub use plan::{Plan, plan};
 pub use plan_error::PlanError;
 pub use progress::{Progress, StageProgress, VerdictCounts};
 pub use solve::{Next, PathAlgorithm, Root, Solve, StageNumbers};
+pub use solve_options::{
+    ClosingOptions, KnownSolutions, MonodromyOptions, SolveMethod, SolveOptions, TrackingOptions,
+};
 
 #[cfg(test)]
 mod synthetic;

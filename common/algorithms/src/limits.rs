@@ -12,3 +12,6 @@ pub const MAX_STREAMED_PATHS: u64 = 40_000_000;
 
 /// Most operations that choosing a start spends on a mixed volume: about a second.
 pub(crate) const CHOOSING_OPERATIONS: u64 = 500_000_000;
+/// Most operations that planning a polyhedral start spends on a mixed volume: a few seconds. Workers
+/// count what takes longer.
+pub const PLANNING_OPERATIONS: u64 = 2_000_000_000;

@@ -9,14 +9,16 @@ use crate::coefficients::Coefficients;
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
 use crate::limits::CHOOSING_OPERATIONS;
-pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
-use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve};
+pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS, PLANNING_OPERATIONS};
+use crate::monodromy::{LoopStart, MonodromySolve};
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::{PlanError, checked_volume};
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::{Levels, RegenerationSolve};
-use crate::retried_stage::MAX_RETRIES;
 use crate::set_structures::set_names;
+pub use crate::solve_options::{
+    ClosingOptions, KnownSolutions, MonodromyOptions, SolveMethod, SolveOptions, TrackingOptions,
+};
 use crate::start_costs::{
     HALVED, SETS_ARE_GIVEN, StartKind, Starts, cell_supports, check_equations, checked_degrees,
 };
@@ -24,102 +26,15 @@ use crate::start_pair::start_pair;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
-use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::branches::CellBranches;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_continuation::start_systems::slices;
-use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
-use cognate_solutions::classification::Tolerances;
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_solutions::streamed::PathFilter;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
-
-/// Most operations that planning a polyhedral start spends on a mixed volume: a few seconds. Workers
-/// count what takes longer.
-pub const PLANNING_OPERATIONS: u64 = 2_000_000_000;
-
-/// Which start is wanted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StartChoice {
-    /// Given start solutions where there are any, else the start with the fewest paths.
-    #[default]
-    Auto,
-    /// All affine groups as one.
-    TotalDegree,
-    /// By the groups of the system, or by the best groups where it has one.
-    Multihomogeneous,
-    /// The start solutions that are given.
-    Given,
-    /// Loops in the space of parameters, from given start solutions or one that is found.
-    Monodromy,
-    /// From mixed cells.
-    Polyhedral,
-    /// From products of linear forms in sets of variables.
-    LinearProduct,
-    /// Equation by equation.
-    Regeneration,
-}
-
-/// Everything that decides how a system is solved, besides the system.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlanOptions {
-    /// Which start.
-    pub start: StartChoice,
-    /// Start solutions, for a parameter homotopy or a homotopy of the user's own.
-    pub start_points: Option<GivenStart>,
-    /// Where the start solutions solve the system.
-    pub start_parameters: Option<Vec<Complex64>>,
-    /// Where the solutions are wanted; without start parameters one, the values of the parameters.
-    pub target_parameters: Vec<Vec<Complex64>>,
-    /// Seed of everything random.
-    pub seed: u64,
-    /// How paths are tracked.
-    pub settings: Settings,
-    /// How verdicts are reached.
-    pub tolerances: Tolerances,
-    /// How often a path is tracked again at most.
-    pub max_retries: u16,
-    /// When the loops of a monodromy solve end.
-    pub loops: LoopLimits,
-    /// Whether the solutions are certified.
-    pub certify: bool,
-    /// Decimal digits of the solutions.
-    pub digits: u32,
-    /// Whether isolated singular solutions are brought to their digits by deflation.
-    pub deflate: bool,
-    /// Sets of variables for a linear-product start, for each equation as many as its degree;
-    /// without them they are guessed. With them [`StartChoice::Auto`] is that start.
-    pub sets: Option<SetStructure>,
-    /// Most operations that planning a polyhedral start spends on counting mixed cells, about one for
-    /// each multiplication; what takes more is counted by workers.
-    pub counting_operations: u64,
-}
-
-impl Default for PlanOptions {
-    fn default() -> Self {
-        Self {
-            start: StartChoice::Auto,
-            start_points: None,
-            start_parameters: None,
-            target_parameters: Vec::new(),
-            seed: 0,
-            settings: Settings::default(),
-            tolerances: Tolerances::default(),
-            max_retries: MAX_RETRIES,
-            loops: LoopLimits::default(),
-            certify: false,
-            digits: DIGITS_OF_DOUBLES,
-            deflate: false,
-            sets: None,
-            counting_operations: PLANNING_OPERATIONS,
-        }
-    }
-}
 
 /// How a system will be solved.
 #[derive(Clone, Debug)]
@@ -139,7 +54,7 @@ pub struct Plan {
 }
 
 /// The plan for a system that has been checked.
-pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> {
     check_parameters(system, options)?;
     if let Some(index) = (0..system.equations.len())
         .find(|&i| system.expressions.dependence(system.equations[i]) == Dependence::Parameters)
@@ -149,29 +64,32 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
             name.unwrap_or_else(|| format!("equation {}", index + 1)),
         ));
     }
-    let given = options.start == StartChoice::Given || options.start_points.is_some();
-    if options.sets.is_some() && (given || options.start == StartChoice::Monodromy) {
-        return Err(PlanError::SetsWithoutLinearProduct);
-    }
-    let ends = options.start_parameters.iter();
+    let known = options.method.known_solutions();
+    let ends = known
+        .and_then(|known| known.parameters.as_ref())
+        .into_iter();
     let coefficients = Coefficients::of(system, ends.chain(options.target_parameters.first()));
     let in_units = coefficients.in_units(system);
     let system = &*in_units;
-    let resolved = coefficients.resolved(&options.settings);
-    let resolved = resolved.map(|settings| PlanOptions {
-        settings,
+    let resolved = coefficients.resolved(&options.tracking.settings);
+    let resolved = resolved.map(|settings| SolveOptions {
+        tracking: TrackingOptions {
+            settings,
+            ..options.tracking.clone()
+        },
         ..options.clone()
     });
     let options = resolved.as_ref().unwrap_or(options);
-    let mut plan = match (given, options.start) {
-        (_, StartChoice::Monodromy) => plan_monodromy(system, options),
-        (true, StartChoice::Auto | StartChoice::Given) => plan_given(system, options),
+    let mut plan = match &options.method {
+        SolveMethod::Monodromy(loops) => plan_monodromy(system, loops, options),
+        SolveMethod::Given(known) => plan_given(system, known, options),
         _ if system.path_variable.is_some() => Err(PlanError::HomotopyWithoutStart),
-        (true, _) => Err(PlanError::NothingToDeform),
-        (false, choice) => plan_start_system(system, choice, options),
+        start => plan_start_system(system, start, options),
     }?;
-    let more_digits = options.digits > DIGITS_OF_DOUBLES || options.deflate;
-    if (more_digits || options.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
+    let closings = options.closings;
+    let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
+    let more_digits = digits > DIGITS_OF_DOUBLES || closings.deflate;
+    if (more_digits || closings.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
         // What closes a solve takes all endpoints at once.
         return Err(PlanError::TooManyPaths {
             start: plan.start,
@@ -180,10 +98,10 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
         });
     }
     if more_digits {
-        let digits = Digits::new(options.digits, options.deflate);
+        let digits = Digits::new(digits, closings.deflate);
         plan.algorithm.close_with(Closing::Digits(digits));
     }
-    if options.certify {
+    if closings.certify {
         let certificates = Certificates::default();
         plan.algorithm
             .close_with(Closing::Certificates(certificates));
@@ -191,20 +109,15 @@ pub fn plan(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
     Ok(plan)
 }
 
-fn check_parameters(system: &System, options: &PlanOptions) -> Result<(), PlanError> {
+fn check_parameters(system: &System, options: &SolveOptions) -> Result<(), PlanError> {
     let expected = system.parameters.len();
     // A path variable's own value is not asked for where it is the only parameter.
     let only_path_variable = system.path_variable.is_some() && expected == 1;
-    let sets = options
-        .start_parameters
-        .iter()
-        .map(|set| ("the start parameters", set))
-        .chain(
-            options
-                .target_parameters
-                .iter()
-                .map(|set| ("the target parameters", set)),
-        );
+    let known = options.method.known_solutions();
+    let starts = known.and_then(|known| known.parameters.as_ref());
+    let targets = options.target_parameters.iter();
+    let sets = starts.map(|set| ("the start parameters", set)).into_iter();
+    let sets = sets.chain(targets.map(|set| ("the target parameters", set)));
     for (what, set) in sets {
         let found = set.len();
         if found != expected && !(only_path_variable && found == 0) {
@@ -222,10 +135,17 @@ fn check_parameters(system: &System, options: &PlanOptions) -> Result<(), PlanEr
 }
 
 /// Values of the parameters where there is one set of them.
-fn one_target(system: &System, options: &PlanOptions) -> Result<Vec<Complex64>, PlanError> {
+fn one_target(system: &System, options: &SolveOptions) -> Result<Vec<Complex64>, PlanError> {
     let zero = Complex64::new(0.0, 0.0);
     match options.target_parameters.as_slice() {
-        [set] if set.len() == system.parameters.len() => Ok(set.clone()),
+        [set] if set.len() == system.parameters.len() => {
+            let mut values = set.clone();
+            // Its own value is not asked for; where solutions are wanted it is 0.
+            if let Some(t) = system.path_variable {
+                values[t] = zero;
+            }
+            Ok(values)
+        }
         [] | [_] => {
             let free: Vec<&str> = (0..system.parameters.len())
                 .filter(|&k| system.path_variable != Some(k))
@@ -245,22 +165,14 @@ fn one_target(system: &System, options: &PlanOptions) -> Result<Vec<Complex64>, 
 
 fn plan_start_system(
     system: &System,
-    choice: StartChoice,
-    options: &PlanOptions,
+    method: &SolveMethod,
+    options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
-    if options.start_parameters.is_some() {
-        return Err(PlanError::StartParametersAlone);
-    }
     let parameters = one_target(system, options)?;
-    let choice = match (choice, &options.sets) {
-        (StartChoice::Auto, Some(_)) => StartChoice::LinearProduct,
-        (StartChoice::LinearProduct, _) | (_, None) => choice,
-        (_, Some(_)) => return Err(PlanError::SetsWithoutLinearProduct),
-    };
-    if choice == StartChoice::Polyhedral {
+    if *method == SolveMethod::Polyhedral {
         return plan_polyhedral(system, parameters, "asked for".to_string(), options);
     }
-    if choice == StartChoice::Regeneration {
+    if *method == SolveMethod::Regeneration {
         return plan_regeneration(system, parameters, options);
     }
     let mut starts = Starts::of(system, options.seed)?;
@@ -272,31 +184,30 @@ fn plan_start_system(
         },
         other => other,
     };
-    if choice == StartChoice::Auto {
+    if *method == SolveMethod::Auto {
         starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
     }
-    if matches!(choice, StartChoice::Auto | StartChoice::LinearProduct) {
-        starts = match &options.sets {
-            Some(sets) => starts.with_sets(system, sets),
-            None => starts.with_linear_product(system),
-        };
-    }
-    let (kind, why) = match choice {
-        StartChoice::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
-        StartChoice::Multihomogeneous => {
+    starts = match method {
+        SolveMethod::LinearProduct(Some(sets)) => starts.with_sets(system, sets),
+        SolveMethod::Auto | SolveMethod::LinearProduct(None) => starts.with_linear_product(system),
+        _ => starts,
+    };
+    let (kind, why) = match method {
+        SolveMethod::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
+        SolveMethod::Multihomogeneous => {
             let why = match starts.halved() {
                 true => format!("asked for; {HALVED}"),
                 false => "asked for".to_string(),
             };
             (StartKind::Multihomogeneous, why)
         }
-        StartChoice::LinearProduct => {
+        SolveMethod::LinearProduct(given) => {
             let sets = starts.linear_product.as_ref();
             let sets = sets.and_then(|start| start.as_ref().ok());
             let sets = sets.map_or(String::new(), |(tracked, start, _)| {
                 set_names(tracked, start)
             });
-            let asked = match options.sets {
+            let asked = match given {
                 Some(_) => SETS_ARE_GIVEN,
                 None => "asked for",
             };
@@ -345,7 +256,7 @@ fn plan_polyhedral(
     system: &System,
     parameters: Vec<Complex64>,
     why: String,
-    options: &PlanOptions,
+    options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
     checked_degrees(system)?;
     check_equations(system)?;
@@ -366,16 +277,16 @@ fn plan_polyhedral(
             count: volume.unwrap_or_default(),
             branches: volume.is_none().then(|| CellBranches::uncounted(0)),
         },
-        settings: options.settings.clone(),
+        settings: options.tracking.settings.clone(),
         seed: options.seed,
         attempt: 0,
     };
-    let tolerances = options.tolerances.clone();
+    let tolerances = options.tracking.tolerances.clone();
     let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
     Ok(Plan {
         system: system.clone(),
         algorithm: AnyAlgorithm::from(AnySolve::Polyhedral(Box::new(solve)))
-            .with_max_retries(options.max_retries),
+            .with_max_retries(options.tracking.max_retries),
         start: StartKind::Polyhedral,
         paths: volume,
         why: match volume {
@@ -389,7 +300,7 @@ fn plan_polyhedral(
 fn plan_regeneration(
     system: &System,
     parameters: Vec<Complex64>,
-    options: &PlanOptions,
+    options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
     let starts = Starts::of(system, options.seed)?;
     // A bound of the paths on every level.
@@ -401,7 +312,7 @@ fn plan_regeneration(
         degrees: order.iter().map(|&i| degrees[i as usize]).collect(),
         order,
         parameters,
-        settings: options.settings.clone(),
+        settings: options.tracking.settings.clone(),
         seed: options.seed,
     };
     let point =
@@ -409,12 +320,12 @@ fn plan_regeneration(
     // The forms are those of the unknowns that are tracked.
     let point = tracked.scaling.to_variables(&point);
     let paths = u64::from(levels.degrees[0].saturating_sub(1).max(1));
-    let tolerances = options.tolerances.clone();
+    let tolerances = options.tracking.tolerances.clone();
     let solve = RegenerationSolve::new(levels, point, &tracked, tolerances);
     Ok(Plan {
         system: tracked,
         algorithm: AnyAlgorithm::from(AnySolve::Regeneration(Box::new(solve)))
-            .with_max_retries(options.max_retries),
+            .with_max_retries(options.tracking.max_retries),
         start: StartKind::Regeneration,
         paths: Some(paths),
         why: format!(
@@ -424,8 +335,12 @@ fn plan_regeneration(
     })
 }
 
-fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
-    let start = options.start_points.ok_or(PlanError::NoStartPoints)?;
+fn plan_given(
+    system: &System,
+    known: &KnownSolutions,
+    options: &SolveOptions,
+) -> Result<Plan, PlanError> {
+    let start = known.points.ok_or(PlanError::NoStartPoints)?;
     check_given(system, &start)?;
     checked_degrees(system)?;
     check_equations(system)?;
@@ -436,10 +351,8 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
     } else if system.parameters.is_empty() {
         return Err(PlanError::NothingToDeform);
     } else {
-        let from = options
-            .start_parameters
-            .clone()
-            .ok_or(PlanError::NoStartParameters)?;
+        let from = known.parameters.clone();
+        let from = from.ok_or(PlanError::NoStartParameters)?;
         if options.target_parameters.is_empty() {
             return Err(PlanError::ParametersWithoutValues {
                 names: system.parameters.join(", "),
@@ -481,16 +394,20 @@ fn plan_given(system: &System, options: &PlanOptions) -> Result<Plan, PlanError>
     ))
 }
 
-fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
+fn plan_monodromy(
+    system: &System,
+    loops: &MonodromyOptions,
+    options: &SolveOptions,
+) -> Result<Plan, PlanError> {
     if system.path_variable.is_some() {
         return Err(PlanError::MonodromyOfHomotopy);
     }
     if system.parameters.is_empty() {
-        return plan_coefficient_loops(system, options);
+        return plan_coefficient_loops(system, loops, options);
     }
     checked_degrees(system)?;
     check_equations(system)?;
-    let (start, why) = match (options.start_points, &options.start_parameters) {
+    let (start, why) = match (loops.known.points, &loops.known.parameters) {
         (Some(given), Some(parameters)) => {
             check_given(system, &given)?;
             let start = LoopStart {
@@ -537,15 +454,17 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
         system,
         start,
         targets,
-        options.loops,
-        options.settings.clone(),
-        options.tolerances.clone(),
+        loops.limits,
+        options.tracking.settings.clone(),
+        options.tracking.tolerances.clone(),
         options.seed,
     )?;
     Ok(Plan {
         system: system.clone(),
-        algorithm: AnySolve::Monodromy(Box::new(solve.with_max_retries(options.max_retries)))
-            .into(),
+        algorithm: AnySolve::Monodromy(Box::new(
+            solve.with_max_retries(options.tracking.max_retries),
+        ))
+        .into(),
         start: StartKind::Monodromy,
         paths,
         why,
@@ -553,8 +472,12 @@ fn plan_monodromy(system: &System, options: &PlanOptions) -> Result<Plan, PlanEr
 }
 
 /// Loops through the systems with the same monomials, for a system without parameters.
-fn plan_coefficient_loops(system: &System, options: &PlanOptions) -> Result<Plan, PlanError> {
-    if options.start_points.is_some() {
+fn plan_coefficient_loops(
+    system: &System,
+    loops: &MonodromyOptions,
+    options: &SolveOptions,
+) -> Result<Plan, PlanError> {
+    if loops.known.points.is_some() {
         return Err(PlanError::NothingToDeform);
     }
     checked_degrees(system)?;
@@ -563,11 +486,11 @@ fn plan_coefficient_loops(system: &System, options: &PlanOptions) -> Result<Plan
     let family = coefficient_family(system, &supports);
     let (family, values) = family.map_err(PlanError::NoCoefficientFamily)?;
     let count = values.len();
-    let options = PlanOptions {
+    let options = SolveOptions {
         target_parameters: vec![values],
         ..options.clone()
     };
-    let plan = plan_monodromy(&family, &options)?;
+    let plan = plan_monodromy(&family, loops, &options)?;
     Ok(Plan {
         why: format!(
             "asked for; the {count} coefficients are the parameters, so that a random point solves the \
@@ -583,7 +506,7 @@ fn finish(
     start_points: StartPoints,
     start: StartKind,
     why: String,
-    options: &PlanOptions,
+    options: &SolveOptions,
 ) -> Plan {
     let several = matches!(homotopy, HomotopyKind::Parameter { .. });
     let first = Stage {
@@ -592,13 +515,13 @@ fn finish(
         work: Work::Track,
         homotopy,
         start_points,
-        settings: options.settings.clone(),
+        settings: options.tracking.settings.clone(),
         seed: options.seed,
         attempt: 0,
     };
     let paths = first.items();
     assert!(paths.is_some(), "the number of paths is under the limit");
-    let tolerances = options.tolerances.clone();
+    let tolerances = options.tracking.tolerances.clone();
     let algorithm = if several {
         AnyAlgorithm::from(AnySolve::Parameter(ParameterSolve::new(
             first, &system, tolerances,
@@ -610,7 +533,7 @@ fn finish(
     };
     Plan {
         system,
-        algorithm: algorithm.with_max_retries(options.max_retries),
+        algorithm: algorithm.with_max_retries(options.tracking.max_retries),
         start,
         paths,
         why,
@@ -644,44 +567,42 @@ mod tests {
         bertini("variable_group x; parameter p; function f; f = x^3 - p;")
     }
 
-    fn given(dimension: usize) -> PlanOptions {
-        PlanOptions {
-            start_points: Some(GivenStart {
-                object: cognate_continuation::start_points::Digest([1; 32]),
-                count: 3,
-                dimension,
-            }),
-            ..PlanOptions::default()
-        }
+    fn given(dimension: usize, parameters: Option<Vec<Complex64>>) -> SolveOptions {
+        let points = Some(GivenStart {
+            object: cognate_continuation::start_points::Digest([1; 32]),
+            count: 3,
+            dimension,
+        });
+        with_method(SolveMethod::Given(KnownSolutions { points, parameters }))
     }
 
     fn number(re: f64) -> Vec<Complex64> {
         vec![Complex64::new(re, 0.0)]
     }
 
-    fn refusal(system: &System, options: &PlanOptions) -> PlanError {
+    fn refusal(system: &System, options: &SolveOptions) -> PlanError {
         match plan(system, options) {
             Err(error) => error,
             Ok(plan) => panic!("there should be no plan: {plan:?}"),
         }
     }
 
-    fn with_start(start: StartChoice) -> PlanOptions {
-        PlanOptions {
-            start,
-            ..PlanOptions::default()
+    fn with_method(method: SolveMethod) -> SolveOptions {
+        SolveOptions {
+            method,
+            ..SolveOptions::default()
         }
     }
 
     #[test]
     fn the_start_with_fewest_paths_is_chosen() {
-        let chosen = plan(&bilinear(), &PlanOptions::default()).unwrap();
+        let chosen = plan(&bilinear(), &SolveOptions::default()).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
             (StartKind::Multihomogeneous, Some(2))
         );
         assert_eq!(chosen.system.groups.len(), 2);
-        let total = plan(&bilinear(), &with_start(StartChoice::TotalDegree)).unwrap();
+        let total = plan(&bilinear(), &with_method(SolveMethod::TotalDegree)).unwrap();
         assert_eq!(
             (total.start, total.paths),
             (StartKind::TotalDegree, Some(4))
@@ -690,13 +611,13 @@ mod tests {
         assert_eq!(total.algorithm.progress().stages, []);
         let tie =
             bertini("variable_group x; variable_group y; function f, g; f = x - 5*y; g = y^2 - 3;");
-        let chosen = plan(&tie, &PlanOptions::default()).unwrap();
+        let chosen = plan(&tie, &SolveOptions::default()).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
             (StartKind::Multihomogeneous, Some(2))
         );
         let one = bertini("variable_group x, y; function f, g; f = x*y - 1; g = x^3 + y;");
-        let chosen = plan(&one, &PlanOptions::default()).unwrap();
+        let chosen = plan(&one, &SolveOptions::default()).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
             (StartKind::Multihomogeneous, Some(4))
@@ -704,7 +625,7 @@ mod tests {
         assert_eq!(chosen.system.groups.len(), 2, "groups were found");
         let dense =
             bertini("variable_group x, y; function f, g; f = x^2 + y^2 - 1; g = x^3 + y^3;");
-        let chosen = plan(&dense, &PlanOptions::default()).unwrap();
+        let chosen = plan(&dense, &SolveOptions::default()).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
             (StartKind::TotalDegree, Some(6))
@@ -739,12 +660,12 @@ mod tests {
         let conics = "function f, g; f = x^2 + y^2 - z^2; g = x*y - z^2;";
         let projective = bertini(&format!("hom_variable_group x, y, z; {conics}"));
         assert_eq!(
-            plan(&projective, &PlanOptions::default()).unwrap().paths,
+            plan(&projective, &SolveOptions::default()).unwrap().paths,
             Some(4)
         );
         let affine = bertini(&format!("variable_group x, y, z; {conics}"));
         assert!(matches!(
-            refusal(&affine, &PlanOptions::default()),
+            refusal(&affine, &SolveOptions::default()),
             PlanError::FewerEquations {
                 equations: 2,
                 unknowns: 3
@@ -752,18 +673,18 @@ mod tests {
         ));
         let skew = bertini("hom_variable_group x, y; function f; f = x^2 - y;");
         assert!(matches!(
-            refusal(&skew, &PlanOptions::default()),
+            refusal(&skew, &SolveOptions::default()),
             PlanError::Polynomial(PolynomialError::NotHomogeneous { .. })
         ));
         let mixed = bertini(
             "hom_variable_group x, y; variable_group z; function f, g; f = x*z - y; g = x + y*z;",
         );
         assert_eq!(
-            plan(&mixed, &PlanOptions::default()).unwrap().start,
+            plan(&mixed, &SolveOptions::default()).unwrap().start,
             StartKind::Multihomogeneous
         );
         assert_eq!(
-            refusal(&mixed, &with_start(StartChoice::TotalDegree)),
+            refusal(&mixed, &with_method(SolveMethod::TotalDegree)),
             PlanError::TotalDegreeNeedsOneGroup
         );
     }
@@ -771,7 +692,7 @@ mod tests {
     #[test]
     fn what_is_too_large_is_named() {
         let large = bertini("variable_group x, y; function f, g; f = x^9000 - 1; g = y^9000 - 1;");
-        let error = refusal(&large, &PlanOptions::default());
+        let error = refusal(&large, &SolveOptions::default());
         assert!(error.to_string().contains("81000000 paths"), "{error}");
         assert!(
             error.to_string().starts_with("not in this version"),
@@ -795,7 +716,7 @@ mod tests {
         for k in 0..13 {
             pairs += &format!("f{k} = x{k}*y{k} - 1; g{k} = x{k}*y{k} + x{k} - 3*y{k};");
         }
-        let error = refusal(&bertini(&pairs), &with_start(StartChoice::TotalDegree));
+        let error = refusal(&bertini(&pairs), &with_method(SolveMethod::TotalDegree));
         assert!(error.to_string().contains("67108864 paths"), "{error}");
         assert!(
             error.to_string().contains("these starts would do: "),
@@ -814,7 +735,7 @@ mod tests {
             functions.join(", "),
             equations.join(" ")
         ));
-        let error = refusal(&huge, &PlanOptions::default());
+        let error = refusal(&huge, &SolveOptions::default());
         assert!(error.to_string().contains("2^64 or more"), "{error}");
         let groups: Vec<String> = names
             .iter()
@@ -827,7 +748,7 @@ mod tests {
             equations.join(" ")
         ));
         assert_eq!(
-            refusal(&many, &with_start(StartChoice::Multihomogeneous)),
+            refusal(&many, &with_method(SolveMethod::Multihomogeneous)),
             PlanError::TooManyGroups { groups: 70 }
         );
     }
@@ -837,28 +758,18 @@ mod tests {
         // {x} {x, y} | {x, y}^2: 4 paths, where the groups that are found have 2.
         let system = bilinear();
         let sets = vec![vec![vec![0], vec![0, 1]], vec![vec![0, 1], vec![0, 1]]];
-        let mut options = PlanOptions {
-            sets: Some(sets),
-            ..PlanOptions::default()
-        };
-        let chosen = plan(&system, &options).unwrap();
+        let with_sets = |sets| with_method(SolveMethod::LinearProduct(Some(sets)));
+        let chosen = plan(&system, &with_sets(sets)).unwrap();
         assert_eq!(
             (chosen.start, chosen.paths),
             (StartKind::LinearProduct, Some(4))
         );
         assert!(chosen.why.starts_with("the sets are given"));
-        options.start = StartChoice::Polyhedral;
-        assert_eq!(
-            refusal(&system, &options),
-            PlanError::SetsWithoutLinearProduct
-        );
-        options.start = StartChoice::LinearProduct;
-        options.sets = Some(vec![vec![vec![0], vec![0]], vec![vec![0, 1], vec![1]]]);
-        let error = refusal(&system, &options).to_string();
+        let sets = vec![vec![vec![0], vec![0]], vec![vec![0, 1], vec![1]]];
+        let error = refusal(&system, &with_sets(sets.clone())).to_string();
         assert!(error.contains("monomial x*y"), "{error}");
-        let sets = options.sets.as_ref();
         assert_eq!(
-            StartCosts::with_sets(&system, sets)
+            StartCosts::with_sets(&system, Some(&sets))
                 .unwrap_err()
                 .to_string(),
             error
@@ -871,7 +782,7 @@ mod tests {
         let system =
             bertini("variable_group x; variable_group y; function f, g; f = x^2 - 1; g = x^2 - x;");
         assert_eq!(
-            refusal(&system, &with_start(StartChoice::Multihomogeneous)),
+            refusal(&system, &with_method(SolveMethod::Multihomogeneous)),
             PlanError::NoPaths
         );
         assert_eq!(
@@ -883,18 +794,16 @@ mod tests {
     #[test]
     fn parameters_need_values_or_a_solved_start() {
         let system = with_parameter();
-        let error = refusal(&system, &PlanOptions::default());
+        let error = refusal(&system, &SolveOptions::default());
         assert!(error.to_string().contains("(p)"), "{error}");
-        let mut options = PlanOptions {
+        let mut options = SolveOptions {
             target_parameters: vec![number(2.0)],
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         assert_eq!(plan(&system, &options).unwrap().paths, Some(3));
         options.target_parameters.push(number(3.0));
         assert_eq!(refusal(&system, &options), PlanError::SeveralTargets(2));
-        options.start_parameters = Some(number(1.0));
-        assert_eq!(refusal(&system, &options), PlanError::StartParametersAlone);
-        options.start_points = given(1).start_points;
+        options.method = given(1, Some(number(1.0))).method;
         let chosen = plan(&system, &options).unwrap();
         assert_eq!((chosen.start, chosen.paths), (StartKind::Given, Some(6)));
         options.target_parameters[1].push(Complex64::new(0.0, 0.0));
@@ -916,19 +825,40 @@ mod tests {
     #[test]
     fn given_starts_must_fit() {
         let system = with_parameter();
-        assert_eq!(refusal(&system, &given(1)), PlanError::NoStartParameters);
         assert_eq!(
-            refusal(&system, &given(2)),
+            refusal(&system, &given(1, None)),
+            PlanError::NoStartParameters
+        );
+        assert_eq!(
+            refusal(&system, &given(2, None)),
             PlanError::StartDimension {
                 found: 2,
                 expected: 1
             }
         );
         assert_eq!(
-            refusal(&system, &with_start(StartChoice::Given)),
+            refusal(
+                &system,
+                &with_method(SolveMethod::Given(KnownSolutions::default()))
+            ),
             PlanError::NoStartPoints
         );
-        assert_eq!(refusal(&bilinear(), &given(2)), PlanError::NothingToDeform);
+        assert_eq!(
+            refusal(&bilinear(), &given(2, None)),
+            PlanError::NothingToDeform
+        );
+        let alone = KnownSolutions {
+            points: None,
+            parameters: Some(number(1.0)),
+        };
+        let loops = MonodromyOptions {
+            known: alone,
+            ..MonodromyOptions::default()
+        };
+        assert_eq!(
+            refusal(&system, &with_method(SolveMethod::Monodromy(loops))),
+            PlanError::StartParametersAlone
+        );
     }
 
     #[test]
@@ -937,14 +867,11 @@ mod tests {
             bertini("variable x; pathvariable t; function f; f = t*(x^2 - 1) + (1 - t)*(x^2 - 4);");
         assert!(system.path_variable.is_some());
         assert_eq!(
-            refusal(&system, &PlanOptions::default()),
+            refusal(&system, &SolveOptions::default()),
             PlanError::HomotopyWithoutStart
         );
-        let mut options = given(1);
-        let chosen = plan(&system, &options).unwrap();
+        let chosen = plan(&system, &given(1, None)).unwrap();
         assert_eq!((chosen.start, chosen.paths), (StartKind::Given, Some(3)));
-        options.start = StartChoice::TotalDegree;
-        assert!(plan(&system, &options).is_err());
     }
 
     #[test]
@@ -961,23 +888,28 @@ mod tests {
             functions.join(", "),
             squares.join("\n")
         ));
-        let alone = with_start(StartChoice::TotalDegree);
+        let alone = with_method(SolveMethod::TotalDegree);
         assert_eq!(plan(&system, &alone).unwrap().paths, Some(1 << 23));
+        let none = ClosingOptions::default();
         let closings = [
-            PlanOptions {
+            ClosingOptions {
                 certify: true,
-                ..alone.clone()
+                ..none
             },
-            PlanOptions {
-                digits: 50,
-                ..alone.clone()
+            ClosingOptions {
+                digits: Some(50),
+                ..none
             },
-            PlanOptions {
+            ClosingOptions {
                 deflate: true,
-                ..alone
+                ..none
             },
         ];
-        for options in closings {
+        for closings in closings {
+            let options = SolveOptions {
+                closings,
+                ..alone.clone()
+            };
             let refused = refusal(&system, &options);
             assert!(
                 matches!(refused, PlanError::TooManyPaths { .. }),

@@ -394,10 +394,10 @@ impl Solve for PolyhedralSolve {
 mod tests {
     use super::*;
     use crate::any_algorithm::AnyAlgorithm;
-    use crate::plan::StartChoice;
+    use crate::plan::SolveMethod;
     use crate::run_locally::run_locally;
     use crate::solve::PathAlgorithm;
-    use crate::{Plan, PlanOptions, plan};
+    use crate::{Plan, SolveOptions, plan};
     use cognate_continuation::item_result::PointResult;
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CountedCells};
@@ -405,12 +405,12 @@ mod tests {
     use cognate_systems::named::cyclic;
     use std::collections::HashMap;
 
-    fn options(counting_operations: u64) -> PlanOptions {
-        PlanOptions {
-            start: StartChoice::Polyhedral,
+    fn options(counting_operations: u64) -> SolveOptions {
+        SolveOptions {
+            method: SolveMethod::Polyhedral,
             seed: 3,
             counting_operations,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         }
     }
 
@@ -586,7 +586,7 @@ mod tests {
         let system = cyclic(5).system;
         let told = |change: &dyn Fn(&mut Vec<ItemResult>)| {
             let mut options = options(10);
-            options.certify = true;
+            options.closings.certify = true;
             let mut algorithm = plan(&system, &options).expect("a plan").algorithm;
             let mut stages = 0;
             loop {

@@ -51,7 +51,7 @@ impl VerdictCounts {
             Verdict::WithinDataAccuracy => &mut self.within_data_accuracy,
             Verdict::AtInfinity => &mut self.at_infinity,
             Verdict::PositiveDimensional => &mut self.positive_dimensional,
-            Verdict::Excess => &mut self.excess,
+            Verdict::ExcessSolution => &mut self.excess,
             Verdict::Failed => &mut self.failed,
         } += 1;
     }

@@ -17,11 +17,11 @@ use std::sync::Arc;
 /// itself are kept here.
 ///
 /// ```
-/// use cognate_algorithms::{PlanOptions, plan, run_locally::run_locally};
+/// use cognate_algorithms::{SolveOptions, plan, run_locally::run_locally};
 ///
 /// let text = b"CONFIG\nEND;\nINPUT\nvariable_group x; function f; f = x^2 - 2;\nEND;\n";
 /// let system = cognate_systems::formats::read("example", text)?.system;
-/// let mut plan = plan(&system, &PlanOptions::default())?;
+/// let mut plan = plan(&system, &SolveOptions::default())?;
 /// let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 1)?;
 /// assert_eq!((sets[0].paths.total, sets[0].counts.real), (2, Some(2)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -31,29 +31,17 @@ impl ZeroDimensionalSolve {
     /// # Panics
     /// For a parameter homotopy, which has targets of its own, and for a polyhedral one.
     pub fn new(first: Stage, system: &System, tolerances: Tolerances) -> Self {
-        let (parameters, complete_start) = match &first.homotopy {
-            HomotopyKind::StraightLine { parameters } => (parameters.clone(), true),
-            HomotopyKind::PathVariable { parameters } => {
-                let mut parameters = parameters.clone();
-                if let Some(t) = system.path_variable {
-                    parameters[t] = Complex64::new(0.0, 0.0);
-                }
-                (parameters, false)
-            }
-            HomotopyKind::Parameter { .. } | HomotopyKind::Sections { .. } => {
-                panic!("a parameter homotopy is planned as a parameter solve")
-            }
-            HomotopyKind::Toric | HomotopyKind::Generic { .. } => {
-                panic!("a polyhedral homotopy is planned as a polyhedral solve")
-            }
-            HomotopyKind::MoveSlice { .. } | HomotopyKind::ProductToEquation { .. } => {
-                panic!("a regeneration is planned as a regeneration solve")
-            }
-        };
+        let homotopy = &first.homotopy;
+        let is_one = matches!(
+            homotopy,
+            HomotopyKind::StraightLine { .. } | HomotopyKind::PathVariable { .. }
+        );
+        assert!(is_one, "other homotopies have solves of their own");
+        let parameters = homotopy.end_parameters(0, system.path_variable);
         Self {
+            parameters: parameters.unwrap_or_default().into_owned(),
+            complete_start: homotopy.takes_all_paths(),
             paths: RetriedStage::new(first, system, tolerances, 1),
-            parameters,
-            complete_start,
         }
     }
 
@@ -116,20 +104,20 @@ impl Solve for ZeroDimensionalSolve {
 
 #[cfg(test)]
 mod tests {
-    use crate::plan::StartChoice;
+    use crate::plan::SolveMethod;
     use crate::run_locally::run_locally;
-    use crate::{PathAlgorithm, PlanOptions, plan};
+    use crate::{PathAlgorithm, SolveOptions, plan};
     use cognate_solutions::solution_set::SolutionSet;
     use cognate_systems::formats;
     use num_complex::Complex64;
 
-    fn solve(text: &str, start: StartChoice) -> (u64, SolutionSet) {
+    fn solve(text: &str, start: SolveMethod) -> (u64, SolutionSet) {
         let problem = formats::read("test", text.as_bytes());
         let system = problem.expect("a problem of this test").system;
-        let options = PlanOptions {
-            start,
+        let options = SolveOptions {
+            method: start,
             seed: 7,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let mut plan = plan(&system, &options).expect("a plan");
         let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
@@ -152,8 +140,8 @@ mod tests {
                                   "y^2 - v*y + 3*v - 2", "2*u*v + x*v + y*u - 1"]{symmetry}}}"#
             )
         };
-        let groups = StartChoice::Multihomogeneous;
-        let (paths, whole) = solve(&problem(""), groups);
+        let groups = SolveMethod::Multihomogeneous;
+        let (paths, whole) = solve(&problem(""), groups.clone());
         assert_eq!((paths, whole.paths.total, whole.paths.images), (8, 8, 0));
         let swap = r#", "symmetry": [{"permutation": {"x": "y", "y": "x", "u": "v", "v": "u"}}]"#;
         let (paths, half) = solve(&problem(swap), groups);
@@ -180,7 +168,7 @@ mod tests {
         let text = r#"{"variables": ["x", "y"],
             "equations": ["x*(x^2 + y - 3)", "x*(x*y - 2*x - y + 5)"],
             "degenerate": {"x = 0": {"equations": ["x"]}, "y = 1": {"equations": ["y - 1"]}}}"#;
-        let (paths, set) = solve(text, StartChoice::TotalDegree);
+        let (paths, set) = solve(text, SolveMethod::TotalDegree);
         assert_eq!((paths, set.paths.finite, set.paths.failed), (9, 3, 0));
         let on_line = set.paths.degenerate["x = 0"];
         assert!(on_line > 3, "more than are asked: {:?}", set.paths);

@@ -79,36 +79,21 @@ impl AskedSystem {
     ) -> Self {
         let mut out = Expressions::new();
         let coordinates = chart.nodes(&mut out);
-        let zero = Complex64::default();
+        assert!(
+            !matches!(kind, HomotopyKind::Sections { .. }),
+            "sections are prepared as a parameter homotopy of the curve"
+        );
         let (parameters, targets): (Vec<NodeId>, _) = match kind {
-            HomotopyKind::Toric => (Vec::new(), vec![Vec::new()]),
-            HomotopyKind::StraightLine { parameters }
-            | HomotopyKind::Generic { parameters }
-            | HomotopyKind::MoveSlice { parameters, .. }
-            | HomotopyKind::ProductToEquation { parameters, .. } => {
-                let values = parameters.iter().map(|&z| exact(&mut out, z)).collect();
-                (values, vec![Vec::new()])
-            }
-            HomotopyKind::Sections { .. } => {
-                panic!("sections are prepared as a parameter homotopy of the curve")
-            }
             HomotopyKind::Parameter { targets, .. } => {
                 let count = system.parameters.len() as u32;
-                (
-                    (0..count).map(|k| out.parameter(k)).collect(),
-                    targets.clone(),
-                )
+                let parameters = (0..count).map(|k| out.parameter(k)).collect();
+                (parameters, targets.clone())
             }
-            HomotopyKind::PathVariable { parameters } => {
-                let value = |k: usize| match system.path_variable == Some(k) {
-                    true => zero,
-                    false => parameters[k],
-                };
-                let all = 0..parameters.len();
-                (
-                    all.map(|k| exact(&mut out, value(k))).collect(),
-                    vec![Vec::new()],
-                )
+            one => {
+                let values = one.end_parameters(0, system.path_variable);
+                let values = values.unwrap_or_default();
+                let parameters = values.iter().map(|&z| exact(&mut out, z)).collect();
+                (parameters, vec![Vec::new()])
             }
         };
         let mut equations = homogenize(system, degrees, &mut out, &coordinates, &parameters);

@@ -10,6 +10,7 @@ use crate::work::Stage;
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The points of a stage: its start points are values of the variables near solutions, and the
@@ -36,28 +37,15 @@ pub struct Item<'a> {
     pub point: &'a [Complex64],
 }
 
-/// The parameters at the end of a homotopy, target by target.
+/// The parameters at the end of a homotopy, target by target; zeros where it ends at a system without them.
 pub fn parameters_at_targets(homotopy: &HomotopyKind, system: &System) -> Vec<Vec<Complex64>> {
-    match homotopy {
-        HomotopyKind::StraightLine { parameters }
-        | HomotopyKind::Generic { parameters }
-        | HomotopyKind::MoveSlice { parameters, .. }
-        | HomotopyKind::ProductToEquation { parameters, .. } => {
-            vec![parameters.clone()]
-        }
-        // They end at another system.
-        HomotopyKind::Toric | HomotopyKind::Sections { .. } => {
-            vec![vec![Complex64::new(0.0, 0.0); system.parameters.len()]]
-        }
-        HomotopyKind::Parameter { targets, .. } => targets.clone(),
-        HomotopyKind::PathVariable { parameters } => {
-            let mut parameters = parameters.clone();
-            if let Some(value) = system.path_variable.and_then(|t| parameters.get_mut(t)) {
-                *value = Complex64::new(0.0, 0.0);
-            }
-            vec![parameters]
-        }
-    }
+    let zeros = || vec![Complex64::default(); system.parameters.len()];
+    (0..homotopy.parameter_sets())
+        .map(|target| {
+            let values = homotopy.end_parameters(target, system.path_variable);
+            values.map_or_else(zeros, Cow::into_owned)
+        })
+        .collect()
 }
 
 impl PointsAtTargets {

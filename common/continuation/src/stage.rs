@@ -6,71 +6,21 @@ use crate::homotopies::prepare::StartSystem;
 use crate::homotopies::sections::sections;
 use crate::homotopies::{Homotopy, HomotopyKind};
 use crate::path_result::PathResult;
-use crate::start_points::{DamagedPoints, Digest, StartPoints, StoredPoints};
-use crate::start_systems::linear_product::{LinearProduct, SOLVING_STEPS};
-use crate::start_systems::multihomogeneous::Multihomogeneous;
-use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
-use crate::start_systems::total_degree::TotalDegree;
+pub use crate::prepare_error::PrepareError;
+use crate::start_fit::{Points, StartFit, in_order};
+use crate::start_points::{Digest, StartPoints, StoredPoints};
+use crate::start_systems::polyhedral::generic::GenericSystem;
 use crate::tracker::boundary::Boundary;
 use crate::tracker::settings::Settings;
 use crate::work::{Stage, Work};
 use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees, supports};
 use cognate_systems::scaling::Scaling;
-use cognate_systems::system::{System, SystemError};
+use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
 use num_complex::Complex64;
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
-
-/// Why a stage cannot be prepared.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PrepareError {
-    /// The system is not one.
-    #[error(transparent)]
-    System(#[from] SystemError),
-    /// Fewer equations than unknowns.
-    #[error(
-        "the system has {equations} equations for {dimension} unknowns; tracking needs at least as many equations as unknowns"
-    )]
-    Underdetermined {
-        /// Number of equations.
-        equations: usize,
-        /// Unknowns, up to the scaling of homogeneous groups.
-        dimension: usize,
-    },
-    /// Degrees cannot be found, or the system is not homogeneous where it says so.
-    #[error("{0}")]
-    Degrees(String),
-    /// The start points do not fit the system.
-    #[error("the start points do not fit the system: {0}")]
-    StartPoints(String),
-    /// Parameter values do not fit the system.
-    #[error("{what}: {found} values for {expected} parameters")]
-    Parameters {
-        /// Which values.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many there should be.
-        expected: usize,
-    },
-    /// The stage has no paths.
-    #[error("the stage asks for other work than tracking")]
-    Work,
-    /// The object with the start points is not there.
-    #[error("the object {0} with the start points is missing")]
-    MissingObject(Digest),
-    /// The object with the start points is damaged.
-    #[error(transparent)]
-    Damaged(#[from] DamagedPoints),
-}
-
-#[derive(Debug)]
-enum Points {
-    Made(StartSystem),
-    Stored(Arc<StoredPoints>),
-}
 
 /// The homotopy in projective patches, compiled when the first path needs it.
 #[derive(Debug)]
@@ -136,68 +86,7 @@ impl<'a> Checked<'a> {
                 dimension,
             });
         }
-        let expected = system.parameters.len();
-        let fits = |what, values: &[Complex64]| {
-            if values.len() == expected {
-                Ok(())
-            } else {
-                let found = values.len();
-                Err(PrepareError::Parameters {
-                    what,
-                    found,
-                    expected,
-                })
-            }
-        };
-        match &stage.homotopy {
-            HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
-                fits("parameters", parameters)?;
-            }
-            HomotopyKind::MoveSlice {
-                parameters,
-                order,
-                level,
-                ..
-            }
-            | HomotopyKind::ProductToEquation {
-                parameters,
-                order,
-                level,
-            } => {
-                fits("parameters", parameters)?;
-                let mut sorted = order.clone();
-                sorted.sort_unstable();
-                let all = sorted.iter().copied().eq(0..dimension as u32);
-                if !(all && (*level as usize) < dimension && in_order(system)) {
-                    return Err(PrepareError::StartPoints(
-                        "a regeneration takes each equation once, in one affine group of all variables".into(),
-                    ));
-                }
-            }
-            HomotopyKind::Toric => {}
-            HomotopyKind::Sections { .. } => {
-                return Err(PrepareError::StartPoints("a section of a section".into()));
-            }
-            HomotopyKind::PathVariable { parameters } => {
-                fits("parameters", parameters)?;
-                if system.path_variable.is_none() {
-                    return Err(PrepareError::StartPoints(
-                        "the system has no path variable".into(),
-                    ));
-                }
-            }
-            HomotopyKind::Parameter { start, targets } => {
-                fits("start parameters", start)?;
-                if targets.is_empty() {
-                    return Err(PrepareError::StartPoints(
-                        "there are no target parameters".into(),
-                    ));
-                }
-                for target in targets {
-                    fits("target parameters", target)?;
-                }
-            }
-        }
+        check_homotopy(system, &stage.homotopy)?;
         let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
         let of_asked = degrees(system).map_err(wrong)?;
         check_homogeneous(system, &of_asked).map_err(wrong)?;
@@ -253,112 +142,21 @@ impl<'a> Checked<'a> {
         let items = stage
             .items()
             .ok_or_else(|| PrepareError::StartPoints("they are more than fit in 64 bits".into()))?;
-        let straight = matches!(stage.homotopy, HomotopyKind::StraightLine { .. });
         let toric = matches!(stage.homotopy, HomotopyKind::Toric);
         let of_generic = matches!(stage.homotopy, HomotopyKind::Generic { .. });
         let generic = match toric || of_generic {
             true => Some(generic_system(system, overdetermined, stage.seed)?),
             false => None,
         };
-        let points = match base {
-            StartPoints::TotalDegree { degrees } => {
-                let fits = chart.group_count() == 1
-                    && straight
-                    && degrees
-                        .iter()
-                        .eq(of_system.by_group.iter().map(|row| &row[0]));
-                if !fits {
-                    return Err(PrepareError::StartPoints(
-                        "a total-degree start has one group of variables and the degrees of the equations".into(),
-                    ));
-                }
-                Points::Made(StartSystem::TotalDegree(TotalDegree::new(degrees)))
-            }
-            StartPoints::Multihomogeneous {
-                degrees,
-                dimensions,
-                exchange,
-            } => {
-                let exchange = exchange.as_ref();
-                let fits = straight
-                    && *degrees == of_system.by_group
-                    && dimensions.len() == chart.group_count()
-                    && (0..dimensions.len())
-                        .all(|k| dimensions[k] as usize == chart.group_size(k) - 1);
-                let made = fits
-                    .then(|| {
-                        Multihomogeneous::new(degrees, dimensions, exchange, &chart, stage.seed)
-                    })
-                    .flatten()
-                    .ok_or_else(|| {
-                        PrepareError::StartPoints(
-                            "the degrees or dimensions are not those of the system's groups".into(),
-                        )
-                    })?;
-                Points::Made(StartSystem::Multihomogeneous(made))
-            }
-            StartPoints::LinearProduct { sets, count } => {
-                let misfit = |what: &str| PrepareError::StartPoints(what.to_string());
-                let degrees = of_system.total.iter().map(|&d| d as usize);
-                if !(straight && in_order(system) && sets.iter().map(Vec::len).eq(degrees)) {
-                    return Err(misfit(
-                        "a linear-product start has one affine group of all variables and as many sets as degrees",
-                    ));
-                }
-                let n = system.variable_count();
-                let start = LinearProduct::new(sets, n, stage.seed, SOLVING_STEPS)
-                    .map_err(|error| misfit(&error.to_string()))?;
-                if start.count() != *count {
-                    return Err(misfit(&format!(
-                        "the sets have {} start points, not {count}",
-                        start.count()
-                    )));
-                }
-                Points::Made(StartSystem::LinearProduct(Arc::new(start)))
-            }
-            StartPoints::Stored { object, count } => {
-                let stored = objects(*object).ok_or(PrepareError::MissingObject(*object))?;
-                if stored.len() as u64 != *count || stored.dimension != system.variable_count() {
-                    return Err(PrepareError::StartPoints(format!(
-                        "{} points of {} coordinates for {} variables",
-                        stored.len(),
-                        stored.dimension,
-                        system.variable_count()
-                    )));
-                }
-                if straight || toric {
-                    return Err(PrepareError::StartPoints(
-                        "stored points start a parameter homotopy or a user homotopy".into(),
-                    ));
-                }
-                Points::Stored(match scaling.is_none() {
-                    true => stored,
-                    false => Arc::new(stored.in_unknowns(scaling)),
-                })
-            }
-            StartPoints::MixedCells { count, branches } => {
-                let generic = generic.clone().filter(|_| toric).ok_or_else(|| {
-                    PrepareError::StartPoints("mixed cells start a toric homotopy".into())
-                })?;
-                let start = match branches {
-                    Some(counted) => ToricStart::branched(generic, stage.seed, counted),
-                    None => ToricStart::new(generic, stage.seed),
-                };
-                let start = start.map_err(|error| PrepareError::StartPoints(error.to_string()))?;
-                if start.count() != *count {
-                    return Err(PrepareError::StartPoints(format!(
-                        "the mixed volume is {}, not {count}",
-                        start.count()
-                    )));
-                }
-                Points::Made(StartSystem::Toric(Arc::new(start)))
-            }
-            StartPoints::Selected { .. } => {
-                return Err(PrepareError::StartPoints(
-                    "a selection of a selection".into(),
-                ));
-            }
+        let fit = StartFit {
+            system,
+            degrees: &of_system,
+            chart: &chart,
+            scaling,
+            stage,
+            generic: generic.as_ref(),
         };
+        let points = fit.points(base, objects)?;
         if let StartPoints::Selected { indices, .. } = &stage.start_points {
             let end = starts.saturating_mul(stage.homotopy.targets());
             if indices.iter().any(|&i| i >= end) {
@@ -384,6 +182,75 @@ impl<'a> Checked<'a> {
             items,
         })
     }
+}
+
+/// Whether the numbers of a homotopy fit the system.
+fn check_homotopy(system: &System, homotopy: &HomotopyKind) -> Result<(), PrepareError> {
+    let dimension = system.dimension();
+    let expected = system.parameters.len();
+    let fits = |what, values: &[Complex64]| {
+        if values.len() == expected {
+            Ok(())
+        } else {
+            let found = values.len();
+            Err(PrepareError::Parameters {
+                what,
+                found,
+                expected,
+            })
+        }
+    };
+    match homotopy {
+        HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
+            fits("parameters", parameters)?;
+        }
+        HomotopyKind::MoveSlice {
+            parameters,
+            order,
+            level,
+            ..
+        }
+        | HomotopyKind::ProductToEquation {
+            parameters,
+            order,
+            level,
+        } => {
+            fits("parameters", parameters)?;
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            let all = sorted.iter().copied().eq(0..dimension as u32);
+            if !(all && (*level as usize) < dimension && in_order(system)) {
+                return Err(PrepareError::StartPoints(
+                    "a regeneration takes each equation once, in one affine group of all variables"
+                        .into(),
+                ));
+            }
+        }
+        HomotopyKind::Toric => {}
+        HomotopyKind::Sections { .. } => {
+            return Err(PrepareError::StartPoints("a section of a section".into()));
+        }
+        HomotopyKind::PathVariable { parameters } => {
+            fits("parameters", parameters)?;
+            if system.path_variable.is_none() {
+                return Err(PrepareError::StartPoints(
+                    "the system has no path variable".into(),
+                ));
+            }
+        }
+        HomotopyKind::Parameter { start, targets } => {
+            fits("start parameters", start)?;
+            if targets.is_empty() {
+                return Err(PrepareError::StartPoints(
+                    "there are no target parameters".into(),
+                ));
+            }
+            for target in targets {
+                fits("target parameters", target)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A stage on the sections of a curve is one of the curve's own system, in which the sections
@@ -569,19 +436,6 @@ fn sample(points: &Points, chart: &Chart) -> Vec<Vec<Complex64>> {
     (0..count)
         .filter_map(|k| chart.from_variables(points.point(k * points.len() / count)))
         .collect()
-}
-
-/// Whether all variables are one affine group, in order.
-fn in_order(system: &System) -> bool {
-    let [group] = system.groups.as_slice() else {
-        return false;
-    };
-    !group.homogeneous
-        && group
-            .variables
-            .iter()
-            .copied()
-            .eq(0..system.variable_count())
 }
 
 /// The generic system with the monomials of a square one in affine groups.

@@ -131,9 +131,9 @@ impl Options {
         let others = [
             ("start", self.start != StartKind::Auto),
             ("start_parameters", !self.start_parameters.is_empty()),
-            ("certify", self.certify && self.question.is_some()),
-            ("digits", self.digits.is_some()),
-            ("deflate", self.deflate),
+            ("certify", self.closings.certify && self.question.is_some()),
+            ("digits", self.closings.digits.is_some()),
+            ("deflate", self.closings.deflate),
         ];
         let of_starts = of_starts(self).map(|(field, given, _)| (field, given));
         match others.iter().chain(&of_starts).find(|(_, given)| *given) {
@@ -147,6 +147,7 @@ impl Options {
 mod tests {
     use super::*;
     use crate::submission::Decompose;
+    use cognate_solutions::closing_options::ClosingOptions;
 
     #[test]
     fn what_does_not_fit_is_named() {
@@ -188,12 +189,18 @@ mod tests {
         );
         let proved = Options {
             decompose: Some(Decompose::default()),
-            certify: true,
+            closings: ClosingOptions {
+                certify: true,
+                ..ClosingOptions::default()
+            },
             ..Options::default()
         };
         assert_eq!(said(proved.clone()), Ok(()));
         let sharpened = Options {
-            digits: Some(30),
+            closings: ClosingOptions {
+                digits: Some(30),
+                ..proved.closings
+            },
             ..proved
         };
         assert_eq!(

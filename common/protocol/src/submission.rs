@@ -2,6 +2,7 @@
 
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::{Preset, Settings};
+use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::witness::{Method, Question, WitnessSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -56,17 +57,13 @@ pub struct Options {
     pub idle_loops: Option<u32>,
     /// For [`StartKind::Monodromy`]: how many solutions there are, where that is known.
     pub expected_solutions: Option<u64>,
-    /// Whether the solutions are certified.
-    pub certify: bool,
+    /// What follows once the solutions are found.
+    pub closings: ClosingOptions,
     /// For [`StartKind::Monodromy`]: whether a trace test decides that it has all solutions.
     pub trace_test: bool,
     /// For [`StartKind::Monodromy`]: with what probability, between 0 and 1, none should be missing
     /// if loops permute at random; `None`: idle loops end it.
     pub confidence: Option<f64>,
-    /// Decimal digits of the solutions; `None`: those of the precision.
-    pub digits: Option<u32>,
-    /// Whether isolated singular solutions are brought to their digits by deflation.
-    pub deflate: bool,
     /// What the client did not follow of the files that it read; kept with the job.
     pub warnings: Vec<String>,
     /// For [`StartKind::LinearProduct`]: the variables of each factor of each equation.

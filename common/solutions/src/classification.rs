@@ -97,7 +97,7 @@ pub enum Verdict {
     /// The homogenising coordinate of an affine group is 0.
     AtInfinity,
     /// Finite, but a solution only of the combinations of equations that were tracked.
-    Excess,
+    ExcessSolution,
     /// Finite, on a curve, surface, ... of solutions.
     PositiveDimensional,
     /// Finite, with a singular Jacobian; isolated or not is not known.
@@ -183,7 +183,7 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     }
     let verdict = match singular {
         _ if at_infinity => Verdict::AtInfinity,
-        _ if !solves_what_is_asked(result, tolerances) => Verdict::Excess,
+        _ if !solves_what_is_asked(result, tolerances) => Verdict::ExcessSolution,
         true => match isolation(result, tolerances) {
             // With its digits the Jacobian is regular: other solutions are near, that is all.
             Isolation::Isolated { multiplicity: 1 } => Verdict::Finite,
@@ -434,11 +434,14 @@ mod tests {
         let point = [(1.0, 0.0), (0.5, 0.0), (0.0, 0.0)];
         let expect = |result: PathResult, expected| assert_eq!(verdict(&result).0, expected);
         expect(with(regular(0, &point), 1e-16, 1e-15), Verdict::Finite);
-        expect(with(regular(0, &point), 0.3, 0.2), Verdict::Excess);
-        expect(with(regular(0, &point), 1e-10, 1e-3), Verdict::Excess);
+        expect(with(regular(0, &point), 0.3, 0.2), Verdict::ExcessSolution);
+        expect(
+            with(regular(0, &point), 1e-10, 1e-3),
+            Verdict::ExcessSolution,
+        );
         expect(
             with(regular(0, &point), f64::INFINITY, 0.0),
-            Verdict::Excess,
+            Verdict::ExcessSolution,
         );
         expect(
             with(singular(0, &point, 2, &[0]), 1e-9, 0.1),
@@ -446,7 +449,7 @@ mod tests {
         );
         expect(
             with(singular(0, &point, 2, &[0]), 1e-3, 0.1),
-            Verdict::Excess,
+            Verdict::ExcessSolution,
         );
         let far = [(0.0, 0.0), (1.0, 0.0)];
         expect(with(regular(0, &far), 0.3, 0.2), Verdict::AtInfinity);

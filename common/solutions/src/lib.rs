@@ -12,6 +12,7 @@
 
 pub mod certificates;
 pub mod classification;
+pub mod closing_options;
 pub mod completeness;
 pub mod degenerate;
 pub mod field;

@@ -313,7 +313,7 @@ impl<'a> Draft<'a> {
             positive_dimensional: Some(on_sets),
             undecided: count(Verdict::Undecided),
             within_data_accuracy: count(Verdict::WithinDataAccuracy),
-            excess: Some(count(Verdict::Excess)),
+            excess: Some(count(Verdict::ExcessSolution)),
             at_infinity: count(Verdict::AtInfinity),
             failed: count(Verdict::Failed),
             retracked: history.retracked,

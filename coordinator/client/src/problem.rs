@@ -9,6 +9,7 @@ use cognate_protocol::option_misfit::{OptionMisfit, any_of};
 use cognate_protocol::submission::{
     Decompose, Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
+use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::formats::{self, FormatError};
 use cognate_systems::system::System;
 use std::io::Read;
@@ -141,11 +142,13 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         name: short_name(&a.file).chars().take(60).collect(),
         idle_loops: a.idle_loops,
         expected_solutions: a.expect,
-        certify: a.certify,
+        closings: ClosingOptions {
+            certify: a.certify,
+            digits: a.digits.or(file.digits),
+            deflate: a.deflate,
+        },
         trace_test: a.trace_test,
         confidence: a.confidence,
-        digits: a.digits.or(file.digits),
-        deflate: a.deflate,
         warnings,
         sets,
         decompose: None,
@@ -176,7 +179,7 @@ impl From<PresetName> for Preset {
 pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Prepared {
     let options = &mut prepared.submission.options;
     // A file's digits are those of isolated solutions.
-    if options.digits.take().is_some() {
+    if options.closings.digits.take().is_some() {
         options
             .warnings
             .push("the file asks for digits; witness points have those of doubles".into());

@@ -238,8 +238,8 @@ mod tests {
         ] {
             let (system, mut stage) = stage_of(&system);
             if stage.work != Work::Track || !stage.homotopy.ends_at_the_system() {
-                let start = cognate_algorithms::plan::PlanOptions {
-                    start: cognate_algorithms::plan::StartChoice::TotalDegree,
+                let start = cognate_algorithms::plan::SolveOptions {
+                    method: cognate_algorithms::plan::SolveMethod::TotalDegree,
                     ..Default::default()
                 };
                 let plan = cognate_algorithms::plan::plan(&system, &start).unwrap();

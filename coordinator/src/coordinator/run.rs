@@ -20,11 +20,12 @@ use tokio_util::task::TaskTracker;
 
 /// So often is asked which jobs want a look, whoever else may have changed them ...
 const LOOK: Duration = Duration::from_secs(1);
-/// ... but not so often that asking takes more than one part in so many of the time.
+/// ... but not so often that asking takes more than one part in so many of the time, unless that would let a
+/// job wait that nobody drives (see [`pause_between_looks`]).
 const LOOK_SHARE: u32 = 20;
-/// A driven job that nobody wakes is looked at after this time all the same.
+/// A driven job that nobody wakes is looked at after this time all the same, and after [`PAUSE`] at the earliest.
 const LATEST_LOOK: Duration = Duration::from_secs(60);
-/// ... and at most this often.
+/// The least time between two steps of a job that waits.
 const PAUSE: Duration = Duration::from_millis(5);
 /// After a failure of ledger or store, a job is tried again after this time.
 const RETRY: Duration = Duration::from_secs(1);
@@ -84,8 +85,15 @@ impl Coordinator {
                 pause = grace;
                 continue;
             }
+            let begin = Instant::now();
             if self.clock_has_jumped(&mut seen, held_up).await {
                 tracing::warn!("the ledger's clock was set: nobody's silence counts for a lease");
+                pause = grace;
+                continue;
+            }
+            if begin.elapsed() > held_up {
+                // It was away: no worker could renew meanwhile, and none has had the time to since.
+                tracing::warn!("the ledger was away: nobody's silence counts for a lease");
                 pause = grace;
                 continue;
             }
@@ -145,6 +153,8 @@ impl Coordinator {
     /// for all: a job that only waits costs nothing.
     async fn run_stewards(self: Arc<Self>, stop: CancellationToken, tasks: TaskTracker) {
         tasks.spawn(Arc::clone(&self).run_renewal(stop.clone()));
+        let right = Duration::from_millis(self.policy.steward_ms);
+        let mut last = Duration::ZERO;
         loop {
             let begin = Instant::now();
             let limit = self.policy.suspicion_limit;
@@ -157,7 +167,9 @@ impl Coordinator {
                 }
                 Err(error) => tracing::warn!(%error, "the jobs could not be listed"),
             }
-            let pause = LOOK.max(begin.elapsed() * LOOK_SHARE);
+            let took = begin.elapsed();
+            let pause = pause_between_looks(last, took, right);
+            last = took;
             tokio::select! {
                 () = stop.cancelled() => return,
                 () = self.unattended.notified() => {}
@@ -309,6 +321,16 @@ impl Coordinator {
     }
 }
 
+/// How long after the question which jobs want a look the next one comes.
+///
+/// One answer that came late says nothing: the database was away, or started again. Only where two in turn
+/// came late (`last` and `took`) is asking a load. A coordinator that died is missed after its `right` to
+/// drive a job has ended; the job that it drove does not wait as long once more.
+fn pause_between_looks(last: Duration, took: Duration, right: Duration) -> Duration {
+    let load = last.min(took).saturating_mul(LOOK_SHARE);
+    load.min(right / 2).max(LOOK)
+}
+
 /// What a panic said.
 fn message(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<String>().map(String::as_str);
@@ -325,5 +347,27 @@ struct Attended {
 impl Drop for Attended {
     fn drop(&mut self) {
         self.coordinator.drives().remove(&self.job);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_database_that_was_away_does_not_put_off_the_next_look() {
+        let seconds = Duration::from_secs;
+        let right = seconds(5);
+        let pause = |last, took| pause_between_looks(last, took, right);
+        assert_eq!(pause(Duration::ZERO, Duration::ZERO), LOOK);
+        // Away for two seconds: the next look is not forty seconds later.
+        assert_eq!(pause(Duration::ZERO, seconds(2)), LOOK);
+        assert_eq!(pause(seconds(2), Duration::from_millis(3)), LOOK);
+        // Asking takes a tenth of a second each time: every two seconds.
+        let tenth = Duration::from_millis(100);
+        assert_eq!(pause(tenth, tenth), seconds(2));
+        // However slow it is, jobs of a coordinator that died are taken over.
+        assert_eq!(pause(seconds(40), seconds(30)), right / 2);
+        assert_eq!(pause(Duration::MAX, Duration::MAX), right / 2);
     }
 }

@@ -89,8 +89,8 @@ async fn only_tracked_paths_have_outcomes() {
     let double = "variable_group x, y; function f, g;
         f = (x - 1)^2*(x + 2*y - 3); g = y^3 - x*y + x - 2;";
     let mut problem = problem_of(double, None);
-    problem.options.certify = true;
-    problem.options.digits = Some(30);
+    problem.options.closings.certify = true;
+    problem.options.closings.digits = Some(30);
     let mut lone = cluster(policy(1000), 1, false);
     lone.start_coordinator();
     lone.start_worker();

@@ -7,11 +7,14 @@ use crate::ledger::identity::ItemRange;
 use crate::results::store::RecordKind;
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, ProblemError};
 use cognate_algorithms::monodromy::LoopLimits;
-use cognate_algorithms::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
+use cognate_algorithms::plan::{GivenStart, Plan, plan};
 use cognate_algorithms::questions::{QuestionError, QuestionSolve};
 use cognate_algorithms::retried_stage::MAX_RETRIES;
 use cognate_algorithms::start_costs::StartKind as PlannedStart;
-use cognate_algorithms::{AnySolve, Next, PathAlgorithm, PlanError};
+use cognate_algorithms::{
+    AnySolve, ClosingOptions, KnownSolutions, MonodromyOptions, Next, PathAlgorithm, PlanError,
+    SolveMethod, SolveOptions, TrackingOptions,
+};
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::stage::PrepareError;
@@ -99,11 +102,11 @@ pub enum PlanningError {
 }
 
 /// The options as the algorithms know them. `start_solutions` is the object that they name.
-pub fn plan_options(
+pub fn solve_options(
     options: &Options,
     start_solutions: Option<&[u8]>,
-) -> Result<PlanOptions, PlanningError> {
-    let start_points = match (&options.start_solutions, start_solutions) {
+) -> Result<SolveOptions, PlanningError> {
+    let points = match (&options.start_solutions, start_solutions) {
         (Some(StartSolutions::Object(object)), Some(bytes)) => {
             let points = StoredPoints::from_bytes(bytes)?;
             Some(GivenStart {
@@ -114,46 +117,69 @@ pub fn plan_options(
         }
         _ => None,
     };
-    let start_parameters = (start_points.is_some() && !options.start_parameters.is_empty())
-        .then(|| options.start_parameters.clone());
-    Ok(PlanOptions {
-        start: match options.start {
-            StartKind::Auto => StartChoice::Auto,
-            StartKind::TotalDegree => StartChoice::TotalDegree,
-            StartKind::Multihomogeneous => StartChoice::Multihomogeneous,
-            StartKind::Given => StartChoice::Given,
-            StartKind::Monodromy => StartChoice::Monodromy,
-            StartKind::Polyhedral => StartChoice::Polyhedral,
-            StartKind::LinearProduct => StartChoice::LinearProduct,
-            StartKind::Regeneration => StartChoice::Regeneration,
-        },
-        start_points,
-        start_parameters,
+    Ok(SolveOptions {
+        method: method(options, points)?,
         target_parameters: options.target_parameters.clone(),
-        loops: LoopLimits {
-            idle_loops: options
-                .idle_loops
-                .unwrap_or(LoopLimits::default().idle_loops),
-            count: options.expected_solutions,
-            trace_test: options.trace_test,
-            confidence: options.confidence,
-        },
         seed: options.seed.unwrap_or_default(),
-        settings: options.settings.resolve(),
-        max_retries: match options.precision {
-            // From the second time on a path is tracked again in double-doubles.
-            PrecisionChoice::Double => 1,
-            PrecisionChoice::Adaptive | PrecisionChoice::Bits(_) => MAX_RETRIES,
+        tracking: TrackingOptions {
+            settings: options.settings.resolve(),
+            max_retries: match options.precision {
+                // From the second time on a path is tracked again in double-doubles.
+                PrecisionChoice::Double => 1,
+                PrecisionChoice::Adaptive | PrecisionChoice::Bits(_) => MAX_RETRIES,
+            },
+            ..TrackingOptions::default()
         },
-        certify: options.certify,
-        digits: options.digits.unwrap_or(match options.precision {
-            PrecisionChoice::Bits(bits) => digits_of(bits),
-            PrecisionChoice::Double | PrecisionChoice::Adaptive => DIGITS_OF_DOUBLES,
-        }),
-        deflate: options.deflate,
-        sets: options.sets.clone(),
-        ..PlanOptions::default()
+        closings: ClosingOptions {
+            digits: options.closings.digits.or(match options.precision {
+                PrecisionChoice::Bits(bits) => Some(digits_of(bits)),
+                PrecisionChoice::Double | PrecisionChoice::Adaptive => None,
+            }),
+            ..options.closings
+        },
+        ..SolveOptions::default()
     })
+}
+
+/// How paths begin, from these points where there are some. Start solutions make the automatic start one of
+/// known solutions, sets make it a linear-product start.
+fn method(options: &Options, points: Option<GivenStart>) -> Result<SolveMethod, PlanError> {
+    let parameters = points.is_some() && !options.start_parameters.is_empty();
+    let known = KnownSolutions {
+        points,
+        parameters: parameters.then(|| options.start_parameters.clone()),
+    };
+    let is_known = known.points.is_some();
+    let method = match options.start {
+        StartKind::Auto if is_known => SolveMethod::Given(known),
+        StartKind::Given => SolveMethod::Given(known),
+        StartKind::Monodromy => {
+            let default = MonodromyOptions::default().limits;
+            SolveMethod::Monodromy(MonodromyOptions {
+                known,
+                limits: LoopLimits {
+                    idle_loops: options.idle_loops.unwrap_or(default.idle_loops),
+                    count: options.expected_solutions,
+                    trace_test: options.trace_test,
+                    confidence: options.confidence,
+                },
+            })
+        }
+        StartKind::Auto if options.sets.is_some() => {
+            SolveMethod::LinearProduct(options.sets.clone())
+        }
+        StartKind::LinearProduct => SolveMethod::LinearProduct(options.sets.clone()),
+        StartKind::Auto => SolveMethod::Auto,
+        StartKind::TotalDegree => SolveMethod::TotalDegree,
+        StartKind::Multihomogeneous => SolveMethod::Multihomogeneous,
+        StartKind::Polyhedral => SolveMethod::Polyhedral,
+        StartKind::Regeneration => SolveMethod::Regeneration,
+    };
+    match method {
+        SolveMethod::LinearProduct(_) => Ok(method),
+        _ if options.sets.is_some() => Err(PlanError::SetsWithoutLinearProduct),
+        _ => Ok(method),
+    }
 }
 
 /// Decimal digits that a number of this many bits has for certain.
@@ -172,9 +198,9 @@ pub fn plan_job(
 ) -> Result<Plan, PlanningError> {
     let decompose = options.decompose;
     let asked = options.question.clone();
-    let options = PlanOptions {
+    let options = SolveOptions {
         counting_operations,
-        ..plan_options(options, start_solutions)?
+        ..solve_options(options, start_solutions)?
     };
     let plan = match (decompose, asked) {
         (_, Some(asked)) => plan_question(system, &asked, options.clone())?,
@@ -182,7 +208,9 @@ pub fn plan_job(
         (None, None) => plan(system, &options)?,
     };
     let points = start_solutions.map(StoredPoints::from_bytes).transpose()?;
-    let given = options.start_points.map(|start| start.object).zip(points);
+    let known = options.method.known_solutions();
+    let given = known.and_then(|known| known.points);
+    let given = given.map(|start| start.object).zip(points);
     let given = given.map(|(object, points)| (object, Arc::new(points)));
     let find = |wanted: Digest| {
         let found = given.as_ref().filter(|(object, _)| *object == wanted);
@@ -199,7 +227,7 @@ pub fn plan_job(
 }
 
 /// How paths on components are tracked, and at which values of the parameters.
-fn tracking_of_components(options: PlanOptions) -> Result<DecompositionOptions, PlanningError> {
+fn tracking_of_components(options: SolveOptions) -> Result<DecompositionOptions, PlanningError> {
     let mut targets = options.target_parameters;
     let parameters = match targets.len() {
         0 | 1 => targets.pop().unwrap_or_default(),
@@ -208,9 +236,9 @@ fn tracking_of_components(options: PlanOptions) -> Result<DecompositionOptions, 
     Ok(DecompositionOptions {
         seed: options.seed,
         parameters,
-        settings: options.settings,
-        tolerances: options.tolerances,
-        max_retries: options.max_retries,
+        settings: options.tracking.settings,
+        tolerances: options.tracking.tolerances,
+        max_retries: options.tracking.max_retries,
         ..DecompositionOptions::default()
     })
 }
@@ -219,7 +247,7 @@ fn tracking_of_components(options: PlanOptions) -> Result<DecompositionOptions, 
 fn plan_question(
     system: &System,
     asked: &Asked,
-    options: PlanOptions,
+    options: SolveOptions,
 ) -> Result<Plan, PlanningError> {
     let options = tracking_of_components(options)?;
     let solve = QuestionSolve::new(system, &options, &asked.components, &asked.question)?;
@@ -236,7 +264,7 @@ fn plan_question(
 fn plan_decomposition(
     system: &System,
     wanted: Decompose,
-    options: PlanOptions,
+    options: SolveOptions,
 ) -> Result<Plan, PlanningError> {
     let default = DecompositionOptions::default();
     let options = DecompositionOptions {
@@ -244,7 +272,7 @@ fn plan_decomposition(
         idle_loops: wanted.idle_loops.unwrap_or(default.idle_loops),
         method: wanted.method,
         verify: wanted.verify,
-        certify: options.certify,
+        certify: options.closings.certify,
         ..tracking_of_components(options)?
     };
     let solve = DecompositionSolve::new(system, &options)?;

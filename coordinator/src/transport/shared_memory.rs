@@ -14,7 +14,7 @@ use http_body_util::{BodyExt, Full, Limited};
 use iceoryx2::active_request::ActiveRequest;
 use iceoryx2::node::NodeView;
 use iceoryx2::port::ReceiveError;
-use iceoryx2::port::listener::Listener;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::port::server::Server;
 use iceoryx2::prelude::{BackpressureStrategy, CallbackProgression, Node, NodeState};
@@ -130,8 +130,11 @@ impl SharedMemoryListener {
         let mut cleaned = Instant::now();
         let mut wait = LOOK;
         loop {
-            let rung = self.listener.timed_wait(|_| {}, wait);
-            rung.map_err(failed("the bell is broken"))?;
+            match self.listener.timed_wait(|_| {}, wait) {
+                // A process that was stopped and goes on wakes up, too.
+                Ok(_) | Err(ListenerWaitError::InterruptSignal) => {}
+                Err(error) => return Err(failed("the bell is broken")(error)),
+            }
             // Before the next are taken: a worker's calls that have ended make room for its others.
             open.retain(OpenCall::is_wanted);
             wait = loop {

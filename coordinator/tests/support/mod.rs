@@ -24,6 +24,11 @@ use tonic::transport::{Channel, Endpoint, Uri};
 pub const FOUR_POINTS: &str = "INPUT variable_group x, y; function f, g; \
      f = x^2 + y^2 - 5; g = x*y - 2; END;";
 
+/// A worker waits so long for work, far longer than any machine takes to wake it ...
+pub const LONG_WAIT: Duration = Duration::from_secs(600);
+/// ... which is less than this, however much else the machine does.
+pub const WOKEN: Duration = Duration::from_secs(120);
+
 /// 64 paths: enough for several chunks.
 pub const MANY_PATHS: &str = "INPUT variable_group x, y; function f, g; \
      f = x^8 + y^2 - 3; g = y^8 - x*y + 1; END;";
@@ -57,6 +62,15 @@ impl House {
     }
 
     /// On a ledger and results in this folder, which may be there already.
+    /// A coordinator whose workers may wait for work as long as they like: who is not woken waits on.
+    pub async fn of_long_waits() -> Self {
+        let rules = Rules {
+            long_poll: LONG_WAIT,
+            ..Rules::default()
+        };
+        Self::with(rules, tempfile::tempdir().unwrap(), false).await
+    }
+
     pub async fn durable(folder: tempfile::TempDir) -> Self {
         Self::with(Rules::default(), folder, true).await
     }

@@ -7,9 +7,9 @@
 mod peers;
 
 use crate::peers::{Answer, Peers};
-use cognate_algorithms::plan::StartChoice;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_systems::formats::{self, FileSettings, Format};
 use cognate_systems::named::{cyclic, eco, katsura, noon, reimer};
 use cognate_systems::system::System;
@@ -57,20 +57,20 @@ fn median(mut of: Vec<f64>) -> f64 {
 /// Ours with every seed; `Ok(Err(reason))` where the start does not apply.
 fn measure(
     system: &System,
-    start: StartChoice,
+    start: &SolveMethod,
 ) -> Result<Result<Measured, String>, Box<dyn std::error::Error>> {
     let (mut planning, mut solving) = (Vec::new(), Vec::new());
     let mut measured: Option<Measured> = None;
     for seed in 1..=SEEDS {
-        let options = PlanOptions {
-            start,
+        let options = SolveOptions {
+            method: start.clone(),
             seed,
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let begin = cpu_seconds()?;
         let mut plan = match plan(system, &options) {
             Ok(plan) => plan,
-            Err(error) => return Ok(Err(format!("{start:?}: {error}"))),
+            Err(error) => return Ok(Err(format!("{}: {error}", start.name()))),
         };
         let planned = cpu_seconds()?;
         let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 16)?;
@@ -80,7 +80,7 @@ fn measure(
         let before = measured.as_ref();
         measured = Some(Measured {
             label: match start {
-                StartChoice::Auto => format!("auto: {}", plan.start),
+                SolveMethod::Auto => format!("auto: {}", plan.start),
                 _ => plan.start.to_string(),
             },
             paths: paths.total,
@@ -106,7 +106,7 @@ fn written(system: &System, input: &Path) -> Result<System, Box<dyn std::error::
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    use StartChoice::{Auto, LinearProduct, Multihomogeneous, Polyhedral, Regeneration};
+    use SolveMethod::{Auto, Multihomogeneous, Polyhedral, Regeneration};
     let folder = tempfile::tempdir()?;
     let patience = match std::env::var("PEER_SECONDS") {
         Ok(seconds) => seconds.parse().map_err(|_| "PEER_SECONDS: a number")?,
@@ -118,7 +118,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "system", "start or program", "paths", "distinct", "plan s", "solve s", "paths/s"
     );
     for (name, system, others) in [
-        ("noon-5", noon(5).system, &[LinearProduct, Polyhedral][..]),
+        (
+            "noon-5",
+            noon(5).system,
+            &[SolveMethod::LINEAR_PRODUCT, Polyhedral][..],
+        ),
         ("reimer-5", reimer(5).system, &[]),
         ("eco-8", eco(8).system, &[]),
         ("cyclic-7", cyclic(7).system, &[]),
@@ -144,9 +148,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // PHCpack's format knows no groups; ours are those of the file.
         system.groups = groups;
         let mut ours = f64::INFINITY;
-        let starts: Vec<StartChoice> = [Auto].iter().chain(others).copied().collect();
+        let starts: Vec<SolveMethod> = [Auto].iter().chain(others).cloned().collect();
         for start in starts {
-            match measure(&system, start)? {
+            match measure(&system, &start)? {
                 Ok(measured) => {
                     ours = ours.min(measured.planning + measured.solving);
                     println!("{name:15} {}", measured.line());

@@ -2,9 +2,10 @@
 
 use super::Planted;
 use crate::dice::Dice;
-use cognate_algorithms::plan::StartChoice;
+use crate::measures::cpu_seconds;
+use cognate_algorithms::plan::SolveMethod;
 use cognate_algorithms::run_locally::drive;
-use cognate_algorithms::{PathAlgorithm, PlanOptions, plan};
+use cognate_algorithms::{PathAlgorithm, SolveOptions, plan};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
@@ -115,28 +116,31 @@ fn missing(planted: &Planted, found: &[Vec<Complex64>]) -> u64 {
 }
 
 /// A start for this throw: mostly the one that is chosen by itself.
-pub fn start(dice: &mut Dice) -> StartChoice {
+pub fn start(dice: &mut Dice) -> SolveMethod {
     match dice.below(10) {
-        0..=4 => StartChoice::Auto,
-        5 | 6 => StartChoice::TotalDegree,
-        7 => StartChoice::Polyhedral,
-        8 => StartChoice::LinearProduct,
-        _ => StartChoice::Multihomogeneous,
+        0..=4 => SolveMethod::Auto,
+        5 | 6 => SolveMethod::TotalDegree,
+        7 => SolveMethod::Polyhedral,
+        8 => SolveMethod::LINEAR_PRODUCT,
+        _ => SolveMethod::Multihomogeneous,
     }
 }
 
-/// Solves in this process, within this time; the set of the first target.
+/// Solves in this process, within this CPU time; the set of the first target.
 ///
 /// # Errors
 /// The verdict where there is none: [`Verdict::NoEnd`] or [`Verdict::Refused`].
 pub fn solve_within(
     system: &System,
-    options: &PlanOptions,
+    options: &SolveOptions,
     limit: Duration,
 ) -> Result<SolutionSet, Verdict> {
     let refused = |error: String| Verdict::Refused(error);
     let mut plan = plan(system, options).map_err(|error| refused(error.to_string()))?;
-    let until = Instant::now() + limit;
+    let began = Instant::now();
+    // CPU time, where the system tells it: what is compared does not depend on what else the machine does.
+    let spent = || cpu_seconds().unwrap_or_else(|_| began.elapsed().as_secs_f64());
+    let until = spent() + limit.as_secs_f64();
     let mut made = HashMap::<Digest, Arc<StoredPoints>>::new();
     let tracked = plan.system.clone();
     drive::<Verdict, _>(&mut plan.algorithm, &mut |opening| {
@@ -151,7 +155,7 @@ pub fn solve_within(
             let end = (next + WIDTH as u64).min(work.items());
             results.extend(work.run(next..end, WIDTH));
             next = end;
-            if Instant::now() > until {
+            if spent() > until {
                 return Err(Verdict::NoEnd);
             }
         }
@@ -165,17 +169,17 @@ pub fn solve_within(
     first.ok_or_else(|| refused("there is no solution set".into()))
 }
 
-/// Solves with one start and seed, within this time.
-pub fn solve(planted: &Planted, start: StartChoice, seed: u64, limit: Duration) -> Verdict {
+/// Solves with one start and seed, within this CPU time.
+pub fn solve(planted: &Planted, start: SolveMethod, seed: u64, limit: Duration) -> Verdict {
     let text = planted.file("");
     let system = match formats::read("planted", text.as_bytes()) {
         Ok(problem) => problem.system,
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    let options = PlanOptions {
-        start,
+    let options = SolveOptions {
+        method: start,
         seed,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     let set = match solve_within(&system, &options, limit) {
         Ok(set) => set,

@@ -28,9 +28,9 @@ type Client = WorkerApiClient<Route>;
 
 /// A call that should be answered at once is given up after this.
 const ANSWER: Duration = Duration::from_secs(20);
-/// A renewal that one of several coordinators does not answer is made to the next after this, long before
-/// a lease ends: one that stands still takes the call and says nothing.
-const RENEWAL_ANSWER: Duration = Duration::from_secs(2);
+/// A renewal or a question for work that one of several coordinators does not answer is made to the next after
+/// this, long before a lease ends: one that stands still takes the call and says nothing.
+const ANSWER_OF_SEVERAL: Duration = Duration::from_secs(2);
 /// A report may be large and is durable before it is answered.
 const REPORT_ANSWER: Duration = Duration::from_secs(120);
 
@@ -93,6 +93,14 @@ impl Grpc {
 
     fn identity(&self) -> Option<v1::WorkerIdentity> {
         Some(self.identity.clone())
+    }
+
+    /// How long a call may take that should be answered at once.
+    fn patience(&self) -> Duration {
+        match self.clients.len() {
+            1 => ANSWER,
+            _ => ANSWER_OF_SEVERAL,
+        }
     }
 
     /// Ends once calls go to another coordinator than to this one.
@@ -247,7 +255,7 @@ impl Transport for Grpc {
             machine: Some(machine),
         };
         let call = |mut client: Client| async move { client.pull(request).await };
-        let response = self.call(wait + ANSWER, call).await?.into_inner();
+        let response = self.call(wait + self.patience(), call).await?.into_inner();
         let leases = response.leases.into_iter().enumerate();
         let leases = leases.map(|(number, lease)| {
             lease_from_proto(lease).map_err(|error| error.within(format!("leases[{number}]")))
@@ -264,12 +272,12 @@ impl Transport for Grpc {
             identity: self.identity(),
             leases: leases.iter().map(lease_id_to_proto).collect(),
         };
-        let patience = match self.clients.len() {
-            1 => ANSWER,
-            _ => RENEWAL_ANSWER,
-        };
         let call = |mut client: Client| async move { client.renew(request).await };
-        let renewals = self.call(patience, call).await?.into_inner().renewals;
+        let renewals = self
+            .call(self.patience(), call)
+            .await?
+            .into_inner()
+            .renewals;
         if renewals.len() != leases.len() {
             let (found, asked) = (renewals.len(), leases.len());
             let text = format!("{found} renewals for {asked} leases");

@@ -73,9 +73,10 @@ mod tests {
     use crate::any_algorithm::AnyAlgorithm;
     use crate::opening::Opening;
     use crate::plan::GivenStart;
+    use crate::plan::{ClosingOptions, KnownSolutions, SolveMethod};
     use crate::run_locally::{drive, run_locally};
     use crate::solve::PathAlgorithm;
-    use crate::{PlanOptions, plan};
+    use crate::{SolveOptions, plan};
     use cognate_continuation::prepared_work::PreparedWork;
     use cognate_continuation::start_points::StoredPoints;
     use cognate_systems::named::katsura;
@@ -87,11 +88,14 @@ mod tests {
         (counts.certified, counts.certified_real, counts.distinct)
     }
 
-    fn with_certificates() -> PlanOptions {
-        PlanOptions {
-            certify: true,
+    fn with_certificates() -> SolveOptions {
+        SolveOptions {
             seed: 7,
-            ..PlanOptions::default()
+            closings: ClosingOptions {
+                certify: true,
+                ..ClosingOptions::default()
+            },
+            ..SolveOptions::default()
         }
     }
 
@@ -148,13 +152,15 @@ mod tests {
             dimension: 1,
             coordinates: vec![real(1.0), half, half.conj()],
         });
-        let options = PlanOptions {
-            start_points: Some(GivenStart {
-                object: points.digest(),
-                count: 3,
-                dimension: 1,
+        let options = SolveOptions {
+            method: SolveMethod::Given(KnownSolutions {
+                points: Some(GivenStart {
+                    object: points.digest(),
+                    count: 3,
+                    dimension: 1,
+                }),
+                parameters: Some(vec![real(1.0)]),
             }),
-            start_parameters: Some(vec![real(1.0)]),
             target_parameters: vec![vec![real(8.0)], vec![real(-0.1)], vec![real(0.0)]],
             ..with_certificates()
         };

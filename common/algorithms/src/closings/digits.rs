@@ -86,13 +86,14 @@ impl Digits {
 
 #[cfg(test)]
 mod tests {
-    use crate::plan::StartChoice;
+    use crate::plan::ClosingOptions;
+    use crate::plan::SolveMethod;
     use crate::run_locally::run_locally;
-    use crate::{AnyAlgorithm, PathAlgorithm, PlanOptions, plan};
+    use crate::{AnyAlgorithm, PathAlgorithm, SolveOptions, plan};
     use cognate_solutions::solution_set::SolutionSet;
     use cognate_systems::formats;
 
-    fn solve(text: &str, options: PlanOptions) -> SolutionSet {
+    fn solve(text: &str, options: SolveOptions) -> SolutionSet {
         let problem = formats::read("test", text.as_bytes());
         let system = problem.expect("a problem of this test").system;
         let mut plan = plan(&system, &options).expect("a plan");
@@ -109,12 +110,15 @@ mod tests {
 
     #[test]
     fn digits_and_deflation_are_for_whom_they_are_asked() {
-        let options = |digits, deflate| PlanOptions {
-            start: StartChoice::TotalDegree,
+        let options = |digits, deflate| SolveOptions {
+            method: SolveMethod::TotalDegree,
             seed: 5,
-            digits,
-            deflate,
-            ..PlanOptions::default()
+            closings: ClosingOptions {
+                digits: Some(digits),
+                deflate,
+                ..ClosingOptions::default()
+            },
+            ..SolveOptions::default()
         };
         let set = solve(TOUCHING, options(40, true));
         assert_eq!((set.counts.nonsingular, set.counts.singular), (2, 1));
@@ -144,8 +148,11 @@ mod tests {
         assert_eq!(set.counts.sharpened.as_ref().unwrap().solutions, 2);
         assert_eq!(digits(&set, touching, 0), None);
         // And with proofs.
-        let with_proofs = PlanOptions {
-            certify: true,
+        let with_proofs = SolveOptions {
+            closings: ClosingOptions {
+                certify: true,
+                ..options(40, true).closings
+            },
             ..options(40, true)
         };
         let set = solve(TOUCHING, with_proofs);

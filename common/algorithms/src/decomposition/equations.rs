@@ -304,7 +304,7 @@ fn learn(
             | Verdict::PositiveDimensional => {
                 singular.push(place);
             }
-            Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => lost += 1,
+            Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => lost += 1,
         }
     }
     found.gather(problem, job, &singular);

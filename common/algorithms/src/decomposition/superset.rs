@@ -76,7 +76,9 @@ impl Superset {
                     self.unclear += 1;
                 }
                 Verdict::AtInfinity => {}
-                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => self.failed += 1,
+                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => {
+                    self.failed += 1
+                }
                 Verdict::Finite => {
                     let refined = combinations.refine(&exact);
                     match refined.and_then(|refined| problem.solves(&refined.point, &REFINED)) {

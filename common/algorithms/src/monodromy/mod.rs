@@ -66,14 +66,19 @@ pub struct LoopLimits {
     pub confidence: Option<f64>,
 }
 
+impl LoopLimits {
+    /// Five loops in a row without anything new, and nothing else.
+    pub const DEFAULT: Self = Self {
+        idle_loops: 5,
+        count: None,
+        trace_test: false,
+        confidence: None,
+    };
+}
+
 impl Default for LoopLimits {
     fn default() -> Self {
-        Self {
-            idle_loops: 5,
-            count: None,
-            trace_test: false,
-            confidence: None,
-        }
+        Self::DEFAULT
     }
 }
 

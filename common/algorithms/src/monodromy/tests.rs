@@ -3,7 +3,8 @@
 use super::completeness::probability_of_hiding;
 use super::*;
 use crate::any_algorithm::{AnyAlgorithm, AnySolve};
-use crate::plan::{GivenStart, Plan, PlanOptions, StartChoice, plan};
+use crate::plan::{GivenStart, Plan, SolveMethod, SolveOptions, plan};
+use crate::plan::{KnownSolutions, MonodromyOptions};
 use crate::run_locally::{drive, run_locally};
 use crate::solve::PathAlgorithm;
 use crate::synthetic::written;
@@ -32,10 +33,10 @@ const TRUE_SYMMETRY: &str =
     r#"[{"permutation": {"x": "y", "y": "x"}}, {"map": {"x": "-x", "y": "-y"}}]"#;
 
 fn monodromy(system: &System, seed: u64) -> Plan {
-    let options = PlanOptions {
-        start: StartChoice::Monodromy,
+    let options = SolveOptions {
+        method: SolveMethod::MONODROMY,
         seed,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     match plan(system, &options) {
         Ok(plan) => plan,
@@ -74,14 +75,16 @@ fn everything_is_found_from_one_point_that_is_found_too() {
 /// A rule that looks at how often solutions were met again, for two families.
 #[test]
 fn loops_end_when_an_estimate_is_certain_enough() {
-    let options = |seed: u64| PlanOptions {
-        start: StartChoice::Monodromy,
+    let options = |seed: u64| SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            limits: LoopLimits {
+                confidence: Some(0.9999),
+                ..LoopLimits::default()
+            },
+            ..MonodromyOptions::default()
+        }),
         seed,
-        loops: LoopLimits {
-            confidence: Some(0.9999),
-            ..LoopLimits::default()
-        },
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     for (system, classes) in [(written(CUBICS), 9), (symmetric(TRUE_SYMMETRY), 2)] {
         for seed in 0..10 {
@@ -154,20 +157,21 @@ fn few_solutions_get_many_loops() {
 
 #[test]
 fn a_known_count_ends_the_loops() {
-    let mut options = PlanOptions {
-        start: StartChoice::Monodromy,
-        loops: LoopLimits {
-            count: Some(9),
-            ..LoopLimits::default()
-        },
-        ..PlanOptions::default()
+    let options = |count| SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            limits: LoopLimits {
+                count: Some(count),
+                ..LoopLimits::default()
+            },
+            ..MonodromyOptions::default()
+        }),
+        ..SolveOptions::default()
     };
     let system = written(CUBICS);
-    let (set, counts) = solve(&mut plan(&system, &options).unwrap());
+    let (set, counts) = solve(&mut plan(&system, &options(9)).unwrap());
     assert_eq!((set.counts.distinct, counts.stop), (9, Some(Stop::Count)));
     assert_eq!(set.warnings, Vec::<String>::new());
-    options.loops.count = Some(10);
-    let (set, counts) = solve(&mut plan(&system, &options).unwrap());
+    let (set, counts) = solve(&mut plan(&system, &options(10)).unwrap());
     assert_eq!(
         (set.counts.distinct, counts.stop),
         (9, Some(Stop::IdleLoops))
@@ -214,16 +218,20 @@ fn given_solutions_lead_to_given_parameters() {
             dimension: 1,
             coordinates: number(x),
         });
-        let options = PlanOptions {
-            start: StartChoice::Monodromy,
-            start_points: Some(GivenStart {
-                object: points.digest(),
-                count: 1,
-                dimension: 1,
+        let options = SolveOptions {
+            method: SolveMethod::Monodromy(MonodromyOptions {
+                known: KnownSolutions {
+                    points: Some(GivenStart {
+                        object: points.digest(),
+                        count: 1,
+                        dimension: 1,
+                    }),
+                    parameters: Some(number(16.0)),
+                },
+                ..MonodromyOptions::default()
             }),
-            start_parameters: Some(number(16.0)),
             target_parameters: vec![number(81.0), number(0.0)],
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let mut plan = plan(&system, &options).unwrap();
         let find = |_: Digest| Some(Arc::clone(&points));
@@ -374,14 +382,16 @@ fn few_paths_are_tracked_where_the_number_is_known() {
     let system = written(CUBICS);
     let mut tracked = 0;
     for seed in 0..10 {
-        let options = PlanOptions {
-            start: StartChoice::Monodromy,
+        let options = SolveOptions {
+            method: SolveMethod::Monodromy(MonodromyOptions {
+                limits: LoopLimits {
+                    count: Some(9),
+                    ..LoopLimits::default()
+                },
+                ..MonodromyOptions::default()
+            }),
             seed,
-            loops: LoopLimits {
-                count: Some(9),
-                ..LoopLimits::default()
-            },
-            ..PlanOptions::default()
+            ..SolveOptions::default()
         };
         let (set, counts) = solve(&mut plan(&system, &options).unwrap());
         assert_eq!((set.counts.distinct, counts.stop), (9, Some(Stop::Count)));
@@ -427,9 +437,9 @@ fn jumps_are_seen_and_repaired() {
 #[test]
 fn what_has_no_family_is_refused() {
     let refused = |text: &str| {
-        let options = PlanOptions {
-            start: StartChoice::Monodromy,
-            ..PlanOptions::default()
+        let options = SolveOptions {
+            method: SolveMethod::MONODROMY,
+            ..SolveOptions::default()
         };
         plan(&written(text), &options).unwrap_err().to_string()
     };
@@ -440,14 +450,16 @@ fn what_has_no_family_is_refused() {
 }
 
 fn traced(text: &str, seed: u64) -> Plan {
-    let options = PlanOptions {
-        start: StartChoice::Monodromy,
+    let options = SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            limits: LoopLimits {
+                trace_test: true,
+                ..LoopLimits::default()
+            },
+            ..MonodromyOptions::default()
+        }),
         seed,
-        loops: LoopLimits {
-            trace_test: true,
-            ..LoopLimits::default()
-        },
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     match plan(&written(text), &options) {
         Ok(plan) => plan,
@@ -469,20 +481,23 @@ fn points_on_a_slice_are_complete_when_their_sum_moves_on_a_line() {
             dimension: 2,
             coordinates: [-1.0, 0.0].map(number).to_vec(),
         });
-        let options = PlanOptions {
-            start: StartChoice::Monodromy,
-            seed,
-            start_points: Some(GivenStart {
-                object: start.digest(),
-                count: 1,
-                dimension: 2,
+        let options = SolveOptions {
+            method: SolveMethod::Monodromy(MonodromyOptions {
+                known: KnownSolutions {
+                    points: Some(GivenStart {
+                        object: start.digest(),
+                        count: 1,
+                        dimension: 2,
+                    }),
+                    parameters: Some([1.0, 2.0, 1.0].map(number).to_vec()),
+                },
+                limits: LoopLimits {
+                    trace_test: true,
+                    ..LoopLimits::default()
+                },
             }),
-            start_parameters: Some([1.0, 2.0, 1.0].map(number).to_vec()),
-            loops: LoopLimits {
-                trace_test: true,
-                ..LoopLimits::default()
-            },
-            ..PlanOptions::default()
+            seed,
+            ..SolveOptions::default()
         };
         let mut plan = plan(&written(SLICED), &options).unwrap();
         let find = |_: Digest| Some(Arc::clone(&start));
@@ -652,13 +667,15 @@ fn a_missing_point_makes_the_trace_test_fail() {
 
 #[test]
 fn what_cannot_be_traced_is_refused_by_name() {
-    let options = PlanOptions {
-        start: StartChoice::Monodromy,
-        loops: LoopLimits {
-            trace_test: true,
-            ..LoopLimits::default()
-        },
-        ..PlanOptions::default()
+    let options = SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            limits: LoopLimits {
+                trace_test: true,
+                ..LoopLimits::default()
+            },
+            ..MonodromyOptions::default()
+        }),
+        ..SolveOptions::default()
     };
     let text = "CONFIG END; INPUT hom_variable_group x, y; variable_group z; parameter p, q;
         function f, g; f = x^2 - p*y^2; g = z^2 - q; END;";

@@ -47,8 +47,10 @@ enum Phase {
     Mirror,
     /// Witness points go to the slice where levels begin.
     Start,
-    Slide,
-    Intersect,
+    /// A slice moves to the other forms of the level, as in a regeneration.
+    MoveSlice,
+    /// From the product of the forms to the equation whose solutions are the critical points.
+    CriticalPoints,
     Fibres,
     /// Tasks by place.
     Slabs(usize),
@@ -88,8 +90,8 @@ impl RealCurves {
                 (Phase::Begin, _) => self.begin(with, operand),
                 (Phase::Mirror, Some(job)) => self.mirrored(with, operand, job),
                 (Phase::Start, Some(job)) => self.started(with, job),
-                (Phase::Slide, Some(job)) => self.slid(with, job),
-                (Phase::Intersect, Some(job)) => self.intersected(with, operand, job),
+                (Phase::MoveSlice, Some(job)) => self.slice_moved(with, job),
+                (Phase::CriticalPoints, Some(job)) => self.critical_points(with, operand, job),
                 (Phase::Fibres, Some(job)) => self.fibred(with, operand, job),
                 (Phase::Slabs(place), Some(job)) => self.connected(with, place, job),
                 (_, None) => unreachable!("every phase after the first waits for a stage"),
@@ -185,10 +187,10 @@ impl RealCurves {
         }
         let degree = critical_degree(with, &self.now.form);
         match degree {
-            0 => self.intersect_none(with),
-            1 => self.intersect(with),
+            0 => self.no_critical_points(with),
+            1 => self.to_critical_points(with),
             degree => {
-                self.phase = Phase::Slide;
+                self.phase = Phase::MoveSlice;
                 Some(self.level(with, Some(degree - 1)))
             }
         }
@@ -219,28 +221,33 @@ impl RealCurves {
         Job::track((wanted, &*system), homotopy, &self.now.start, tracking).ends_only()
     }
 
-    fn slid(&mut self, with: &mut Context<'_>, job: &Job) -> Option<Job> {
+    fn slice_moved(&mut self, with: &mut Context<'_>, job: &Job) -> Option<Job> {
         for (_, decision, values) in job.ends() {
             match decision.verdict {
                 Verdict::Finite => self.now.start.push(values),
                 _ => return self.doubt("a point was lost on the way to another slice"),
             }
         }
-        self.intersect(with)
+        self.to_critical_points(with)
     }
 
-    fn intersect(&mut self, with: &mut Context<'_>) -> Option<Job> {
-        self.phase = Phase::Intersect;
+    fn to_critical_points(&mut self, with: &mut Context<'_>) -> Option<Job> {
+        self.phase = Phase::CriticalPoints;
         Some(self.level(with, None))
     }
 
     /// A line has no critical points.
-    fn intersect_none(&mut self, with: &mut Context<'_>) -> Option<Job> {
+    fn no_critical_points(&mut self, with: &mut Context<'_>) -> Option<Job> {
         let operand = &with.operands[self.found.len()];
         self.slabs(with, operand)
     }
 
-    fn intersected(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+    fn critical_points(
+        &mut self,
+        with: &mut Context<'_>,
+        operand: &Operand,
+        job: &Job,
+    ) -> Option<Job> {
         let wanted = StageSystem::Critical {
             form: self.now.form.clone(),
         };
@@ -252,7 +259,7 @@ impl RealCurves {
         for (_, decision, values) in job.ends() {
             match decision.verdict {
                 Verdict::AtInfinity => continue,
-                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => {
+                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => {
                     lost += 1;
                     continue;
                 }

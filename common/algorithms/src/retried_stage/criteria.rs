@@ -1,6 +1,5 @@
 //! Criteria: by what the paths of one stage are judged.
 
-use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_continuation::work::Stage;
@@ -57,16 +56,10 @@ impl Criteria {
         path / self.paths_per_target
     }
 
-    /// Values of the parameters at a target.
-    pub fn parameters(&self, target: usize) -> &[Complex64] {
-        match &self.first.homotopy {
-            HomotopyKind::StraightLine { parameters }
-            | HomotopyKind::PathVariable { parameters }
-            | HomotopyKind::Generic { parameters }
-            | HomotopyKind::MoveSlice { parameters, .. }
-            | HomotopyKind::ProductToEquation { parameters, .. } => parameters,
-            HomotopyKind::Parameter { targets, .. } => &targets[target],
-            HomotopyKind::Toric | HomotopyKind::Sections { .. } => &[],
-        }
+    /// Values of the parameters at a target; none where paths end at a system without them.
+    pub fn parameters(&self, target: usize) -> Cow<'_, [Complex64]> {
+        // The plan has put 0 for a path variable.
+        let parameters = self.first.homotopy.end_parameters(target, None);
+        parameters.unwrap_or_default()
     }
 }

@@ -167,7 +167,7 @@ fn not_asked(
 ) -> Vec<usize> {
     let parameters = criteria.parameters(target);
     let (shape, tolerances) = (&criteria.shape, &criteria.tolerances);
-    let sets = (criteria.declared).members(parameters, results, decisions, shape, tolerances);
+    let sets = (criteria.declared).members(&parameters, results, decisions, shape, tolerances);
     let mut rest = Vec::new();
     for mut members in sets {
         members.sort_by(|&a, &b| results[a].accuracy.total_cmp(&results[b].accuracy));

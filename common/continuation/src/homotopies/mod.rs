@@ -13,6 +13,7 @@ pub mod toric_path;
 
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 pub use parameter_path::ParameterPath;
 pub use prepare::{Homotopy, way_back};
@@ -94,6 +95,51 @@ impl HomotopyKind {
             | Self::Generic { .. }
             | Self::ProductToEquation { .. }
             | Self::Sections { .. } => 1,
+        }
+    }
+
+    /// How many sets of values of the parameters paths end at.
+    pub fn parameter_sets(&self) -> usize {
+        match self {
+            Self::Parameter { targets, .. } => targets.len(),
+            Self::StraightLine { .. }
+            | Self::PathVariable { .. }
+            | Self::Toric
+            | Self::Generic { .. }
+            | Self::MoveSlice { .. }
+            | Self::ProductToEquation { .. }
+            | Self::Sections { .. } => 1,
+        }
+    }
+
+    /// Values of the system's parameters where paths to the set number `target` end, with 0 for the path variable
+    /// of the system; `None` where paths end at a system without them.
+    ///
+    /// # Panics
+    /// When there are not so many sets.
+    pub fn end_parameters(
+        &self,
+        target: usize,
+        path_variable: Option<usize>,
+    ) -> Option<Cow<'_, [Complex64]>> {
+        assert!(
+            target < self.parameter_sets(),
+            "the homotopy ends at this set"
+        );
+        match self {
+            Self::StraightLine { parameters }
+            | Self::Generic { parameters }
+            | Self::MoveSlice { parameters, .. }
+            | Self::ProductToEquation { parameters, .. } => Some(Cow::Borrowed(parameters)),
+            Self::Parameter { targets, .. } => Some(Cow::Borrowed(&targets[target])),
+            Self::PathVariable { parameters } => {
+                let mut parameters = parameters.clone();
+                if let Some(t) = path_variable.and_then(|t| parameters.get_mut(t)) {
+                    *t = Complex64::default();
+                }
+                Some(Cow::Owned(parameters))
+            }
+            Self::Toric | Self::Sections { .. } => None,
         }
     }
 

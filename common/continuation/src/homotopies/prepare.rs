@@ -227,6 +227,318 @@ impl StartSystem {
     }
 }
 
+/// A homotopy that is being made.
+struct Build<'a> {
+    system: &'a System,
+    degrees: &'a Degrees,
+    kind: &'a HomotopyKind,
+    start_system: Option<&'a StartSystem>,
+    first_chart: &'a Chart,
+    seed: u64,
+    level: Option<Level<'a>>,
+    /// Number of coordinates of the chart.
+    dimension: usize,
+    out: Expressions,
+    /// The chart's homogeneous coordinates, group by group.
+    coordinates: Vec<Vec<NodeId>>,
+    /// The points of this chart at which rows are scaled and put into order.
+    probe: RandomStream,
+}
+
+/// Where the parameters of the program begin and end.
+struct Ends {
+    /// What an arc between parameters goes round by, where it is one.
+    arc: Option<Complex64>,
+    start: Vec<Complex64>,
+    /// One for each target.
+    targets: Vec<Vec<Complex64>>,
+}
+
+const ZERO: Complex64 = Complex64::new(0.0, 0.0);
+const ONE: Complex64 = Complex64::new(1.0, 0.0);
+
+impl<'a> Build<'a> {
+    fn new(
+        system: &'a System,
+        degrees: &'a Degrees,
+        kind: &'a HomotopyKind,
+        start_system: Option<&'a StartSystem>,
+        chart: &Chart,
+        first_chart: &'a Chart,
+        seed: u64,
+    ) -> Self {
+        assert!(!matches!(kind, HomotopyKind::Sections { .. }), "{SECTIONS}");
+        let mut out = Expressions::new();
+        let coordinates = chart.nodes(&mut out);
+        Self {
+            system,
+            degrees,
+            kind,
+            start_system,
+            first_chart,
+            seed,
+            level: Level::of(kind, seed),
+            dimension: chart.dimension(),
+            out,
+            coordinates,
+            probe: RandomStream::new(seed, Purpose::Probe, 0),
+        }
+    }
+
+    /// The parameters of the system as nodes: numbers, or parameters of the program.
+    fn parameters(&mut self) -> Vec<NodeId> {
+        let (out, count) = (&mut self.out, self.system.parameters.len());
+        match self.kind {
+            HomotopyKind::StraightLine { parameters }
+            | HomotopyKind::Generic { parameters }
+            | HomotopyKind::MoveSlice { parameters, .. }
+            | HomotopyKind::ProductToEquation { parameters, .. } => {
+                parameters.iter().map(|&z| exact(out, z)).collect()
+            }
+            HomotopyKind::Toric => Vec::new(),
+            HomotopyKind::Parameter { .. } => (0..count).map(|k| out.parameter(k as u32)).collect(),
+            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
+            HomotopyKind::PathVariable { parameters } => (0..count)
+                .map(|k| match self.system.path_variable == Some(k) {
+                    true => out.parameter(0),
+                    false => exact(out, parameters[k]),
+                })
+                .collect(),
+        }
+    }
+
+    /// The equations that are asked, or those of a generic system with their coefficients as parameters.
+    fn asked(&mut self, toric: Option<&ToricStart>) -> Vec<NodeId> {
+        let parameters = self.parameters();
+        let (out, coordinates) = (&mut self.out, &self.coordinates);
+        match toric {
+            Some(toric) => {
+                let mut number = 0..;
+                let parameter = |out: &mut Expressions| out.parameter(number.next().unwrap_or(0));
+                let (generic, degrees) = (toric.generic(), &self.degrees.by_group);
+                generic.equations(self.system, degrees, out, coordinates, parameter)
+            }
+            None => homogenize(self.system, self.degrees, out, coordinates, &parameters),
+        }
+    }
+
+    /// Parameters of the asked equations at t = 1.
+    fn parameters_at_start(&self, toric: Option<&ToricStart>) -> Vec<Complex64> {
+        match self.kind {
+            HomotopyKind::StraightLine { .. }
+            | HomotopyKind::Generic { .. }
+            | HomotopyKind::MoveSlice { .. }
+            | HomotopyKind::ProductToEquation { .. } => Vec::new(),
+            HomotopyKind::Toric => toric
+                .into_iter()
+                .flat_map(|toric| toric.generic().coefficients())
+                .collect(),
+            HomotopyKind::Parameter { start, .. } => start.clone(),
+            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
+            HomotopyKind::PathVariable { .. } => vec![ONE],
+        }
+    }
+
+    /// Exponents of the scales of both systems, where two are joined: all charts must join them alike.
+    fn shared_scales(&mut self) -> Option<[Vec<i32>; 2]> {
+        let (system, degrees) = (self.system, self.degrees);
+        let mut beside = RandomStream::new(self.seed, Purpose::Probe, 1);
+        match (self.kind, self.start_system) {
+            (
+                HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters },
+                Some(start),
+            ) => {
+                let stream = match self.kind {
+                    HomotopyKind::StraightLine { .. } => &mut self.probe,
+                    _ => &mut beside,
+                };
+                let equations = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
+                    start.equations(system, degrees, out, coordinates)
+                };
+                let chart = self.first_chart;
+                let both = scales_of_both(system, degrees, parameters, equations, chart, stream);
+                Some(match start {
+                    StartSystem::Multihomogeneous(start) => both.map(|exponents| {
+                        let exchanged = |i: usize| start.exchanged().map_or(i, |to| to[i]);
+                        (0..exponents.len())
+                            .map(|i| exponents[i.min(exchanged(i))])
+                            .collect()
+                    }),
+                    _ => both,
+                })
+            }
+            (HomotopyKind::ProductToEquation { parameters, .. }, _) => self.level.map(|level| {
+                let degree = degrees.total[level.next()];
+                let product = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
+                    vec![level.product(out, &coordinates[0], degree)]
+                };
+                let (chart, stream) = (self.first_chart, &mut beside);
+                scales_of_both(system, degrees, parameters, product, chart, stream)
+            }),
+            _ => None,
+        }
+    }
+
+    /// The rows of the program, and how its parameters move. `of_start`: exponents of the scales of what is
+    /// joined to the asked equations.
+    fn joined(
+        &mut self,
+        asked: Vec<NodeId>,
+        at_start: Vec<Complex64>,
+        of_start: Option<&[i32]>,
+    ) -> (Vec<NodeId>, Ends) {
+        let ends = |start, targets| Ends {
+            arc: None,
+            start,
+            targets,
+        };
+        match self.kind {
+            HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. } => {
+                self.straight_line(asked, of_start)
+            }
+            HomotopyKind::Parameter { start, targets } => {
+                let arc = Some(detour(self.seed));
+                let (start, targets) = (start.clone(), targets.clone());
+                (
+                    asked,
+                    Ends {
+                        arc,
+                        start,
+                        targets,
+                    },
+                )
+            }
+            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
+            HomotopyKind::PathVariable { .. } => (asked, ends(vec![ONE], vec![vec![ZERO]])),
+            HomotopyKind::Toric => (asked, ends(at_start.clone(), vec![at_start])),
+            HomotopyKind::MoveSlice { .. } => {
+                let level = self.level.expect("it is a level");
+                let moving = Level::moving_form(&mut self.out, &self.coordinates[0]);
+                let rows = level.rows(&mut self.out, &self.coordinates[0], &asked, moving);
+                let (slice, forms) = level.ends();
+                (rows, ends(slice, forms))
+            }
+            HomotopyKind::ProductToEquation { .. } => self.product_to_equation(&asked, of_start),
+        }
+    }
+
+    /// `(1-t) F + t gamma G`, equation by equation.
+    fn straight_line(
+        &mut self,
+        mut equations: Vec<NodeId>,
+        of_start: Option<&[i32]>,
+    ) -> (Vec<NodeId>, Ends) {
+        let (out, coordinates) = (&mut self.out, &self.coordinates);
+        let start_system = self.start_system;
+        let start_system = start_system.expect("a straight-line homotopy has a start");
+        let mut starts = start_system.equations(self.system, self.degrees, out, coordinates);
+        if let Some(exponents) = of_start {
+            scale(out, &mut starts, exponents);
+        }
+        let parameters = (out.parameter(0), out.parameter(1));
+        for (equation, start) in equations.iter_mut().zip(starts) {
+            *equation = joined_by(out, parameters, *equation, start);
+        }
+        let gamma = match (self.kind, start_system) {
+            (HomotopyKind::Generic { parameters }, StartSystem::Generic(generic)) => {
+                generic.gamma(self.system, parameters, self.seed)
+            }
+            _ => generic_unit(self.seed, Purpose::Gamma),
+        };
+        if matches!(self.kind, HomotopyKind::Generic { .. }) {
+            // Both together as this chart would have them.
+            let (n, both) = (self.dimension, [ONE, gamma]);
+            normalize(out, &mut equations, n, &both, &mut self.probe);
+        }
+        (equations, Ends::of_straight_line(gamma))
+    }
+
+    /// The next equation of a regeneration joined to the product of the level's forms.
+    fn product_to_equation(
+        &mut self,
+        equations: &[NodeId],
+        of_start: Option<&[i32]>,
+    ) -> (Vec<NodeId>, Ends) {
+        let level = self.level.expect("it is a level");
+        let (out, coordinates) = (&mut self.out, &self.coordinates[0]);
+        let degree = self.degrees.total[level.next()];
+        let mut start = [level.product(out, coordinates, degree)];
+        if let Some(exponents) = of_start {
+            scale(out, &mut start, exponents);
+        }
+        let parameters = (out.parameter(0), out.parameter(1));
+        let moving = joined_by(out, parameters, equations[level.next()], start[0]);
+        let rows = level.rows(out, coordinates, equations, moving);
+        let gamma = generic_unit(self.seed, Purpose::Gamma);
+        (rows, Ends::of_straight_line(gamma))
+    }
+
+    /// Matrices that decide in which order elimination meets the rows: from points where the paths begin, or
+    /// half-way at random points.
+    fn samples(
+        &mut self,
+        program: &Interpreter,
+        ends: &Ends,
+        begins: &[Vec<Complex64>],
+    ) -> Vec<Matrix<f64>> {
+        let n = self.dimension;
+        let native = |z: Complex64| Complex { re: z.re, im: z.im };
+        let mut scratch = Evaluate::<f64>::scratch(program, ());
+        let mut at = |x: &[Complex64], p: &[Complex<f64>]| {
+            let x: Vec<_> = x.iter().map(|&z| native(z)).collect();
+            let mut matrix = Matrix::zeros((), n, n + 2);
+            program.jacobian(&x, p, &mut matrix, &mut scratch);
+            matrix
+        };
+        if begins.is_empty() {
+            let pairs = ends.start.iter().zip(&ends.targets[0]);
+            let p: Vec<_> = pairs.map(|(s, t)| native((s + t) * 0.5)).collect();
+            let mut point = || -> Vec<_> { (0..n).map(|_| self.probe.unit()).collect() };
+            (0..4).map(|_| at(&point(), &p)).collect()
+        } else {
+            let p: Vec<_> = ends.start.iter().map(|&z| native(z)).collect();
+            begins.iter().map(|x| at(x, &p)).collect()
+        }
+    }
+
+    /// Degrees of the rows in this order; none where residuals are taken as they are.
+    fn row_degrees(&self, order: &[usize]) -> Vec<Vec<u32>> {
+        let own = &self.degrees.by_group;
+        let of_rows = match (self.kind, self.level) {
+            (HomotopyKind::Toric | HomotopyKind::Generic { .. }, _) => own.clone(),
+            (_, Some(level)) => level.row_degrees(own),
+            _ => return Vec::new(),
+        };
+        match of_rows.is_empty() {
+            true => Vec::new(),
+            false => order.iter().map(|&i| of_rows[i].clone()).collect(),
+        }
+    }
+}
+
+impl Ends {
+    /// From gamma G to F.
+    fn of_straight_line(gamma: Complex64) -> Self {
+        Self {
+            arc: None,
+            start: vec![ZERO, gamma],
+            targets: vec![vec![ONE, ZERO]],
+        }
+    }
+}
+
+/// `p_0 F + p_1 G` with the program's first two parameters.
+fn joined_by(
+    out: &mut Expressions,
+    (of_target, of_start): (NodeId, NodeId),
+    target: NodeId,
+    start: NodeId,
+) -> NodeId {
+    let f = out.multiply(of_target, target);
+    let g = out.multiply(of_start, start);
+    out.add(f, g)
+}
+
 impl Homotopy {
     /// Makes the program. The system has been checked, is square, and the
     /// lengths of all parameter values fit it. `first_chart`: that of the first attempt, to whose
@@ -242,226 +554,49 @@ impl Homotopy {
         begins: &[Vec<Complex64>],
         seed: u64,
     ) -> Self {
-        let mut out = Expressions::new();
-        let coordinates = chart.nodes(&mut out);
-        let count = system.parameters.len();
-        let parameter_nodes: Vec<NodeId> = match kind {
-            HomotopyKind::StraightLine { parameters }
-            | HomotopyKind::Generic { parameters }
-            | HomotopyKind::MoveSlice { parameters, .. }
-            | HomotopyKind::ProductToEquation { parameters, .. } => {
-                parameters.iter().map(|&z| exact(&mut out, z)).collect()
-            }
-            HomotopyKind::Toric => Vec::new(),
-            HomotopyKind::Parameter { .. } => (0..count).map(|k| out.parameter(k as u32)).collect(),
-            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
-            HomotopyKind::PathVariable { parameters } => (0..count)
-                .map(|k| {
-                    if system.path_variable == Some(k) {
-                        out.parameter(0)
-                    } else {
-                        exact(&mut out, parameters[k])
-                    }
-                })
-                .collect(),
-        };
         let toric = match (kind, start_system) {
             (HomotopyKind::Toric, Some(StartSystem::Toric(toric))) => Some(Arc::clone(toric)),
             _ => None,
         };
-        let mut equations = match &toric {
-            Some(toric) => {
-                let mut number = 0..;
-                let parameter = |out: &mut Expressions| out.parameter(number.next().unwrap_or(0));
-                let generic = toric.generic();
-                generic.equations(system, &degrees.by_group, &mut out, &coordinates, parameter)
-            }
-            None => homogenize(system, degrees, &mut out, &coordinates, &parameter_nodes),
-        };
-        let dimension = chart.dimension();
-        let mut probe = RandomStream::new(seed, Purpose::Probe, 0);
-        let one = Complex64::new(1.0, 0.0);
-        let zero = Complex64::default();
-        let at_start: Vec<Complex64> = match kind {
-            HomotopyKind::StraightLine { .. }
-            | HomotopyKind::Generic { .. }
-            | HomotopyKind::MoveSlice { .. }
-            | HomotopyKind::ProductToEquation { .. } => Vec::new(),
-            HomotopyKind::Toric => toric
-                .iter()
-                .flat_map(|toric| toric.generic().coefficients())
-                .collect(),
-            HomotopyKind::Parameter { start, .. } => start.clone(),
-            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
-            HomotopyKind::PathVariable { .. } => vec![one],
-        };
-        let level = Level::of(kind, seed);
-        // Where two systems are joined, all charts must join them alike.
-        let mut beside = RandomStream::new(seed, Purpose::Probe, 1);
-        let shared_scales = match (kind, start_system) {
-            (
-                HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters },
-                Some(start),
-            ) => {
-                let stream = match kind {
-                    HomotopyKind::StraightLine { .. } => &mut probe,
-                    _ => &mut beside,
-                };
-                let both = scales_of_both(
-                    system,
-                    degrees,
-                    parameters,
-                    |out, coordinates| start.equations(system, degrees, out, coordinates),
-                    first_chart,
-                    stream,
-                );
-                Some(match start {
-                    StartSystem::Multihomogeneous(start) => both.map(|exponents| {
-                        let exchanged = |i: usize| start.exchanged().map_or(i, |to| to[i]);
-                        (0..exponents.len())
-                            .map(|i| exponents[i.min(exchanged(i))])
-                            .collect()
-                    }),
-                    _ => both,
-                })
-            }
-            (HomotopyKind::ProductToEquation { parameters, .. }, _) => level.map(|level| {
-                let degree = degrees.total[level.next()];
-                let product = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
-                    vec![level.product(out, &coordinates[0], degree)]
-                };
-                scales_of_both(
-                    system,
-                    degrees,
-                    parameters,
-                    product,
-                    first_chart,
-                    &mut beside,
-                )
-            }),
-            _ => None,
-        };
-        match &shared_scales {
-            Some([asked, _]) => scale(&mut out, &mut equations, asked),
-            None => normalize(&mut out, &mut equations, dimension, &at_start, &mut probe),
+        let mut build = Build::new(
+            system,
+            degrees,
+            kind,
+            start_system,
+            &chart,
+            first_chart,
+            seed,
+        );
+        let mut equations = build.asked(toric.as_deref());
+        let at_start = build.parameters_at_start(toric.as_deref());
+        let shared = build.shared_scales();
+        let (out, dimension) = (&mut build.out, build.dimension);
+        match &shared {
+            Some([asked, _]) => scale(out, &mut equations, asked),
+            None => normalize(out, &mut equations, dimension, &at_start, &mut build.probe),
         }
-
-        let (arc, start, targets) = match kind {
-            HomotopyKind::StraightLine { .. } | HomotopyKind::Generic { .. } => {
-                let start_system = start_system.expect("a straight-line homotopy has a start");
-                let mut starts = start_system.equations(system, degrees, &mut out, &coordinates);
-                if let Some([_, start]) = &shared_scales {
-                    scale(&mut out, &mut starts, start);
-                }
-                let (of_target, of_start) = (out.parameter(0), out.parameter(1));
-                for (equation, start) in equations.iter_mut().zip(starts) {
-                    let f = out.multiply(of_target, *equation);
-                    let g = out.multiply(of_start, start);
-                    *equation = out.add(f, g);
-                }
-                let gamma = match (kind, start_system) {
-                    (HomotopyKind::Generic { parameters }, StartSystem::Generic(generic)) => {
-                        generic.gamma(system, parameters, seed)
-                    }
-                    _ => generic_unit(seed, Purpose::Gamma),
-                };
-                if matches!(kind, HomotopyKind::Generic { .. }) {
-                    // Both together as this chart would have them.
-                    normalize(
-                        &mut out,
-                        &mut equations,
-                        dimension,
-                        &[one, gamma],
-                        &mut probe,
-                    );
-                }
-                (None, vec![zero, gamma], vec![vec![one, zero]])
-            }
-            HomotopyKind::Parameter { start, targets } => {
-                let gamma = detour(seed);
-                (Some(gamma), start.clone(), targets.clone())
-            }
-            HomotopyKind::Sections { .. } => panic!("{SECTIONS}"),
-            HomotopyKind::PathVariable { .. } => (None, vec![one], vec![vec![zero]]),
-            HomotopyKind::Toric => (None, at_start.clone(), vec![at_start.clone()]),
-            HomotopyKind::MoveSlice { .. } => {
-                let level = level.expect("it is a level");
-                let moving = Level::moving_form(&mut out, &coordinates[0]);
-                equations = level.rows(&mut out, &coordinates[0], &equations, moving);
-                let (slice, forms) = level.ends();
-                (None, slice, forms)
-            }
-            HomotopyKind::ProductToEquation { .. } => {
-                let level = level.expect("it is a level");
-                let degree = degrees.total[level.next()];
-                let mut start = [level.product(&mut out, &coordinates[0], degree)];
-                if let Some([_, exponent]) = &shared_scales {
-                    scale(&mut out, &mut start, exponent);
-                }
-                let (of_target, of_start) = (out.parameter(0), out.parameter(1));
-                let f = out.multiply(of_target, equations[level.next()]);
-                let g = out.multiply(of_start, start[0]);
-                let moving = out.add(f, g);
-                equations = level.rows(&mut out, &coordinates[0], &equations, moving);
-                let gamma = generic_unit(seed, Purpose::Gamma);
-                (None, vec![zero, gamma], vec![vec![one, zero]])
-            }
-        };
-
-        // The order in which elimination meets the rows: from points where the paths begin, or
-        // half-way at random points.
-        let native = |z: Complex64| Complex { re: z.re, im: z.im };
-        let program = Interpreter::compile(&out, &equations, dimension, start.len());
-        let mut scratch = Evaluate::<f64>::scratch(&program, ());
-        let mut samples = Vec::new();
-        let mut sample = |x: &[Complex64], p: &[Complex<f64>]| {
-            let x: Vec<_> = x.iter().map(|&z| native(z)).collect();
-            let mut matrix = Matrix::zeros((), dimension, dimension + 2);
-            program.jacobian(&x, p, &mut matrix, &mut scratch);
-            samples.push(matrix);
-        };
-        if begins.is_empty() {
-            let p: Vec<_> = start
-                .iter()
-                .zip(&targets[0])
-                .map(|(s, t)| native((s + t) * 0.5))
-                .collect();
-            for _ in 0..4 {
-                let x: Vec<_> = (0..dimension).map(|_| probe.unit()).collect();
-                sample(&x, &p);
-            }
-        } else {
-            let p: Vec<_> = start.iter().map(|&z| native(z)).collect();
-            for x in begins {
-                sample(x, &p);
-            }
-        }
+        let of_start = shared.map(|[_, of_start]| of_start);
+        let (equations, ends) = build.joined(equations, at_start, of_start.as_deref());
+        let program = Interpreter::compile(&build.out, &equations, dimension, ends.start.len());
+        let samples = build.samples(&program, &ends, begins);
         let instructions = InstructionSet::detect();
         let (program, elimination, order) = arrange(&program, &samples, instructions);
-        let of_rows = match (kind, level) {
-            (HomotopyKind::Toric | HomotopyKind::Generic { .. }, _) => degrees.by_group.clone(),
-            (_, Some(level)) => level.row_degrees(&degrees.by_group),
-            _ => Vec::new(),
-        };
-        let row_degrees = match of_rows.is_empty() {
-            true => Vec::new(),
-            false => order.iter().map(|&i| of_rows[i].clone()).collect(),
-        };
+        let row_degrees = build.row_degrees(&order);
         Self {
             evaluator: Evaluator::new(program.clone(), instructions),
             elimination,
             program,
             chart,
             path: ParameterPath {
-                arc,
+                arc: ends.arc,
                 toric: toric.as_ref().map(|toric| ToricPath {
                     exponent: toric.time_exponent(),
                 }),
             },
             toric,
             row_degrees,
-            start,
-            targets,
+            start: ends.start,
+            targets: ends.targets,
         }
     }
 

@@ -56,20 +56,16 @@ impl PreparedLocalDimension {
                 "endpoints have the system's variables and two numbers more",
             ));
         }
-        let (given, targets) = match &stage.homotopy {
-            HomotopyKind::StraightLine { parameters }
-            | HomotopyKind::Generic { parameters }
-            | HomotopyKind::ProductToEquation { parameters, .. }
-            | HomotopyKind::PathVariable { parameters } => (std::slice::from_ref(parameters), 1),
-            HomotopyKind::Toric
-            | HomotopyKind::MoveSlice { .. }
-            | HomotopyKind::Sections { .. } => {
-                return Err(misfit("a homotopy on the way ends at another system"));
-            }
-            HomotopyKind::Parameter { targets, .. } => (targets.as_slice(), targets.len() as u64),
-        };
+        let homotopy = &stage.homotopy;
+        let targets = homotopy.parameter_sets() as u64;
+        let given = (0..homotopy.parameter_sets())
+            .map(|target| homotopy.end_parameters(target, system.path_variable));
+        let given: Option<Vec<_>> = given.map(|values| Some(values?.into_owned())).collect();
+        let on_the_way = matches!(homotopy, HomotopyKind::MoveSlice { .. });
+        let given = given.filter(|_| !on_the_way);
+        let given = given.ok_or_else(|| misfit("a homotopy on the way ends at another system"))?;
         let expected = system.parameters.len();
-        for values in given {
+        for values in &given {
             if values.len() != expected {
                 return Err(PrepareError::Parameters {
                     what: "parameters of the endpoints",
@@ -95,7 +91,7 @@ impl PreparedLocalDimension {
         Ok(Self {
             asked: AskedSystem::new(system, &found, &stage.homotopy, chart, stage.seed),
             system: system.clone(),
-            parameters: given.to_vec(),
+            parameters: given,
             seed: stage.seed,
             data_accuracy: match stage.settings.exact_data {
                 true => 0.0,

@@ -13,6 +13,7 @@ use crate::v1::options::Method;
 use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::witness;
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::formats::limits as sizes;
@@ -151,7 +152,11 @@ fn without_method(m: v1::Options) -> Result<Options, ProtocolError> {
         name: m.name,
         idle_loops: m.idle_loops,
         expected_solutions: m.expected_solutions,
-        certify: m.certify,
+        closings: ClosingOptions {
+            certify: m.certify,
+            digits: digits(m.digits)?,
+            deflate: m.deflate,
+        },
         trace_test: m.trace_test,
         confidence: match m.confidence {
             Some(p) if !(p > 0.0 && p < 1.0) => {
@@ -163,8 +168,6 @@ fn without_method(m: v1::Options) -> Result<Options, ProtocolError> {
             }
             confidence => confidence,
         },
-        digits: digits(m.digits)?,
-        deflate: m.deflate,
         warnings: m.warnings,
         sets: match m.sets.is_empty() {
             true => None,

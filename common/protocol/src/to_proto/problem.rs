@@ -88,11 +88,11 @@ pub fn options(options: &Options) -> v1::Options {
         name: options.name.clone(),
         idle_loops: options.idle_loops,
         expected_solutions: options.expected_solutions,
-        certify: options.certify,
+        certify: options.closings.certify,
         trace_test: options.trace_test,
         confidence: options.confidence,
-        digits: options.digits,
-        deflate: options.deflate,
+        digits: options.closings.digits,
+        deflate: options.closings.deflate,
         warnings: options.warnings.clone(),
         sets: options
             .sets

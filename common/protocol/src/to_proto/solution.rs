@@ -45,7 +45,7 @@ pub fn class(verdict: Verdict) -> v1::PathClass {
     match verdict {
         Verdict::Failed => v1::PathClass::Failed,
         Verdict::AtInfinity => v1::PathClass::AtInfinity,
-        Verdict::Excess => v1::PathClass::Excess,
+        Verdict::ExcessSolution => v1::PathClass::Excess,
         Verdict::PositiveDimensional => v1::PathClass::PositiveDimensional,
         Verdict::Singular => v1::PathClass::Singular,
         Verdict::Finite => v1::PathClass::Finite,

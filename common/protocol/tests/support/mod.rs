@@ -18,6 +18,7 @@ use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_protocol::submission::*;
+use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use num_complex::Complex64;
@@ -246,11 +247,13 @@ impl Draw {
             // Drawn from nothing, so that the other draws stay what they were.
             idle_loops: Some(count as u32).filter(|&n| n > 1),
             expected_solutions: Some(length as u64).filter(|&n| n > 0),
-            certify: length > 1,
+            closings: ClosingOptions {
+                certify: length > 1,
+                digits: (count > 1).then_some(50),
+                deflate: length > 2,
+            },
             trace_test: length == 1,
             confidence: (count > 1).then_some(0.999),
-            digits: (count > 1).then_some(50),
-            deflate: length > 2,
             warnings: Vec::new(),
             sets: (count > 2).then(|| vec![vec![vec![0, 1], vec![1]], vec![vec![0]]]),
             decompose: None,

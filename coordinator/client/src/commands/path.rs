@@ -160,7 +160,7 @@ fn verdict_name(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Failed => "failed",
         Verdict::AtInfinity => "at infinity",
-        Verdict::Excess => "excess: no solution before randomisation",
+        Verdict::ExcessSolution => "excess: no solution before randomisation",
         Verdict::PositiveDimensional => "on a positive-dimensional set",
         Verdict::Undecided => "singular; whether it is isolated is asked of all paths together",
         Verdict::WithinDataAccuracy => "of another class within the accuracy of the data",

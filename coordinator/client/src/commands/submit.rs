@@ -8,13 +8,18 @@ use crate::problem::{self, Prepared};
 use cognate_continuation::start_points::Digest;
 use cognate_protocol::submission::{StartSolutions, Submission};
 use cognate_protocol::to_proto;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Start solutions up to this size travel with the problem; larger ones are uploaded first.
 const INLINE_BYTES: usize = 4 << 20;
 
-/// How often a submission is sent when the reply is lost; the request id makes it one job.
-const ATTEMPTS: u32 = 5;
+/// How long a submission is sent again while the coordinator, or its ledger's database, starts; the request id
+/// makes it one job.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// The pause after the first attempt; it doubles after each ...
+const FIRST_PAUSE: Duration = Duration::from_millis(200);
+/// ... up to this one.
+const LARGEST_PAUSE: Duration = Duration::from_secs(2);
 
 /// Prints the job's id alone on a line.
 pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
@@ -55,12 +60,13 @@ pub async fn send(
 ) -> Result<(String, Vec<String>), ClientError> {
     let Prepared { submission, .. } = prepared;
     let message = to_proto::problem::submission(&uploaded(connection, submission).await?);
-    let mut attempt = 1;
+    let begin = Instant::now();
+    let mut pause = FIRST_PAUSE;
     let answer = loop {
         match connection.submit(request_id, message.clone()).await {
-            Err(ClientError::Unreachable { .. }) if attempt < ATTEMPTS => {
-                tokio::time::sleep(Duration::from_millis(200 << attempt)).await;
-                attempt += 1;
+            Err(ClientError::Unreachable { .. }) if begin.elapsed() < PATIENCE => {
+                tokio::time::sleep(pause).await;
+                pause = (2 * pause).min(LARGEST_PAUSE);
             }
             other => break other?,
         }

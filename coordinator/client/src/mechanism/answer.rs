@@ -1,7 +1,8 @@
 //! Positions of a mechanism for targets, counted so that nothing is missing unsaid.
 
 use super::prepare::{Prepared, in_order, lone_target, prepare, solve};
-use cognate_algorithms::PlanOptions;
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
 use cognate_continuation::start_points::StoredPoints;
 use cognate_kinematics::compile::{
     CLOSES, Configuration, Family, Formulation, Lifted, Question, Target, compile,
@@ -151,10 +152,13 @@ pub fn answer(
         return Ok(answer);
     };
     let system = equations.system(&mechanism.file)?;
-    let mut plan = PlanOptions {
+    let mut plan = SolveOptions {
         seed: options.seed,
-        certify: options.certify,
-        ..PlanOptions::default()
+        closings: ClosingOptions {
+            certify: options.certify,
+            ..ClosingOptions::default()
+        },
+        ..SolveOptions::default()
     };
     let mut parameters = Vec::new();
     for target in targets {
@@ -175,7 +179,10 @@ pub fn answer(
                 "a general target of this mechanism has no isolated position ({others}): it cannot reach general targets"
             )));
         }
-        plan.start_parameters = Some(prepared.parameters);
+        plan.method = SolveMethod::Given(KnownSolutions {
+            points: None,
+            parameters: Some(prepared.parameters),
+        });
         plan.target_parameters.clone_from(&parameters);
         let points = Arc::new(StoredPoints {
             dimension: system.variables.len(),

@@ -1,8 +1,9 @@
 //! A mechanism at a general complex target, from which targets are reached: solved once an answer.
 
 use cognate_algorithms::plan::GivenStart;
+use cognate_algorithms::plan::{KnownSolutions, SolveMethod, TrackingOptions};
 use cognate_algorithms::run_locally::run_locally;
-use cognate_algorithms::{PlanOptions, plan};
+use cognate_algorithms::{SolveOptions, plan};
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::Preset;
 use cognate_kinematics::compile::{CLOSES, Formulation, Lifted, Target};
@@ -47,17 +48,18 @@ pub fn in_order(solution: &Solution, system: &System) -> Vec<Complex64> {
 /// Solves in this process.
 pub fn solve(
     system: &System,
-    options: &PlanOptions,
+    options: &SolveOptions,
     start: Option<&Arc<StoredPoints>>,
 ) -> Result<Vec<SolutionSet>, String> {
     let mut options = options.clone();
     let digest = start.map(|points| points.digest());
     if let (Some(points), Some(object)) = (start, digest) {
-        options.start_points = Some(GivenStart {
+        let given = GivenStart {
             object,
             count: points.len() as u64,
             dimension: points.dimension,
-        });
+        };
+        options.method = options.method.with_points(given);
     }
     let mut plan = plan(system, &options).map_err(|e| e.to_string())?;
     let find = |wanted: Digest| start.filter(|_| digest == Some(wanted)).map(Arc::clone);
@@ -126,13 +128,16 @@ fn prepare_once(
     let known = formulation.known_member();
     let member = formulation.generic(&mut draw);
     let dimension = system.variables.len();
-    let options = PlanOptions {
+    let options = SolveOptions {
         seed,
-        ..PlanOptions::default()
+        ..SolveOptions::default()
     };
     // A known member's paths are few and nothing else says how many there are: cautiously.
-    let careful = PlanOptions {
-        settings: Preset::Careful.settings(),
+    let careful = SolveOptions {
+        tracking: TrackingOptions {
+            settings: Preset::Careful.settings(),
+            ..TrackingOptions::default()
+        },
         ..options.clone()
     };
     let (sets, parameters) = match (known, member) {
@@ -151,15 +156,18 @@ fn prepare_once(
                 dimension,
                 coordinates: known.points,
             });
-            let options = PlanOptions {
-                start_parameters: Some(known.parameters),
+            let options = SolveOptions {
+                method: SolveMethod::Given(KnownSolutions {
+                    points: None,
+                    parameters: Some(known.parameters),
+                }),
                 target_parameters: vec![member.clone()],
                 ..careful
             };
             (solve(system, &options, Some(&points))?, member)
         }
         (None, Some(member)) => {
-            let options = PlanOptions {
+            let options = SolveOptions {
                 target_parameters: vec![member.clone()],
                 ..options
             };

@@ -13,6 +13,7 @@ use cognate_kinematics::linkage::Side;
 use cognate_kinematics::path_timing::{self, TimedPoints};
 use cognate_kinematics::poses_and_points::{PosesAndPoints, one_of_each_pair};
 use cognate_protocol::submission::{Options, SettingsChoice, Source, StartKind, Submission};
+use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -213,7 +214,10 @@ impl Search<'_> {
             precision: how.precision,
             target_parameters: vec![parameters],
             name: how.name.clone(),
-            certify,
+            closings: ClosingOptions {
+                certify,
+                ..ClosingOptions::default()
+            },
             ..Options::default()
         };
         let prepared = Prepared {

@@ -22,6 +22,7 @@ use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
 use cognate_protocol::v1;
+use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::solution::Solution;
 use cognate_summary::solve::Summary;
 use cognate_systems::named::nine_point;
@@ -154,7 +155,10 @@ fn submission(
             coordinates: starts.iter().flatten().copied().collect(),
         })),
         name: how.name.clone(),
-        certify: how.certify,
+        closings: ClosingOptions {
+            certify: how.certify,
+            ..ClosingOptions::default()
+        },
         ..Options::default()
     };
     Prepared {

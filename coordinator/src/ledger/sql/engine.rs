@@ -14,7 +14,7 @@ use sqlx::{AssertSqlSafe, ConnectOptions, Connection as _, Decode, Postgres, Row
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Who writes to a ledger on PostgreSQL holds this lock ("cognate" as a number): commits of several coordinators come one
 /// after the other. They meet in the counts of stages and tenants anyway.
@@ -27,6 +27,13 @@ const STANDSTILL_MS: &str = "3000";
 const STATEMENT_MS: &str = "30000";
 /// A server that does not answer is given up after this, and reached anew.
 const ANSWER: Duration = Duration::from_secs(40);
+/// One wait for a connection that reads. The pool's pauses between attempts to connect double up to a fifth of
+/// this: a server that is there again is found within a second.
+const ACQUIRE: Duration = Duration::from_secs(5);
+/// How long whoever reads waits in all for a server that is away ...
+const AWAY: Duration = Duration::from_secs(10);
+/// ... and the pause after an attempt that failed at once.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Where the database is, and whose clock counts.
 #[derive(Clone)]
@@ -76,6 +83,7 @@ impl Row {
     }
 }
 
+#[derive(Clone)]
 enum Value {
     Number(i64),
     Text(Option<String>),
@@ -118,6 +126,7 @@ impl From<Option<String>> for Value {
 }
 
 /// A statement and its values.
+#[derive(Clone)]
 pub struct Query {
     statement: &'static str,
     values: Vec<Value>,
@@ -197,17 +206,23 @@ impl Query {
         Ok(row?)
     }
 
-    /// All rows, from a connection that only reads.
+    /// All rows, from a connection that only reads; a server that is away is waited for.
     pub async fn read_all(self, readers: &Readers) -> Result<Vec<Row>, LedgerError> {
-        let rows = on!(self, Readers, readers, c => c, fetch_all, (of_file, of_server));
-        Ok(rows?)
+        let read = || async {
+            let query = self.clone();
+            on!(query, Readers, readers, c => c, fetch_all, (of_file, of_server))
+        };
+        Ok(readers.patiently(read).await?)
     }
 
-    /// The only row, if there is one, from a connection that only reads.
+    /// The only row, if there is one, from a connection that only reads; a server that is away is waited for.
     pub async fn read_optional(self, readers: &Readers) -> Result<Option<Row>, LedgerError> {
-        let row = on!(self, Readers, readers, c => c, fetch_optional,
-            (|r: Option<_>| r.map(Row::Sqlite), |r: Option<_>| r.map(Row::Postgres)));
-        Ok(row?)
+        let read = || async {
+            let query = self.clone();
+            on!(query, Readers, readers, c => c, fetch_optional,
+                (|r: Option<_>| r.map(Row::Sqlite), |r: Option<_>| r.map(Row::Postgres)))
+        };
+        Ok(readers.patiently(read).await?)
     }
 }
 
@@ -295,10 +310,33 @@ impl Engine {
             Self::Postgres(options, clock) => {
                 let pool = PgPoolOptions::new()
                     .max_connections(4)
-                    .acquire_timeout(ANSWER);
+                    .acquire_timeout(ACQUIRE);
                 Readers::Postgres(pool.connect_with(options.clone()).await?, clock.clone())
             }
         })
+    }
+}
+
+impl From<sqlx::Error> for LedgerError {
+    fn from(error: sqlx::Error) -> Self {
+        match is_out_of_reach(&error) {
+            true => Self::Unreachable(error.to_string()),
+            false => Self::Storage(error.to_string()),
+        }
+    }
+}
+
+/// Whether the database server is not there, goes down or comes up, or has ended the session.
+fn is_out_of_reach(error: &sqlx::Error) -> bool {
+    match error {
+        sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut => true,
+        sqlx::Error::Database(error) => {
+            // PostgreSQL, Error Codes: connection exceptions, operator intervention, too many
+            // connections, a session that stood still in a transaction.
+            let code = error.code().unwrap_or_default();
+            code.starts_with("08") || code.starts_with("57P") || code == "53300" || code == "25P03"
+        }
+        _ => false,
     }
 }
 
@@ -310,12 +348,34 @@ const SERVER_TIME: &str =
     "SELECT CAST(EXTRACT(EPOCH FROM clock_timestamp()) * 1000 AS BIGINT) AS now";
 
 impl Readers {
+    /// What is read, again and again while the server is away, for [`AWAY`] at most.
+    async fn patiently<T, F>(&self, read: impl Fn() -> F) -> Result<T, sqlx::Error>
+    where
+        F: Future<Output = Result<T, sqlx::Error>>,
+    {
+        let begin = Instant::now();
+        loop {
+            match read().await {
+                Err(error)
+                    if matches!(self, Self::Postgres(..))
+                        && is_out_of_reach(&error)
+                        && begin.elapsed() < AWAY =>
+                {
+                    tracing::debug!(%error, "waiting for the ledger's database");
+                    tokio::time::sleep(PAUSE).await;
+                }
+                read => return read,
+            }
+        }
+    }
+
     /// The ledger's clock.
     pub async fn now(&self) -> Result<LedgerTime, LedgerError> {
         match self {
             Self::Sqlite(_, clock) | Self::Postgres(_, Some(clock)) => Ok(clock.now()),
             Self::Postgres(pool, None) => {
-                let row = sqlx::query(SERVER_TIME).fetch_one(pool).await?;
+                let read = || sqlx::query(SERVER_TIME).fetch_one(pool);
+                let row = self.patiently(read).await?;
                 Ok(LedgerTime(row.try_get("now")?))
             }
         }

@@ -49,29 +49,6 @@ pub struct SqlLedger {
     readers: Readers,
 }
 
-impl From<sqlx::Error> for LedgerError {
-    fn from(error: sqlx::Error) -> Self {
-        match is_out_of_reach(&error) {
-            true => Self::Unreachable(error.to_string()),
-            false => Self::Storage(error.to_string()),
-        }
-    }
-}
-
-/// Whether the database server is not there, goes down or comes up, or has ended the session.
-fn is_out_of_reach(error: &sqlx::Error) -> bool {
-    match error {
-        sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut => true,
-        sqlx::Error::Database(error) => {
-            // PostgreSQL, Error Codes: connection exceptions, operator intervention, too many
-            // connections, a session that stood still in a transaction.
-            let code = error.code().unwrap_or_default();
-            code.starts_with("08") || code.starts_with("57P") || code == "53300" || code == "25P03"
-        }
-        _ => false,
-    }
-}
-
 impl SqlLedger {
     /// Opens the ledger in this file, or makes it; brings an older one up to date.
     pub async fn sqlite(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, LedgerError> {

@@ -4,10 +4,17 @@ use super::engine::{Connection, Engine};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use futures::future::BoxFuture;
+use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, oneshot};
 
 /// Operations in a commit. More would let the first wait longer than a sync to disk takes.
 const GROUP: usize = 64;
+/// How long a write waits for a server that is away: crash recovery of a ledger takes seconds.
+const AWAY: Duration = Duration::from_secs(10);
+/// The pause after the first attempt to reach the server; it doubles after each ...
+const FIRST_PAUSE: Duration = Duration::from_millis(50);
+/// ... up to this one.
+const LARGEST_PAUSE: Duration = Duration::from_millis(500);
 
 type Acknowledge = Box<dyn FnOnce() + Send>;
 type Operation = Box<
@@ -93,42 +100,96 @@ impl Writer {
     }
 }
 
+/// The connection that writes, made anew after the server was away.
+struct Link {
+    engine: Engine,
+    /// None while the server is away.
+    connection: Option<Connection>,
+    /// Since when the server is away.
+    away_since: Option<Instant>,
+}
+
+impl Link {
+    /// A commit that has begun, and its time. A server that is away is waited for, [`AWAY`] in all; after that
+    /// it has one attempt each time, so that whoever writes hears soon that nothing is written.
+    ///
+    /// Nothing was written before this: a connection that turns out to be dead costs nobody his write.
+    async fn begin(&mut self) -> Result<(&mut Connection, LedgerTime), LedgerError> {
+        let mut pause = FIRST_PAUSE;
+        let now = loop {
+            match self.try_begin().await {
+                Ok(now) => break now,
+                Err(error @ LedgerError::Unreachable(_)) => {
+                    self.connection = None;
+                    let since = *self.away_since.get_or_insert_with(Instant::now);
+                    if since.elapsed() >= AWAY {
+                        return Err(error);
+                    }
+                    if pause == FIRST_PAUSE {
+                        tracing::warn!(%error, "waiting for the ledger's database");
+                    }
+                    tokio::time::sleep(pause).await;
+                    pause = (2 * pause).min(LARGEST_PAUSE);
+                }
+                Err(error) => return Err(error),
+            }
+        };
+        self.away_since = None;
+        match &mut self.connection {
+            Some(connection) => Ok((connection, now)),
+            None => Err(LedgerError::Closed),
+        }
+    }
+
+    async fn try_begin(&mut self) -> Result<LedgerTime, LedgerError> {
+        let connection = match &mut self.connection {
+            Some(connection) => connection,
+            none => none.insert(self.engine.connect().await?),
+        };
+        connection.begin().await
+    }
+
+    /// Takes back what was written, or gives the connection up.
+    async fn roll_back(&mut self) {
+        if let Some(connection) = &mut self.connection
+            && connection.roll_back().await.is_err()
+        {
+            self.connection = None;
+        }
+    }
+}
+
 async fn run(engine: Engine, connection: Connection, mut queue: mpsc::Receiver<Message>) {
     let mut closing = None;
-    // None while the server is gone: each group tries to reach it again.
-    let mut connected = Some(connection);
+    let mut link = Link {
+        engine,
+        connection: Some(connection),
+        away_since: None,
+    };
     while closing.is_none() {
         match queue.recv().await {
-            Some(Message::Write(first)) => {
-                if connected.is_none() {
-                    match engine.connect().await {
-                        Ok(connection) => connected = Some(connection),
-                        // Whoever wrote hears that it was not done, and asks again.
+            Some(Message::Write(first)) => match link.begin().await {
+                Ok((connection, now)) => {
+                    match commit_group(connection, now, first, &mut queue).await {
+                        Ok(close) => closing = close,
                         Err(error) => {
-                            tracing::error!(%error, "nothing is written");
-                            continue;
+                            tracing::error!(%error, "a commit of the ledger failed");
+                            link.roll_back().await;
                         }
                     }
                 }
-                let Some(connection) = &mut connected else {
-                    continue;
-                };
-                match commit_group(connection, first, &mut queue).await {
-                    Ok(close) => closing = close,
-                    Err(error) => {
-                        tracing::error!(%error, "a commit of the ledger failed");
-                        if connection.roll_back().await.is_err() {
-                            connected = None;
-                        }
-                    }
+                // Whoever wrote hears that it was not done, and asks again.
+                Err(error) => {
+                    tracing::error!(%error, "nothing is written");
+                    link.roll_back().await;
                 }
-            }
+            },
             Some(Message::Close(reply)) => closing = Some(reply),
             None => break,
         }
     }
     queue.close();
-    if let Some(connection) = connected
+    if let Some(connection) = link.connection
         && let Err(error) = connection.close().await
     {
         tracing::warn!(%error, "the ledger was not closed cleanly");
@@ -139,13 +200,13 @@ async fn run(engine: Engine, connection: Connection, mut queue: mpsc::Receiver<M
     }
 }
 
-/// One commit: the first operation and those that wait behind it.
+/// One commit that has begun: the first operation and those that wait behind it.
 async fn commit_group(
     connection: &mut Connection,
+    now: LedgerTime,
     first: Operation,
     queue: &mut mpsc::Receiver<Message>,
 ) -> Result<Option<oneshot::Sender<()>>, LedgerError> {
-    let now = connection.begin().await?;
     let mut acknowledgements = Vec::new();
     let mut closing = None;
     let mut next = Some(first);

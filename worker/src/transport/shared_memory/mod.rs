@@ -11,7 +11,7 @@ use cognate_protocol::v1;
 use frame::{Request, Response};
 use iceoryx2::pending_response::PendingResponse;
 use iceoryx2::port::client::Client;
-use iceoryx2::port::listener::Listener;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::port::port_name::PortName;
 use iceoryx2::prelude::{BackpressureStrategy, Node};
@@ -243,7 +243,13 @@ impl Inner {
 /// Sleeps until something rings; ends with the last user of this way, or when it breaks.
 fn watch(inner: &Weak<Inner>, listener: &Listener<Ipc>) {
     loop {
-        let rung = catch_unwind(AssertUnwindSafe(|| listener.timed_wait(|_| {}, LOOK)));
+        let rung = catch_unwind(AssertUnwindSafe(|| {
+            match listener.timed_wait(|_| {}, LOOK) {
+                // A process that was stopped and goes on wakes up, too.
+                Err(ListenerWaitError::InterruptSignal) => Ok(0),
+                rung => rung,
+            }
+        }));
         let Some(inner) = inner.upgrade() else { return };
         if inner.broken.get().is_some() {
             return;

@@ -1,0 +1,167 @@
+//! SolveOptions: everything that decides how a system is solved, besides the system.
+
+use crate::given_start::GivenStart;
+use crate::limits::PLANNING_OPERATIONS;
+use crate::monodromy::LoopLimits;
+use crate::retried_stage::MAX_RETRIES;
+use cognate_continuation::start_systems::linear_product::SetStructure;
+use cognate_continuation::tracker::settings::Settings;
+use cognate_solutions::classification::Tolerances;
+pub use cognate_solutions::closing_options::ClosingOptions;
+use num_complex::Complex64;
+
+/// How a system is solved; the seed decides everything random.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolveOptions {
+    /// How paths begin, with the options that this way alone has.
+    pub method: SolveMethod,
+    /// Values of the parameters where solutions are wanted. With a start system one set of them; monodromy takes
+    /// its start parameters where there is none.
+    pub target_parameters: Vec<Vec<Complex64>>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// How paths are tracked and their ends judged.
+    pub tracking: TrackingOptions,
+    /// What follows once the solutions are found.
+    pub closings: ClosingOptions,
+    /// Most operations that planning a polyhedral start spends on counting mixed cells, about one for
+    /// each multiplication; what takes more is counted by workers.
+    pub counting_operations: u64,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        Self {
+            method: SolveMethod::Auto,
+            target_parameters: Vec::new(),
+            seed: 0,
+            tracking: TrackingOptions::default(),
+            closings: ClosingOptions::default(),
+            counting_operations: PLANNING_OPERATIONS,
+        }
+    }
+}
+
+/// How paths begin, each way with its own options: the `oneof method` of `proto/problem.proto`, as far as it
+/// finds isolated solutions.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum SolveMethod {
+    /// The start system with the fewest paths.
+    #[default]
+    Auto,
+    /// All affine groups as one.
+    TotalDegree,
+    /// By the groups of the system, or by the best groups where it has one.
+    Multihomogeneous,
+    /// From products of linear forms in these sets of variables, for each equation as many as its degree; in
+    /// sets that are guessed where there are none.
+    LinearProduct(Option<SetStructure>),
+    /// From mixed cells.
+    Polyhedral,
+    /// Equation by equation.
+    Regeneration,
+    /// From known solutions, by a parameter homotopy or a homotopy of the user's own.
+    Given(KnownSolutions),
+    /// Loops in the space of parameters.
+    Monodromy(MonodromyOptions),
+}
+
+impl SolveMethod {
+    /// From products of linear forms in sets that are guessed.
+    pub const LINEAR_PRODUCT: Self = Self::LinearProduct(None);
+    /// Loops from a solution that is found, with default limits.
+    pub const MONODROMY: Self = Self::Monodromy(MonodromyOptions {
+        known: KnownSolutions {
+            points: None,
+            parameters: None,
+        },
+        limits: LoopLimits::DEFAULT,
+    });
+
+    /// Its name as it is typed and written: `linear-product`, for instance.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::TotalDegree => "total-degree",
+            Self::Multihomogeneous => "multihomogeneous",
+            Self::LinearProduct(_) => "linear-product",
+            Self::Polyhedral => "polyhedral",
+            Self::Regeneration => "regeneration",
+            Self::Given(_) => "given",
+            Self::Monodromy(_) => "monodromy",
+        }
+    }
+
+    /// The solutions from which paths begin, where this way begins from such.
+    pub fn known_solutions(&self) -> Option<&KnownSolutions> {
+        match self {
+            Self::Given(known) => Some(known),
+            Self::Monodromy(options) => Some(&options.known),
+            Self::Auto
+            | Self::TotalDegree
+            | Self::Multihomogeneous
+            | Self::LinearProduct(_)
+            | Self::Polyhedral
+            | Self::Regeneration => None,
+        }
+    }
+
+    /// The same way from these points; where it begins from no points, they are given for a parameter homotopy.
+    #[must_use]
+    pub fn with_points(self, points: GivenStart) -> Self {
+        let points = Some(points);
+        match self {
+            Self::Monodromy(options) => Self::Monodromy(MonodromyOptions {
+                known: KnownSolutions {
+                    points,
+                    ..options.known
+                },
+                ..options
+            }),
+            Self::Given(known) => Self::Given(KnownSolutions { points, ..known }),
+            _ => Self::Given(KnownSolutions {
+                points,
+                parameters: None,
+            }),
+        }
+    }
+}
+
+/// Solutions of some member of a family of systems.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KnownSolutions {
+    /// The solutions.
+    pub points: Option<GivenStart>,
+    /// Values of the parameters at which the points are solutions.
+    pub parameters: Option<Vec<Complex64>>,
+}
+
+/// A monodromy solve.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MonodromyOptions {
+    /// Where loops begin; without points one is found.
+    pub known: KnownSolutions,
+    /// When loops end.
+    pub limits: LoopLimits,
+}
+
+/// How paths are tracked and their ends judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackingOptions {
+    /// Settings of the tracker.
+    pub settings: Settings,
+    /// How verdicts about endpoints are reached.
+    pub tolerances: Tolerances,
+    /// How often a path is tracked again at most.
+    pub max_retries: u16,
+}
+
+impl Default for TrackingOptions {
+    fn default() -> Self {
+        Self {
+            settings: Settings::default(),
+            tolerances: Tolerances::default(),
+            max_retries: MAX_RETRIES,
+        }
+    }
+}

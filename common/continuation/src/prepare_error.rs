@@ -1,0 +1,47 @@
+//! PrepareError: why a stage cannot be prepared.
+
+use crate::start_points::{DamagedPoints, Digest};
+use cognate_systems::system::SystemError;
+
+/// Why a stage cannot be prepared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PrepareError {
+    /// The system is not one.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// Fewer equations than unknowns.
+    #[error(
+        "the system has {equations} equations for {dimension} unknowns; tracking needs at least as many equations as unknowns"
+    )]
+    Underdetermined {
+        /// Number of equations.
+        equations: usize,
+        /// Unknowns, up to the scaling of homogeneous groups.
+        dimension: usize,
+    },
+    /// Degrees cannot be found, or the system is not homogeneous where it says so.
+    #[error("{0}")]
+    Degrees(String),
+    /// The start points do not fit the system.
+    #[error("the start points do not fit the system: {0}")]
+    StartPoints(String),
+    /// Parameter values do not fit the system.
+    #[error("{what}: {found} values for {expected} parameters")]
+    Parameters {
+        /// Which values.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// The stage has no paths.
+    #[error("the stage asks for other work than tracking")]
+    Work,
+    /// The object with the start points is not there.
+    #[error("the object {0} with the start points is missing")]
+    MissingObject(Digest),
+    /// The object with the start points is damaged.
+    #[error(transparent)]
+    Damaged(#[from] DamagedPoints),
+}

@@ -1,0 +1,12 @@
+//! ClosingOptions: what follows once the isolated solutions of a solve are found.
+
+/// What follows once the solutions are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClosingOptions {
+    /// Whether the solutions are certified.
+    pub certify: bool,
+    /// Decimal digits of the solutions; `None`: those of the precision in which paths are tracked.
+    pub digits: Option<u32>,
+    /// Whether isolated singular solutions are brought to their digits by deflation.
+    pub deflate: bool,
+}
