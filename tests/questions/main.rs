@@ -1,11 +1,12 @@
-//! Questions to components against known answers, several seeds each: members, images, degrees by groups, real curves.
+//! Questions to components against known answers, several seeds each: members, images, degrees by groups, real curves and
+//! points, intersections.
 //!
 //! `SEEDS=30 cargo test -p cognate-tests --test questions` takes more seeds than the three of every run.
 
 use cognate_algorithms::decomposition::{self, DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::questions::{QuestionSolve, run_locally};
-use cognate_solutions::witness::question::GivenPoint;
-use cognate_solutions::witness::{Answer, Decomposition, Question};
+use cognate_solutions::witness::question::{GivenPoint, SecondSet};
+use cognate_solutions::witness::{Answer, Decomposition, Question, WitnessSet};
 use cognate_systems::system::System;
 use cognate_tests::systems::{shared, written};
 use num_complex::Complex64;
@@ -212,4 +213,130 @@ fn a_circle_in_isotropic_coordinates() {
     let system = written("variable_group p, P; function f; f = p*P - 1;");
     let system = cognate_tests::systems::with_conjugates(system, "p~P");
     check_real("circle", &system, [1, 0, 0, 0, 1]);
+}
+
+/// What two components of a decomposition have in common: the values of the variables, where it is points.
+fn common_points(name: &str, degrees: [(u32, u64); 2], seed: u64) -> Vec<Vec<f64>> {
+    let system = instance(name);
+    let found = components(name, &system, seed);
+    let of = |(dimension, degree): (u32, u64)| -> Vec<WitnessSet> {
+        let own = found.components.iter();
+        let own = own.filter(|set| (set.dimension(), set.degree) == (dimension, degree));
+        own.cloned().collect()
+    };
+    let second = SecondSet {
+        own: system.equations.len() as u32,
+        from: 0,
+        components: of(degrees[1]),
+    };
+    let first = of(degrees[0]);
+    let question = Question::Intersect(second);
+    let solve = match QuestionSolve::new(&system, &options(seed), &first, &question) {
+        Ok(solve) => solve,
+        Err(error) => panic!("{name}, seed {seed}: {error}"),
+    };
+    let (answer, _) = match run_locally(solve, 8) {
+        Ok(found) => found,
+        Err(error) => panic!("{name}, seed {seed}: {error}"),
+    };
+    let Answer::Components(found) = answer else {
+        panic!("{answer:?}");
+    };
+    assert!(found.settled(), "{name}, seed {seed}: {found:#?}");
+    let of_point = |set: &WitnessSet| {
+        assert_eq!(set.dimension(), 0, "{name}, seed {seed}");
+        let values = set.points[0].iter();
+        values
+            .map(|z| {
+                assert!(z.im.abs() < 1e-8);
+                z.re
+            })
+            .collect()
+    };
+    found.components.iter().map(of_point).collect()
+}
+
+/// Where the mechanism goes from two degrees of freedom to one: c = 0, both points above or below (`intersections` of
+/// its `meta.json`).
+#[test]
+fn switching_points_of_a_kinematotropic_mechanism() {
+    for seed in seeds() {
+        let points = common_points("kinematotropic", [(2, 4), (1, 2)], seed);
+        assert_eq!(points.len(), 4, "seed {seed}: {points:?}");
+        for point in points {
+            let [xa, ya, xb, yb, c] = point[..] else {
+                panic!("five variables");
+            };
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-7;
+            assert!(near(xa, 0.0) && near(xb, 0.0) && near(c, 0.0));
+            assert!(near(ya.abs(), 1.0) && near(yb.abs(), 1.0));
+        }
+    }
+}
+
+/// A parallelogram folds onto its base line, where it can go on as an antiparallelogram.
+#[test]
+fn folding_points_of_a_parallelogram() {
+    for seed in seeds() {
+        let mut points = common_points("four_bar_parallelogram", [(1, 2), (1, 4)], seed);
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(points.len(), 2, "seed {seed}: {points:?}");
+        let expected = [[-2.0, 0.0, 1.0, 0.0], [2.0, 0.0, 5.0, 0.0]];
+        for (point, expected) in points.iter().zip(expected) {
+            let apart = point.iter().zip(expected).map(|(a, b)| (a - b).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-7, "{point:?}");
+        }
+    }
+}
+
+/// A part of the real points, by their coordinates.
+type Part = fn(&[f64]) -> bool;
+
+fn check_real_points(name: &str, system: &System, parts: &[Part]) {
+    for seed in seeds() {
+        let answer = ask(name, system, seed, &Question::RealPoints);
+        let Answer::RealPoints(found) = answer else {
+            panic!("{answer:?}");
+        };
+        let points = found.iter().flat_map(|c| &c.points);
+        let points: Vec<Vec<f64>> = points
+            .map(|p| p.point.iter().map(|z| z.re).collect())
+            .collect();
+        assert_eq!(points.is_empty(), parts.is_empty(), "{name}, seed {seed}");
+        for (k, part) in parts.iter().enumerate() {
+            let met = points.iter().any(|p| part(p));
+            assert!(met, "{name}, seed {seed}: part {k} of {points:?}");
+        }
+    }
+}
+
+/// `real_pieces` of the `meta.json` of these systems; the rest by their equations.
+#[test]
+fn real_points_are_on_every_part() {
+    let all: Part = |_| true;
+    check_real_points(
+        "real_cubic",
+        &instance("real_cubic"),
+        &[|p| p[0] < 0.5, |p| p[0] > 0.5],
+    );
+    check_real_points(
+        "real_acnode",
+        &instance("real_acnode"),
+        &[|p| p[0].abs() < 1e-4, |p| p[0] > 0.9],
+    );
+    let torus = "variable_group x, y, z; function f; f = (x^2 + y^2 + z^2 + 3)^2 - 16*(x^2 + y^2);";
+    check_real_points("torus", &written(torus), &[all]);
+    let sphere = "variable_group x, y, z; function f; f = x^2 + y^2 + z^2 - 1;";
+    check_real_points("sphere", &written(sphere), &[all]);
+    let sheets = "variable_group x, y, z; function f; f = z^2 - x^2 - y^2 - 1;";
+    check_real_points(
+        "hyperboloid of two sheets",
+        &written(sheets),
+        &[|p| p[2] > 0.0, |p| p[2] < 0.0],
+    );
+    let none = "variable_group x, y; function f; f = x^2 + y^2 + 1;";
+    check_real_points("empty conic", &written(none), &[]);
+    let circle = written("variable_group p, P; function f; f = p*P - 1;");
+    let circle = cognate_tests::systems::with_conjugates(circle, "p~P");
+    check_real_points("isotropic circle", &circle, &[all]);
 }

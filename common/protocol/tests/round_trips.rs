@@ -7,9 +7,13 @@ use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CellBranches};
 use cognate_continuation::work::{Stage, Work};
-use cognate_protocol::submission::{Decompose, Options, Source, Submission};
+use cognate_protocol::submission::{Asked, Decompose, Options, Source, Submission};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
-use cognate_solutions::witness::Method;
+use cognate_solutions::witness::question::SecondSet;
+use cognate_solutions::witness::witness_set::Multiplicity;
+use cognate_solutions::witness::{
+    ComponentId, Evidence, Irreducible, Method, Question, WitnessSet,
+};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use prost::Message;
@@ -150,6 +154,61 @@ fn signs_of_zero_and_kinds_of_nan_are_kept_or_made_one() {
     assert_ne!(with(0.0), with(-0.0));
     assert_eq!(with(f64::NAN), with(-f64::NAN));
     assert_eq!(with(f64::NAN), with(f64::from_bits(0x7ff8_0000_dead_beef)));
+}
+
+#[test]
+fn questions_about_loci_come_back() {
+    let id = |dimension: u32| ComponentId {
+        dimension,
+        number: 2,
+    };
+    let set = |dimension: u32, points: usize| {
+        let number = |k: usize| Complex64::new(k as f64, 0.5);
+        WitnessSet {
+            id: id(dimension),
+            degree: points as u64,
+            multiplicity: Multiplicity {
+                scheme: None,
+                tracked: 1,
+                dual_dimensions: Vec::new(),
+            },
+            irreducible: Irreducible::Yes,
+            deflation: vec![1, 3],
+            self_conjugate: None,
+            slice: vec![vec![number(7); 3]; dimension as usize],
+            points: (0..points)
+                .map(|k| vec![number(k), number(k + 1)])
+                .collect(),
+            evidence: Evidence::default(),
+        }
+    };
+    let second = |components| SecondSet {
+        own: 3,
+        from: 2,
+        components,
+    };
+    for question in [
+        Question::SingularLocus,
+        Question::RealPoints,
+        Question::Intersect(second(Vec::new())),
+        Question::Intersect(second(vec![set(1, 4), set(0, 1)])),
+    ] {
+        let asked = Asked {
+            components: vec![set(1, 2)],
+            question,
+        };
+        let options = Options {
+            question: Some(asked),
+            ..Options::default()
+        };
+        let source = Source::System(Box::new(Draw::new(1).system()));
+        let submission = Submission { source, options };
+        let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
+        assert_eq!(
+            from_proto::problem::submission(message).unwrap(),
+            submission
+        );
+    }
 }
 
 #[test]

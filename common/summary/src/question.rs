@@ -13,8 +13,8 @@ use serde_json::{Value, json};
 pub struct QuestionSummary {
     /// Id of the job.
     pub job: String,
-    /// What was asked: `member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve` or
-    /// `certify`.
+    /// What was asked: `member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`,
+    /// `real-points` or `certify`.
     pub question: String,
     /// The system and the seed.
     pub problem: AskedProblem,
@@ -130,6 +130,32 @@ fn blocks(answer: &Answer) -> Blocks {
                 json!({ "id": c.id.to_string(), "multidegree": degrees, "doubts": c.doubts })
             });
             (None, Some(each.collect()), Some(groups.clone()))
+        }
+        // A decomposition has a summary of its own.
+        Answer::Components(_) => (None, None, None),
+        Answer::RealPoints(components) => {
+            let each = components.iter();
+            let points = each.clone().flat_map(|c| {
+                c.points.iter().map(move |p| {
+                    let values: Vec<Value> = p.point.iter().map(|z| json!([z.re, z.im])).collect();
+                    json!({ "component": c.id.to_string(), "point": values, "regular": p.regular })
+                })
+            });
+            let points = points.collect();
+            let each = each.map(|c| {
+                let settled = c.doubts.is_empty();
+                // That a component has no real points is said only where nothing is in doubt.
+                let real = match (c.points.is_empty(), settled) {
+                    (false, _) => Some(true),
+                    (true, true) => Some(false),
+                    (true, false) => None,
+                };
+                json!({
+                    "id": c.id.to_string(), "points": c.points.len(), "has_real_points": real,
+                    "settled": settled, "doubts": c.doubts,
+                })
+            });
+            (Some(points), Some(each.collect()), None)
         }
         Answer::RealCurve(curves) => (None, Some(curves.iter().map(counts).collect()), None),
         Answer::Mobility(points) => {

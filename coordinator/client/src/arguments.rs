@@ -76,6 +76,12 @@ pub enum Command {
     Certify(sets::Plain),
     /// Loops, arcs and singular points of real curves
     RealCurve(sets::RealCurve),
+    /// At least one point on every connected part of the real points of components
+    RealPoints(sets::Plain),
+    /// What components have in common with other components, or with the solutions of further equations
+    Intersect(sets::Intersect),
+    /// Where the equations lose rank on components
+    SingularLocus(sets::Plain),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths

@@ -59,6 +59,11 @@ fn start(command: Command) -> Started {
         Command::Mobility(a) => Orderly(Box::pin(async move { question::mobility(&a).await })),
         Command::Certify(a) => Orderly(Box::pin(async move { question::certify(&a).await })),
         Command::RealCurve(a) => Orderly(Box::pin(async move { question::real_curve(&a).await })),
+        Command::RealPoints(a) => Orderly(Box::pin(async move { question::real_points(&a).await })),
+        Command::Intersect(a) => Orderly(Box::pin(async move { intersect::run(&a).await })),
+        Command::SingularLocus(a) => {
+            Orderly(Box::pin(async move { question::singular_locus(&a).await }))
+        }
         Command::Submit(a) => Droppable(Box::pin(async move { submit::run(&a).await })),
         Command::Watch(a) => Droppable(Box::pin(async move { watch::run(&a).await })),
         Command::Results(a) => Droppable(Box::pin(async move { results::run(&a).await })),

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 /// Level by level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Cascade {
+pub(crate) struct Cascade {
     level: usize,
     /// Points that the level began with; with slid ones once it slid.
     points: Vec<Vec<Complex64>>,
@@ -37,6 +37,30 @@ impl Cascade {
             supersets: Vec::new(),
             started: false,
         }
+    }
+
+    /// From these points of the first so many combinations, on the slices that are left.
+    pub fn from_level(level: usize, points: Vec<Vec<Complex64>>) -> Self {
+        Self {
+            level,
+            points,
+            sliding: false,
+            failed: 0,
+            supersets: Vec::new(),
+            started: false,
+        }
+    }
+
+    /// The supersets that its levels came to, and of those that no path reached.
+    pub fn take_supersets(&mut self, problem: &Problem) -> Vec<Superset> {
+        let mut supersets = std::mem::take(&mut self.supersets);
+        for level in self.level..problem.asked_levels {
+            supersets.push(Superset {
+                failed: self.failed,
+                ..Superset::empty(problem.variables() - level - 1)
+            });
+        }
+        supersets
     }
 
     /// The supersets of all dimensions that are asked and of those above, highest first.

@@ -251,6 +251,9 @@ impl Deflations {
                 let values = values.map(f64::from_bits);
                 Arc::new(fibre(&problem.curve_equations(), form, values))
             }
+            StageSystem::Pair { .. } => {
+                unreachable!("pairs are of two problems: who asks makes them")
+            }
             StageSystem::Sliced { dimension } => {
                 Arc::new(slice(&problem.given, *dimension, problem.variables()))
             }

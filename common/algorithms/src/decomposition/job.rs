@@ -104,6 +104,12 @@ pub(crate) enum StageSystem {
         /// Coefficients of the form: real and imaginary parts.
         form: Vec<[i32; 2]>,
     },
+    /// Combinations of the equations of two components, each regular after its deflations, side by side, with slices in
+    /// the variables of both.
+    Pair {
+        /// Which components: of the first set, of the second.
+        places: [usize; 2],
+    },
     /// The same combinations, with fibres of the form.
     Fibre {
         /// Coefficients of the form: real and imaginary parts.

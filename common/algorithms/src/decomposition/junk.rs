@@ -62,10 +62,12 @@ enum Asking {
 
 /// Tells junk from witness points, dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct JunkFilter {
+pub(crate) struct JunkFilter {
     supersets: VecDeque<Superset>,
     /// Several paths may come to a reduced point: sets that meet there were cut one by one.
     shared: bool,
+    /// Points need not be isolated solutions of the equations: only paths ask whether they are junk, about all of them.
+    by_paths: bool,
     current: Option<Superset>,
     suspects: Vec<Suspect>,
     asking: Asking,
@@ -80,11 +82,21 @@ impl JunkFilter {
         Self {
             supersets: supersets.into(),
             shared,
+            by_paths: false,
             current: None,
             suspects: Vec::new(),
             asking: Asking::Nothing,
             sets_left: Vec::new(),
             dimensions: Vec::new(),
+        }
+    }
+
+    /// For points of sets that are not components of the equations: as points of whichever multiplicity, each once,
+    /// they are all among the singular ends.
+    pub fn of_sets(supersets: Vec<Superset>) -> Self {
+        Self {
+            by_paths: true,
+            ..Self::new(supersets, true)
         }
     }
 
@@ -111,12 +123,15 @@ impl JunkFilter {
                 self.settle(problem, deflations, sets);
             }
             let superset = self.supersets.pop_front()?;
-            let superset = self.regular_at_once(problem, deflations, superset);
+            let superset = match self.by_paths {
+                true => superset,
+                false => self.regular_at_once(problem, deflations, superset),
+            };
             self.suspects = superset.singular.iter().map(Suspect::new).collect();
             self.sets_left = (0..sets.len()).collect();
             let dimension = superset.dimension;
             self.current = Some(superset);
-            if !self.suspects.is_empty() {
+            if !self.suspects.is_empty() && !self.by_paths {
                 self.asking = Asking::Isolation;
                 return Some(self.isolate(problem, dimension));
             }

@@ -9,13 +9,13 @@
 //!
 //! Stages differ in their systems, which their openings bring.
 
-mod cascade;
+pub(crate) mod cascade;
 mod costs;
 pub(crate) mod deflated;
 mod dimension_start;
 mod equations;
 pub(crate) mod job;
-mod junk;
+pub(crate) mod junk;
 pub(crate) mod moved;
 mod options;
 pub(crate) mod problem;
@@ -304,46 +304,16 @@ impl DecompositionSolve {
     }
 
     fn summary(&mut self) -> Decomposition {
-        let mut components = std::mem::take(&mut self.state.components);
-        let key = |set: &WitnessSet| {
-            let mut points: Vec<Vec<i64>> = set.points.iter().map(|p| grid(p)).collect();
-            points.sort();
-            points
-        };
-        components.sort_by_cached_key(|set| {
-            let by = std::cmp::Reverse((set.dimension(), set.degree, set.multiplicity.scheme));
-            (by, key(set))
-        });
-        let mut dimensions = std::mem::take(&mut self.state.dimensions);
-        for dimension in &mut dimensions {
-            let own = components.iter_mut();
-            let own = own.filter(|set| set.dimension() == dimension.number);
-            for (number, set) in (1..).zip(own) {
-                set.id = ComponentId {
-                    dimension: dimension.number,
-                    number,
-                };
-                dimension.degree += set.degree;
-            }
-            let missing = dimension.doubts.contains(&Doubt::PointsMissing);
-            dimension.complete = match dimension.doubts.is_empty() {
-                true => Completeness::Yes,
-                false if missing => Completeness::No,
-                false => Completeness::NotKnown,
-            };
-        }
-        let mut found = Decomposition {
+        ordered(Decomposition {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
             asked: [*self.problem.asked.start(), *self.problem.asked.end()],
-            components,
-            dimensions,
+            components: std::mem::take(&mut self.state.components),
+            dimensions: std::mem::take(&mut self.state.dimensions),
             paths: self.state.paths,
             paths_of_loops: self.state.paths_of_loops,
-        };
-        found.check_counts();
-        found
+        })
     }
 
     /// The system at the values of its parameters.
@@ -376,6 +346,39 @@ impl DecompositionSolve {
             _ => self.deflations.of_stage(&self.problem, wanted),
         }
     }
+}
+
+/// The decomposition with its components in order and named, its dimensions with their degrees, and whether their counts
+/// add up.
+pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
+    let key = |set: &WitnessSet| {
+        let mut points: Vec<Vec<i64>> = set.points.iter().map(|p| grid(p)).collect();
+        points.sort();
+        points
+    };
+    found.components.sort_by_cached_key(|set| {
+        let by = std::cmp::Reverse((set.dimension(), set.degree, set.multiplicity.scheme));
+        (by, key(set))
+    });
+    for dimension in &mut found.dimensions {
+        let own = found.components.iter_mut();
+        let own = own.filter(|set| set.dimension() == dimension.number);
+        for (number, set) in (1..).zip(own) {
+            set.id = ComponentId {
+                dimension: dimension.number,
+                number,
+            };
+            dimension.degree += set.degree;
+        }
+        let missing = dimension.doubts.contains(&Doubt::PointsMissing);
+        dimension.complete = match dimension.doubts.is_empty() {
+            true => Completeness::Yes,
+            false if missing => Completeness::No,
+            false => Completeness::NotKnown,
+        };
+    }
+    found.check_counts();
+    found
 }
 
 /// Where a way to the answer begins.

@@ -14,7 +14,8 @@ use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::{
-    FixError, affine_chart, combine, combine_few, equilibrate, factors, fix_parameters, slice,
+    FixError, affine_chart, combine, combine_all, combine_few, equilibrate, factors,
+    fix_parameters, slice,
 };
 use cognate_systems::units::scaling_of;
 use num_complex::Complex64;
@@ -76,6 +77,8 @@ impl From<PolynomialError> for ProblemError {
 pub(crate) struct Problem {
     /// The equations that are given, and patches; each scaled to about 1.
     pub given: Arc<System>,
+    /// Which equation of the system each of them is; `None`: a patch.
+    sources: Vec<Option<usize>>,
     degrees: Degrees,
     /// The equations in the order in which they cut: of small degree first.
     pub order: Vec<usize>,
@@ -122,7 +125,7 @@ impl Problem {
         tracking: Tracking,
         options: &DecompositionOptions,
     ) -> Result<Self, ProblemError> {
-        let system = without_vanishing(with_values(system, &options.parameters)?);
+        let (system, kept) = without_vanishing(with_values(system, &options.parameters)?);
         if system.equations.is_empty() {
             return Err(ProblemError::Everything);
         }
@@ -133,6 +136,9 @@ impl Problem {
         };
         let scaling = system.scaling.clone();
         let given = equilibrate(&affine_chart(&system.in_unknowns(), seed), seed);
+        let patches = given.equation_count() - kept.len();
+        let sources = vec![None; patches].into_iter();
+        let sources = sources.chain(kept.into_iter().map(Some)).collect();
         let of_given = degrees(&given)?;
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
@@ -169,6 +175,7 @@ impl Problem {
         order.sort_by_key(|&i| (of_given.total[i], i));
         Ok(Self {
             given: Arc::new(given),
+            sources,
             order,
             degrees: of_given,
             staircase: Arc::new(staircase),
@@ -199,6 +206,7 @@ impl Problem {
         Ok(Self {
             factors: FactorValues::new(&given, self.seed())?,
             given: Arc::new(given),
+            sources: chosen.iter().map(|&i| self.sources[i]).collect(),
             degrees: of_chosen,
             order: (0..count).collect(),
             staircase: Arc::clone(&self.staircase),
@@ -213,6 +221,118 @@ impl Problem {
             scaling: self.scaling.clone(),
             involution: None,
         })
+    }
+
+    /// The equations by their places in the system: those of which `chosen` is true, and all patches.
+    fn places(&self, chosen: impl Fn(usize) -> bool) -> Vec<usize> {
+        let places = 0..self.sources.len();
+        let is = |&i: &usize| self.sources[i].is_none_or(&chosen);
+        places.filter(is).collect()
+    }
+
+    /// The problem of some of the equations of the system, and of the patches, in the same units.
+    pub fn part(&self, chosen: impl Fn(usize) -> bool) -> Result<Self, ProblemError> {
+        let places = self.places(chosen);
+        if places.is_empty() {
+            return Err(ProblemError::Everything);
+        }
+        let given = with_equations(&self.given, &places);
+        let degrees = degrees(&given)?;
+        let plain = SlicedEquations::new(&given, Vec::new());
+        let levels = rank_at_random(&plain, &given, self.seed())?.min(given.equation_count());
+        Ok(Self {
+            factors: FactorValues::new(&given, self.seed())?,
+            order: (0..places.len()).collect(),
+            sources: places.iter().map(|&i| self.sources[i]).collect(),
+            levels,
+            asked_levels: levels,
+            asked: (self.variables() - levels) as u32..=self.variables() as u32 - 1,
+            involution: Involution::of(&given, &[]).ok(),
+            given: Arc::new(given),
+            degrees,
+            staircase: Arc::clone(&self.staircase),
+            row_degrees: Vec::new(),
+            tracking: self.tracking.clone(),
+            idle_loops: self.idle_loops,
+            confirm_junk: self.confirm_junk,
+            scaling: self.scaling.clone(),
+        })
+    }
+
+    /// The problem in which sets of this dimension, regular on these equations, are cut by more of them: the last ones
+    /// of `extended`, whose first are these. Its staircase has combinations of the first, as many as cut out the
+    /// sets, then combinations of the others; `None` where one of the others is a constant, so that nothing is cut
+    /// out.
+    pub fn cut_by(&self, dimension: usize, extended: System) -> Result<Option<Self>, ProblemError> {
+        let n = self.variables();
+        let own = self.given.equation_count();
+        let all = degrees(&extended)?;
+        if all.total[own..].contains(&0) {
+            return Ok(None);
+        }
+        let part = |places: Range<usize>| Degrees {
+            by_group: all.by_group[places.clone()].to_vec(),
+            total: all.total[places].to_vec(),
+        };
+        let chosen: Vec<usize> = (0..extended.equation_count()).collect();
+        let first = with_equations(&extended, &chosen[..own]);
+        let mut staircase = combine(&first, &part(0..own), n - dimension, self.seed());
+        let others = System {
+            expressions: staircase.expressions.clone(),
+            ..with_equations(&extended, &chosen[own..])
+        };
+        let degrees_of_others = part(own..chosen.len());
+        // Not the multiples with which the first are combined.
+        let others = combine_all(&others, &degrees_of_others, dimension, !self.seed());
+        staircase.expressions = others.expressions;
+        staircase.equations.extend(others.equations);
+        let levels = staircase.equations.len();
+        for v in levels..n {
+            let row = staircase.expressions.variable(v as u32);
+            staircase.equations.push(row);
+        }
+        let names = 1..=staircase.equations.len();
+        staircase.equation_names = names.map(|k| format!("combination {k}")).collect();
+        staircase.symmetry.clear();
+        staircase.conjugates.clear();
+        staircase.degenerate.clear();
+        let sources = self.sources.iter().copied();
+        Ok(Some(Self {
+            factors: FactorValues::new(&extended, self.seed())?,
+            row_degrees: degrees(&staircase)?.total,
+            staircase: Arc::new(staircase),
+            order: chosen.clone(),
+            sources: sources.chain(vec![None; chosen.len() - own]).collect(),
+            levels,
+            asked_levels: levels,
+            asked: (n - levels) as u32..=n as u32 - 1,
+            involution: self.involution.clone(),
+            given: Arc::new(extended),
+            degrees: all,
+            tracking: self.tracking.clone(),
+            idle_loops: self.idle_loops,
+            confirm_junk: self.confirm_junk,
+            scaling: self.scaling.clone(),
+        }))
+    }
+
+    /// As many combinations of the equations as cut out sets of this dimension, with this seed, in the expressions of
+    /// `extended`, which go on from those of the equations.
+    pub fn combinations(&self, extended: &System, dimension: usize, seed: u64) -> System {
+        let equations = System {
+            expressions: extended.expressions.clone(),
+            ..(*self.given).clone()
+        };
+        let rows = self.variables() - dimension;
+        combine(&equations, &self.degrees, rows, seed)
+    }
+
+    /// These equations, then the others of `whole`, of which they are a part.
+    pub fn followed_by(&self, whole: &Self, others: impl Fn(usize) -> bool) -> System {
+        let mut places = whole.places(|i| self.sources.contains(&Some(i)));
+        let wanted = |i: &usize| whole.sources[*i].is_some_and(&others);
+        places.extend((0..whole.sources.len()).filter(wanted));
+        with_equations(&whole.given, &places)
     }
 
     /// A way to the answer that is compared with this one.
@@ -312,10 +432,19 @@ impl Problem {
 
     /// As many combinations of the equations of a system as cut out a set of this dimension, and its slices.
     pub fn tracked(&self, equations: &System, dimension: usize) -> Result<System, ProblemError> {
+        let rows = self.tracked_rows(equations, dimension)?;
+        Ok(slice(&rows, dimension, self.variables()))
+    }
+
+    /// The same without slices.
+    pub fn tracked_rows(
+        &self,
+        equations: &System,
+        dimension: usize,
+    ) -> Result<System, ProblemError> {
         let of = degrees(equations)?;
         let rows = equations.variable_count() - dimension;
-        let rows = combine_few(equations, &of, rows, self.seed(), true);
-        Ok(slice(&rows, dimension, self.variables()))
+        Ok(combine_few(equations, &of, rows, self.seed(), true))
     }
 
     /// As many combinations of the given equations; `keep`: whether linear ones stay as they are.
@@ -470,8 +599,8 @@ fn with_factors(system: &System, nodes: Vec<NodeId>) -> System {
     result
 }
 
-/// The system without the equations that hold everywhere.
-fn without_vanishing(system: Cow<'_, System>) -> Cow<'_, System> {
+/// The system without the equations that hold everywhere, and which are left.
+fn without_vanishing(system: Cow<'_, System>) -> (Cow<'_, System>, Vec<usize>) {
     let everywhere = |&equation: &usize| {
         let alone = with_equations(&system, &[equation]);
         matches!(degrees(&alone), Err(PolynomialError::Vanishes(_)))
@@ -479,7 +608,7 @@ fn without_vanishing(system: Cow<'_, System>) -> Cow<'_, System> {
     let all = 0..system.equation_count();
     let (vanishing, left): (Vec<usize>, Vec<usize>) = all.partition(everywhere);
     if vanishing.is_empty() {
-        return system;
+        return (system, left);
     }
     let mut whole = system.into_owned();
     whole.equation_names = left
@@ -487,7 +616,7 @@ fn without_vanishing(system: Cow<'_, System>) -> Cow<'_, System> {
         .map(|&i| whole.equation_names[i].clone())
         .collect();
     whole.equations = left.iter().map(|&i| whole.equations[i]).collect();
-    Cow::Owned(whole)
+    (Cow::Owned(whole), left)
 }
 
 /// The system with these values of its parameters.

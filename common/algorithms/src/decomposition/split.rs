@@ -65,7 +65,7 @@ enum Loops {
 
 /// One set on its way to components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Split {
+pub(crate) struct Split {
     set: PureSet,
     /// How the points move; `None` while that is asked.
     bends: Option<MovedPoints>,

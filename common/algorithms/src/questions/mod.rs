@@ -1,24 +1,28 @@
 //! Questions to components that are known by their witness sets: membership, samples, images, degrees by groups,
-//! mobility.
+//! mobility, real points and curves, intersections, singular loci.
 //!
 //! What moves witness points to other slices is a parameter homotopy, tracked in stages like any other. (Sommese,
 //! Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 to 16.)
 
 mod certify;
 mod check;
+mod locus;
 mod member;
 mod mobility;
 mod multidegree;
 mod operand;
 mod project;
 mod real_curve;
+mod real_points;
 mod sample;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_loci;
 
 use crate::answer::AnsweredQuestion;
 use crate::decomposition::deflated::Deflations;
-use crate::decomposition::job::Job;
+use crate::decomposition::job::{Job, StageSystem};
 use crate::decomposition::problem::Problem;
 use crate::decomposition::{DecompositionOptions, ProblemError};
 use crate::progress::{Progress, StageProgress, VerdictCounts};
@@ -29,8 +33,11 @@ use check::Check;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
+use cognate_solutions::witness::question::SecondSet;
 use cognate_solutions::witness::{Answer, Question, TrackedPaths, WitnessSet};
 use cognate_systems::system::System;
+use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
+use locus::{Locus, Wanted};
 use member::Member;
 use mobility::Mobility;
 use multidegree::Multidegree;
@@ -38,6 +45,7 @@ use operand::Operand;
 pub use operand::{MOST_WITNESS_POINTS, OperandError};
 use project::Project;
 use real_curve::RealCurves;
+use real_points::RealPoints;
 use sample::Sample;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -83,7 +91,24 @@ enum Asking {
     Multidegree(Multidegree),
     Mobility(Mobility),
     RealCurve(Box<RealCurves>),
+    Locus(Box<Locus>),
+    RealPoints(Box<RealPoints>),
     Done(Box<Answer>),
+}
+
+/// Components of a second set, of all equations from the first of them on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Others {
+    from: u32,
+    components: Vec<WitnessSet>,
+}
+
+/// A second set, in the unknowns that are tracked.
+#[derive(Clone, Debug)]
+struct Other {
+    problem: Arc<Problem>,
+    operands: Arc<Vec<Operand>>,
+    deflations: Deflations,
 }
 
 /// What is written down of a question.
@@ -92,6 +117,10 @@ struct State {
     system: Arc<System>,
     options: DecompositionOptions,
     components: Vec<WitnessSet>,
+    /// How many of the first equations the components are of, where that is not all.
+    own: Option<u32>,
+    /// Components of a second set.
+    others: Option<Others>,
     asking: Asking,
     job: Option<Job>,
     /// Whether something that the jobs met leaves a doubt: paths that met and did not come apart.
@@ -105,10 +134,14 @@ struct State {
 #[serde(into = "State", try_from = "State")]
 pub struct QuestionSolve {
     state: State,
-    /// Made of the state, and made again where it is read back.
+    /// Made of the state, and made again where it is read back: of the equations that the components are of, of all
+    /// equations, of the second set.
     problem: Arc<Problem>,
     operands: Arc<Vec<Operand>>,
     deflations: Deflations,
+    whole: Arc<Problem>,
+    whole_deflations: Deflations,
+    other: Option<Other>,
 }
 
 impl PartialEq for QuestionSolve {
@@ -127,13 +160,37 @@ impl TryFrom<State> for QuestionSolve {
     type Error = QuestionError;
 
     fn try_from(state: State) -> Result<Self, QuestionError> {
-        let problem = Problem::of_options(&state.system, &state.options)?;
-        let mut deflations = Deflations::default();
-        let operands = operand::all(&problem, &mut deflations, &state.components)?;
+        let whole = Arc::new(Problem::of_options(&state.system, &state.options)?);
+        let of = |problem: Arc<Problem>, components: &[WitnessSet]| {
+            let mut deflations = Deflations::default();
+            let operands = operand::all(&problem, &mut deflations, components)?;
+            let operands = Arc::new(operands);
+            Ok::<_, QuestionError>(Other {
+                problem,
+                operands,
+                deflations,
+            })
+        };
+        let problem = match state.own {
+            None => Arc::clone(&whole),
+            Some(own) => Arc::new(whole.part(|i| i < own as usize)?),
+        };
+        let first = of(problem, &state.components)?;
+        let other = match &state.others {
+            None => None,
+            Some(others) if others.from == 0 => Some(of(Arc::clone(&whole), &others.components)?),
+            Some(others) => {
+                let part = whole.part(|i| i >= others.from as usize)?;
+                Some(of(Arc::new(part), &others.components)?)
+            }
+        };
         Ok(Self {
-            problem: Arc::new(problem),
-            operands: Arc::new(operands),
-            deflations,
+            problem: first.problem,
+            operands: first.operands,
+            deflations: first.deflations,
+            whole,
+            whole_deflations: Deflations::default(),
+            other,
             state,
         })
     }
@@ -144,6 +201,11 @@ struct Context<'a> {
     problem: &'a Problem,
     operands: &'a [Operand],
     deflations: &'a mut Deflations,
+    /// Of all equations, where the components are not of all.
+    whole: &'a Problem,
+    whole_deflations: &'a mut Deflations,
+    /// A second set.
+    other: Option<&'a mut Other>,
 }
 
 impl QuestionSolve {
@@ -154,6 +216,8 @@ impl QuestionSolve {
         components: &[WitnessSet],
         question: &Question,
     ) -> Result<Self, QuestionError> {
+        let count = components.len();
+        let (mut own, mut others) = (None, None);
         let asking = match question {
             Question::Check => Asking::Check(Check::default()),
             Question::Certify => Asking::Certify(Certify::default()),
@@ -174,11 +238,39 @@ impl QuestionSolve {
                 }
                 Asking::RealCurve(Box::new(RealCurves::new(*samples)))
             }
+            Question::Intersect(with) => {
+                let all = system.equations.len();
+                check_second(with, components, all)?;
+                own = ((with.own as usize) < all).then_some(with.own);
+                let wanted = match with.components.is_empty() {
+                    true => Wanted::Equations { from: with.from },
+                    false => Wanted::Others,
+                };
+                others = (wanted == Wanted::Others).then(|| Others {
+                    from: with.from,
+                    components: with.components.clone(),
+                });
+                Asking::Locus(Box::new(Locus::new(wanted, 0..count)))
+            }
+            Question::SingularLocus => {
+                let n = system.variables.len();
+                if n > MOST_CRITICAL_VARIABLES && components.iter().any(|c| c.dimension() > 0) {
+                    return Err(QuestionError::Wish {
+                        field: "singular locus",
+                        found: format!("{n} variables"),
+                        expected: format!("at most {MOST_CRITICAL_VARIABLES}"),
+                    });
+                }
+                Asking::Locus(Box::new(Locus::new(Wanted::Singular, 0..count)))
+            }
+            Question::RealPoints => Asking::RealPoints(Box::new(RealPoints::new())),
         };
         Self::try_from(State {
             system: Arc::new(system.clone()),
             options: options.clone(),
             components: components.to_vec(),
+            own,
+            others,
             asking,
             job: None,
             crossings_left: 0,
@@ -217,6 +309,23 @@ impl QuestionSolve {
         doubts
     }
 
+    /// The system of the open job.
+    fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
+        let mut with = Context {
+            problem: &self.problem,
+            operands: &self.operands,
+            deflations: &mut self.deflations,
+            whole: &self.whole,
+            whole_deflations: &mut self.whole_deflations,
+            other: self.other.as_mut(),
+        };
+        match &mut self.state.asking {
+            Asking::Locus(asking) => asking.system_of(&mut with, wanted),
+            Asking::RealPoints(asking) => asking.system_of(&mut with, wanted),
+            _ => with.deflations.of_stage(with.problem, wanted),
+        }
+    }
+
     /// The job that comes after the one that is done; `None` where nothing more is asked, and the answer is there.
     fn next_job(&mut self) -> Option<Job> {
         let state = &mut self.state;
@@ -230,6 +339,9 @@ impl QuestionSolve {
             problem: &self.problem,
             operands: &self.operands,
             deflations: &mut self.deflations,
+            whole: &self.whole,
+            whole_deflations: &mut self.whole_deflations,
+            other: self.other.as_mut(),
         };
         let job = match &mut state.asking {
             Asking::Check(asking) => asking.advance(&mut with, done),
@@ -240,6 +352,8 @@ impl QuestionSolve {
             Asking::Multidegree(asking) => asking.advance(&mut with, done),
             Asking::Mobility(asking) => asking.advance(&mut with, done),
             Asking::RealCurve(asking) => asking.advance(&mut with, done),
+            Asking::Locus(asking) => asking.advance(&mut with, done),
+            Asking::RealPoints(asking) => asking.advance(&mut with, done),
             Asking::Done(_) => None,
         };
         if job.is_none() {
@@ -252,6 +366,11 @@ impl QuestionSolve {
                 Asking::Multidegree(asking) => asking.take(&state.system),
                 Asking::Mobility(asking) => Answer::Mobility(asking.take()),
                 Asking::RealCurve(asking) => Answer::RealCurve(asking.take()),
+                Asking::Locus(asking) => {
+                    let found = asking.take(&state.system.variables);
+                    Answer::Components(Box::new(found))
+                }
+                Asking::RealPoints(asking) => Answer::RealPoints(asking.take()),
                 Asking::Done(_) => return None,
             };
             state.asking = Asking::Done(Box::new(answer));
@@ -267,8 +386,7 @@ impl Solve for QuestionSolve {
                 match job.next(numbers) {
                     Next::Open(mut opening) => {
                         let wanted = job.system.clone();
-                        let system = self.deflations.of_stage(&self.problem, &wanted);
-                        opening.system = Some(system);
+                        opening.system = Some(self.system_of(&wanted));
                         let stage = &opening.stage;
                         self.state.stages.push(StageProgress {
                             id: stage.id,
@@ -309,6 +427,8 @@ impl Solve for QuestionSolve {
             Asking::Multidegree(_) => "moving slices into groups",
             Asking::Mobility(_) => "asking points for their dual spaces",
             Asking::RealCurve(_) => "following real branches between critical points",
+            Asking::Locus(asking) => asking.description(),
+            Asking::RealPoints(asking) => asking.description(),
             Asking::Done(_) => "done",
         };
         Progress {
@@ -320,12 +440,45 @@ impl Solve for QuestionSolve {
     }
 
     fn answer(&self, _: &System) -> Option<crate::Answer> {
+        if let Some(Answer::Components(found)) = self.answer() {
+            return Some(crate::Answer::Decomposition(Arc::new((**found).clone())));
+        }
         Some(crate::Answer::Question(AnsweredQuestion {
             answer: self.answer().cloned()?,
             doubts: self.doubts(),
             paths: self.paths(),
         }))
     }
+}
+
+/// Whether a second set is one, with not too many paths.
+fn check_second(
+    second: &SecondSet,
+    components: &[WitnessSet],
+    equations: usize,
+) -> Result<(), QuestionError> {
+    let wrong = |found: String, expected: String| QuestionError::Wish {
+        field: "intersect",
+        found,
+        expected,
+    };
+    let (own, from) = (second.own as usize, second.from as usize);
+    if own == 0 || own > equations || from > own || from == equations {
+        let found = format!(
+            "equations 1 to {own} of the components, from {} of the others",
+            from + 1
+        );
+        let expected =
+            format!("some of {equations} for each, and all of them for one or the other");
+        return Err(wrong(found, expected));
+    }
+    let points = |sets: &[WitnessSet]| sets.iter().map(|set| set.points.len()).sum::<usize>();
+    let paths = points(components).saturating_mul(points(&second.components));
+    if paths > MOST_WITNESS_POINTS {
+        let expected = format!("at most {MOST_WITNESS_POINTS}");
+        return Err(wrong(format!("{paths} pairs of witness points"), expected));
+    }
+    Ok(())
 }
 
 /// Asks in one thread, with lanes of this width: the answer, and what is not clear.

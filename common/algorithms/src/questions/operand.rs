@@ -244,7 +244,12 @@ fn check_shape(problem: &Problem, given: &WitnessSet) -> Result<(), OperandError
         expected,
     };
     let dimension = id.dimension as usize;
-    let (least, most) = (n - problem.levels, n - 1);
+    // Deflated equations may be regular on sets that are no components of the equations.
+    let least = match given.deflation.is_empty() {
+        true => n - problem.levels,
+        false => 0,
+    };
+    let most = n - 1;
     if !(least..=most).contains(&dimension) {
         return Err(OperandError::Dimension {
             id,

@@ -15,12 +15,12 @@ const ILLUSTRATIVE: &str = "variable_group x, y, z; function f, g, h; \
 const TWISTED_CUBIC: &str =
     "variable_group x, y, z; function f, g, h; f = y - x^2; g = z - x*y; h = x*z - y^2;";
 
-fn system(text: &str) -> System {
+pub(super) fn system(text: &str) -> System {
     let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
     formats::read("test", text.as_bytes()).unwrap().system
 }
 
-fn components(system: &System, seed: u64) -> Decomposition {
+pub(super) fn components(system: &System, seed: u64) -> Decomposition {
     let options = DecompositionOptions {
         seed,
         ..DecompositionOptions::default()

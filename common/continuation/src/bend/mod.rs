@@ -28,6 +28,9 @@ const MOST_ROUNDS: usize = 12;
 const CONVERGED: f64 = 1e-29;
 /// Above this correction the Jacobian is taken again.
 const NEAR: f64 = 1e-9;
+/// How far beside a point the scales of small rows are taken, relative to the point: there the row of a multiple zero
+/// is not small, and that of a product whose other factors are small is as small as at the point.
+const BESIDE: f64 = 1e-3;
 
 /// Equations that are regular at their witness points, with the slice that these lie on.
 #[derive(Debug)]
@@ -73,7 +76,7 @@ pub struct Bend {
     pub error: f64,
 }
 
-/// The Jacobian and values, and singular values of the Jacobian with each row scaled to at most 1.
+/// The Jacobian and values, and singular values of the Jacobian with each row scaled.
 struct Linearized {
     matrix: Matrix<DoubleDouble<f64>>,
     weights: Vec<f64>,
@@ -81,13 +84,14 @@ struct Linearized {
 }
 
 impl Linearized {
-    fn new(matrix: Matrix<DoubleDouble<f64>>, variables: usize) -> Self {
-        let weights: Vec<f64> = (0..matrix.rows())
-            .map(|i| {
-                let row = (0..variables).map(|j| rounded(matrix.at(i, j)).norm_sqr());
-                1.0 / row.sum::<f64>().sqrt().max(1.0)
-            })
-            .collect();
+    /// A row is scaled to at most 1; one that is smaller beside the point, too, by its size there.
+    fn new(matrix: Matrix<DoubleDouble<f64>>, variables: usize, beside: &[f64]) -> Self {
+        let sizes = row_sizes(&matrix, variables).into_iter().enumerate();
+        let scale = |(i, size): (usize, f64)| match beside.get(i) {
+            Some(&beside) if beside < 1.0 && size < 1.0 => size.max(beside).max(f64::MIN_POSITIVE),
+            _ => size.max(1.0),
+        };
+        let weights: Vec<f64> = sizes.map(|row| 1.0 / scale(row)).collect();
         let column = |j: usize| -> Vec<Complex64> {
             let rows = weights.iter().enumerate();
             rows.map(|(i, weight)| rounded(matrix.at(i, j)) * weight)
@@ -107,6 +111,23 @@ impl Linearized {
         let weighted: Vec<Complex64> = pairs.map(|(z, w)| z * w).collect();
         self.svd.least_squares(&weighted, self.svd.values.len())
     }
+}
+
+/// Euclidean length of each row of a Jacobian.
+fn row_sizes(matrix: &Matrix<DoubleDouble<f64>>, variables: usize) -> Vec<f64> {
+    let rows = 0..matrix.rows();
+    rows.map(|i| {
+        let entries = (0..variables).map(|j| rounded(matrix.at(i, j)));
+        let largest = entries
+            .clone()
+            .fold(0.0f64, |m, z| m.max(z.re.abs()).max(z.im.abs()));
+        if largest == 0.0 || !largest.is_finite() {
+            return largest;
+        }
+        let parts = entries.map(|z| (z / largest).norm_sqr());
+        parts.sum::<f64>().sqrt() * largest
+    })
+    .collect()
 }
 
 /// The number as a double.
@@ -201,8 +222,26 @@ impl SlicedEquations {
         all
     }
 
-    fn decompose(&self, x: &[Number]) -> Linearized {
-        Linearized::new(self.linearize(x), self.variables)
+    fn decompose(&self, x: &[Number], beside: &[f64]) -> Linearized {
+        Linearized::new(self.linearize(x), self.variables, beside)
+    }
+
+    /// Sizes of the rows a little beside a point, in a direction in which no coordinate is special; none where no
+    /// row is small at the point.
+    fn sizes_beside(&self, x: &[Number]) -> Vec<f64> {
+        let small = row_sizes(&self.linearize(x), self.variables);
+        if small.iter().all(|&size| size >= 1.0) {
+            return Vec::new();
+        }
+        let step = BESIDE * length(&doubles(x)).max(1.0) / (self.variables as f64).sqrt();
+        let mut moved = x.to_vec();
+        let mut turn = Complex64::new(0.6, 0.8);
+        for x in &mut moved {
+            x.add(&exactly(turn * step));
+            // Powers of (3 + 4i)/5, which is no root of unity.
+            turn *= Complex64::new(0.6, 0.8);
+        }
+        row_sizes(&self.linearize(&moved), self.variables)
     }
 
     /// The values and the derivatives by the variables from `first` on, in columns.
@@ -226,7 +265,7 @@ impl SlicedEquations {
                 own.at_mut(i, j).set(all.at(i, j));
             }
         }
-        Linearized::new(own, self.variables).svd.values
+        Linearized::new(own, self.variables, &[]).svd.values
     }
 
     /// For each equation its size, and the same as a part of what a change of the point by its size makes of
@@ -258,11 +297,12 @@ impl SlicedEquations {
     /// `None` where it leaves or does not settle.
     pub fn refine(&self, start: &[Number]) -> Option<RefinedPoint> {
         let mut x = start.to_vec();
-        let mut at = self.decompose(&x);
+        let beside = self.sizes_beside(&x);
+        let mut at = self.decompose(&x, &beside);
         let (mut last, mut moved) = (f64::INFINITY, 0.0);
         for round in 0..MOST_ROUNDS {
             if round > 0 && last > NEAR {
-                at = self.decompose(&x);
+                at = self.decompose(&x, &beside);
             }
             let now = self.linearize(&x);
             let values: Vec<Complex64> = (0..now.rows())
@@ -352,7 +392,8 @@ impl SlicedEquations {
     /// How a witness point moves when the constants of the slices move in this direction; with
     /// [`Self::at_parameters`] the parameters, all of them.
     pub fn bend(&self, refined: &RefinedPoint, direction: &[Complex64]) -> Bend {
-        let at = self.decompose(&refined.point);
+        let beside = self.sizes_beside(&refined.point);
+        let at = self.decompose(&refined.point, &beside);
         let (rows, x) = (self.rows(), &refined.point);
         let mut right = zeros(rows + self.slices.len());
         let moved: Vec<Number> = direction.iter().map(|&v| exactly(v)).collect();
@@ -416,6 +457,32 @@ mod tests {
             sum.add(&bend.acceleration[0]);
         }
         assert!(rounded(&sum).norm_sqr().sqrt() < 1e-28);
+    }
+
+    #[test]
+    fn small_factors_beside_a_point_make_it_no_multiple_one() {
+        // On the line x = 1 the other factors are small together; (x - 1)^2 is 0 twice.
+        let slice = vec![
+            Complex64::new(-0.5, 0.0),
+            Complex64::new(0.1, 0.2),
+            Complex64::new(1.0, 0.0),
+        ];
+        let near = [Complex64::new(1.0 + 1e-9, 0.0), Complex64::new(0.4, -0.2)].map(exactly);
+        let condition = |f: &str| {
+            let text =
+                format!("CONFIG\nEND;\nINPUT\nvariable_group x, y; function f;f = {f};\nEND;\n");
+            let system = cognate_systems::formats::read("test", text.as_bytes());
+            let equations = SlicedEquations::new(&system.unwrap().system, vec![slice.clone()]);
+            let refined = equations.refine(&near).unwrap();
+            (refined.condition, refined.correction)
+        };
+        let small: Vec<String> = (1..=40)
+            .map(|k| format!("*(x - 1 - y/{})", 100 + k))
+            .collect();
+        let (simple, last) = condition(&format!("(x - 1){}", small.concat()));
+        assert!(simple < 1e6 && last < 1e-25, "{simple:e} {last:e}");
+        let (double, last) = condition("(x - 1)^2");
+        assert!(double > 1e9 && last > 1e-22, "{double:e} {last:e}");
     }
 
     #[test]

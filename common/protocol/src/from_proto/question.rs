@@ -5,7 +5,7 @@ use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::submission::Asked;
 use crate::v1;
-use cognate_solutions::witness::question::{GivenPoint, SampleWish};
+use cognate_solutions::witness::question::{GivenPoint, SampleWish, SecondSet};
 use cognate_solutions::witness::witness_set::Multiplicity;
 use cognate_solutions::witness::{ComponentId, Evidence, Irreducible, Question, WitnessSet};
 use num_complex::Complex64;
@@ -19,18 +19,7 @@ pub fn question(m: v1::Question) -> Result<Asked, ProtocolError> {
 }
 
 fn asked(m: v1::Question) -> Result<Asked, ProtocolError> {
-    if m.components.len() > MOST_COMPONENTS {
-        return Err(ProtocolError::invalid(
-            "components",
-            m.components.len(),
-            format!("at most {MOST_COMPONENTS} components"),
-        ));
-    }
-    let components = m.components.into_iter().enumerate().map(|(i, set)| {
-        let set = witness_set(set);
-        set.map_err(|e| e.within(format!("components[{i}]")))
-    });
-    let components = components.collect::<Result<Vec<_>, _>>()?;
+    let components = witness_sets(m.components)?;
     let question = match required("kind", m.kind)? {
         v1::question::Kind::Member(member) => Question::Member {
             points: given(required("member.points", member.points)?)?,
@@ -40,6 +29,13 @@ fn asked(m: v1::Question) -> Result<Asked, ProtocolError> {
         v1::question::Kind::RealCurve(curve) => Question::RealCurve {
             samples: curve.samples,
         },
+        v1::question::Kind::Intersect(second) => Question::Intersect(SecondSet {
+            own: second.own,
+            from: second.from,
+            components: witness_sets(second.components).map_err(|e| e.within("intersect"))?,
+        }),
+        v1::question::Kind::SingularLocus(_) => Question::SingularLocus,
+        v1::question::Kind::RealPoints(_) => Question::RealPoints,
         v1::question::Kind::Certify(_) => Question::Certify,
         v1::question::Kind::Multidegree(_) => Question::Multidegree,
         v1::question::Kind::Mobility(mobility) => Question::Mobility {
@@ -104,6 +100,21 @@ fn rows(m: &v1::Points) -> Result<Vec<Vec<Complex64>>, ProtocolError> {
     let stored = points(m)?;
     let rows = stored.coordinates.chunks(stored.dimension);
     Ok(rows.map(<[Complex64]>::to_vec).collect())
+}
+
+fn witness_sets(list: Vec<v1::WitnessSet>) -> Result<Vec<WitnessSet>, ProtocolError> {
+    if list.len() > MOST_COMPONENTS {
+        return Err(ProtocolError::invalid(
+            "components",
+            list.len(),
+            format!("at most {MOST_COMPONENTS} components"),
+        ));
+    }
+    let sets = list.into_iter().enumerate().map(|(i, set)| {
+        let set = witness_set(set);
+        set.map_err(|e| e.within(format!("components[{i}]")))
+    });
+    sets.collect()
 }
 
 fn witness_set(m: v1::WitnessSet) -> Result<WitnessSet, ProtocolError> {

@@ -24,6 +24,13 @@ pub fn question(asked: &Asked) -> v1::Question {
         Question::RealCurve { samples } => {
             Some(Kind::RealCurve(v1::RealCurveQuestion { samples: *samples }))
         }
+        Question::Intersect(second) => Some(Kind::Intersect(v1::IntersectQuestion {
+            own: second.own,
+            from: second.from,
+            components: second.components.iter().map(witness_set).collect(),
+        })),
+        Question::SingularLocus => Some(Kind::SingularLocus(true)),
+        Question::RealPoints => Some(Kind::RealPoints(true)),
         Question::Certify => Some(Kind::Certify(true)),
         Question::Multidegree => Some(Kind::Multidegree(true)),
         Question::Mobility { points, depth } => Some(Kind::Mobility(v1::MobilityQuestion {

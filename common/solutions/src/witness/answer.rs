@@ -1,5 +1,6 @@
 //! Answer: what was found about components that are known by their witness sets.
 
+use super::decomposition::Decomposition;
 use super::evidence::Trace;
 use super::real_curve::RealCurve;
 use super::witness_set::ComponentId;
@@ -124,6 +125,27 @@ pub struct Mobility {
     pub on: Vec<ComponentId>,
 }
 
+/// A real point of a component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RealPoint {
+    /// Values of the variables; those of variables that conjugation exchanges are conjugates.
+    pub point: Vec<Complex64>,
+    /// Whether the distance to a random point has a regular critical point there; else it is singular, or of a linear
+    /// set that is.
+    pub regular: bool,
+}
+
+/// Real points of one component: at least one on every connected part, where nothing is in doubt.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RealPoints {
+    /// The component.
+    pub id: ComponentId,
+    /// The points; none where it has no real points.
+    pub points: Vec<RealPoint>,
+    /// What is not clear, or not covered.
+    pub doubts: Vec<String>,
+}
+
 /// What was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
@@ -148,6 +170,10 @@ pub enum Answer {
     Mobility(Vec<Mobility>),
     /// Real curves.
     RealCurve(Vec<RealCurve>),
+    /// Components of what was cut out.
+    Components(Box<Decomposition>),
+    /// Real points.
+    RealPoints(Vec<RealPoints>),
 }
 
 impl Answer {
@@ -162,6 +188,8 @@ impl Answer {
             Self::Multidegree { .. } => "multidegree",
             Self::Mobility(_) => "mobility",
             Self::RealCurve(_) => "real-curve",
+            Self::Components(_) => "components",
+            Self::RealPoints(_) => "real-points",
         }
     }
 
@@ -183,6 +211,12 @@ impl Answer {
             Self::Mobility(points) => points.iter().filter_map(mobility_doubt).collect(),
             Self::RealCurve(curves) => {
                 let each = curves.iter();
+                each.flat_map(|c| of_component(c.id, &c.doubts)).collect()
+            }
+            // A decomposition has doubts of its own.
+            Self::Components(_) => Vec::new(),
+            Self::RealPoints(components) => {
+                let each = components.iter();
                 each.flat_map(|c| of_component(c.id, &c.doubts)).collect()
             }
         }

@@ -1,5 +1,6 @@
 //! Question: what is asked about components that are known by their witness sets.
 
+use super::witness_set::WitnessSet;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,17 @@ pub struct SampleWish {
     pub real: bool,
     /// Real points whose variables lie between these, one pair for each variable; empty: anywhere.
     pub within: Vec<[f64; 2]>,
+}
+
+/// With what components are intersected.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SecondSet {
+    /// The components are of so many equations, the first of the system.
+    pub own: u32,
+    /// The second set is of the equations from this place on; 0 where both are of all equations.
+    pub from: u32,
+    /// Its components; none: all solutions of its equations.
+    pub components: Vec<WitnessSet>,
 }
 
 /// A question to all components of a set, or to those that the client chose.
@@ -58,4 +70,10 @@ pub enum Question {
         /// Points of each arc, on either side of its middle.
         samples: u32,
     },
+    /// What each component has in common with other sets.
+    Intersect(SecondSet),
+    /// Where the equations have less than their rank on each component.
+    SingularLocus,
+    /// At least one point on every connected part of the real points of each component.
+    RealPoints,
 }

@@ -26,6 +26,15 @@ pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> S
     rows(system, degrees, (count, seed), whole, |row, _| row + 1)
 }
 
+/// The same where no equation stays as it is: row i is general among all of them also on a set on which some of them
+/// hold.
+///
+/// # Panics
+/// When `degrees` has another length, or a group is homogeneous.
+pub fn combine_all(system: &System, degrees: &Degrees, count: usize, seed: u64) -> System {
+    rows(system, degrees, (count, seed), Vec::new(), |row, _| row + 1)
+}
+
 /// As many rows as cut out sets of one codimension, of few terms: each has one equation of those that are combined, and
 /// random multiples of those only that no row begins with. With `keep` equations that `independent` finds stay as
 /// they are; else those are combined, too, where that leaves over no others.

@@ -40,22 +40,42 @@ pub fn critical(system: &System, form: &IntegerForm) -> System {
     );
     let mut result = system.clone();
     let e = &mut result.expressions;
+    let mut columns = columns_of(e, &system.equations, n);
+    for (v, &c) in form.iter().enumerate() {
+        let node = (c != [0, 0]).then(|| coefficient(e, c));
+        columns[v].push(node);
+    }
+    let determinant = determinant(e, &columns);
+    result.equations.push(determinant);
+    result.equation_names.push("critical points".into());
+    result
+}
+
+/// The Jacobian of these equations in columns, one for each of `n` variables; `None` where an entry is 0.
+pub(super) fn columns_of(
+    e: &mut Expressions,
+    equations: &[NodeId],
+    n: usize,
+) -> Vec<Vec<Option<NodeId>>> {
     let one = e.integer(1);
-    // Minors of the first rows, by sets of columns.
-    let mut minors: Vec<Option<NodeId>> = vec![None; 1 << n];
-    minors[0] = Some(one);
-    let mut columns: Vec<Vec<Option<NodeId>>> = Vec::with_capacity(n);
+    let mut columns = Vec::with_capacity(n);
     for v in 0..n as u32 {
         let mut leaf = |_: &mut Expressions, leaf: &Node| match leaf {
             Node::Variable(own) => (*own == v).then_some(one),
             _ => None,
         };
-        columns.push(directional(e, &system.equations, &mut leaf));
+        columns.push(directional(e, equations, &mut leaf));
     }
-    for (v, &c) in form.iter().enumerate() {
-        let node = (c != [0, 0]).then(|| coefficient(e, c));
-        columns[v].push(node);
-    }
+    columns
+}
+
+/// The determinant of a square matrix in columns, by minors of its first rows.
+pub(super) fn determinant(e: &mut Expressions, columns: &[Vec<Option<NodeId>>]) -> NodeId {
+    let n = columns.len();
+    let one = e.integer(1);
+    // Minors of the first rows, by sets of columns.
+    let mut minors: Vec<Option<NodeId>> = vec![None; 1 << n];
+    minors[0] = Some(one);
     for set in 1usize..1 << n {
         let row = set.count_ones() as usize - 1;
         let mut sum: Option<NodeId> = None;
@@ -80,10 +100,7 @@ pub fn critical(system: &System, form: &IntegerForm) -> System {
         }
         minors[set] = sum;
     }
-    let determinant = minors[(1 << n) - 1].unwrap_or_else(|| e.integer(0));
-    result.equations.push(determinant);
-    result.equation_names.push("critical points".into());
-    result
+    minors[(1 << n) - 1].unwrap_or_else(|| e.integer(0))
 }
 
 /// The system, which has an equation fewer than variables, where the form goes from its first value, at t = 1, to its

@@ -7,6 +7,7 @@ pub mod decompose;
 pub mod explain;
 pub mod fleet;
 pub mod info;
+pub mod intersect;
 pub mod jobs;
 pub mod mechanism;
 pub mod path;

@@ -1,8 +1,8 @@
-//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve` and `certify`: what is asked of components that were found
-//! before. Each is a job, of a coordinator of its own or of a running one.
+//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-points`, `singular-locus` and
+//! `certify`: what is asked of components that were found before. Each is a job, of a coordinator of its own or of a running one.
 
 use crate::commands::solve;
-use crate::connection::Connection;
+use crate::connection::{Connection, Target};
 use crate::error::{ClientError, Exit};
 use crate::output::curve_svg;
 use crate::problem::Prepared;
@@ -12,8 +12,9 @@ use crate::sets::arguments::{
 use crate::sets::{KnownSet, points};
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Asked, Options, SettingsChoice, Source, Submission};
-use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::SampleWish;
+use cognate_solutions::witness::{ComponentId, Question};
+use std::path::Path;
 
 /// On which components points lie.
 pub async fn member(a: &Member) -> Result<Exit, ClientError> {
@@ -84,6 +85,16 @@ pub async fn certify(a: &Plain) -> Result<Exit, ClientError> {
     ask(&a.set, |_| Ok(Question::Certify)).await
 }
 
+/// Where the equations lose rank.
+pub async fn singular_locus(a: &Plain) -> Result<Exit, ClientError> {
+    ask(&a.set, |_| Ok(Question::SingularLocus)).await
+}
+
+/// Real points of components.
+pub async fn real_points(a: &Plain) -> Result<Exit, ClientError> {
+    ask(&a.set, |_| Ok(Question::RealPoints)).await
+}
+
 /// How points can be moved.
 pub async fn mobility(a: &Mobility) -> Result<Exit, ClientError> {
     ask(&a.set, |set| {
@@ -116,21 +127,44 @@ async fn ask(
     question: impl Fn(&KnownSet) -> Result<Question, ClientError>,
 ) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
-    let mut set = match &running {
-        Some(target) if !a.set.exists() => {
-            let mut connection = Connection::open(target).await?;
-            KnownSet::of_job(&mut connection, &a.set.display().to_string()).await?
-        }
-        _ => KnownSet::read(&a.set)?,
-    };
-    set.choose(&a.components)?;
-    set.check()?;
+    let set = read(&a.set, &a.components, running.as_ref()).await?;
     let prepared = prepared(a, &set, question(&set)?)?;
-    let output = a.output();
-    solve::anywhere(&a.service, running.as_ref(), &output, &a.progress, prepared).await
+    send(a, running.as_ref(), prepared).await
 }
 
-fn prepared(a: &SetArguments, set: &KnownSet, question: Question) -> Result<Prepared, ClientError> {
+/// Components, chosen and checked, of files or of a job of the coordinator that was named.
+pub(super) async fn read(
+    path: &Path,
+    chosen: &[ComponentId],
+    running: Option<&Target>,
+) -> Result<KnownSet, ClientError> {
+    let mut set = match running {
+        Some(target) if !path.exists() => {
+            let mut connection = Connection::open(target).await?;
+            KnownSet::of_job(&mut connection, &path.display().to_string()).await?
+        }
+        _ => KnownSet::read(path)?,
+    };
+    set.choose(chosen)?;
+    set.check()?;
+    Ok(set)
+}
+
+/// Has the question answered, and shows the answer.
+pub(super) async fn send(
+    a: &SetArguments,
+    running: Option<&Target>,
+    prepared: Prepared,
+) -> Result<Exit, ClientError> {
+    let output = a.output();
+    solve::anywhere(&a.service, running, &output, &a.progress, prepared).await
+}
+
+pub(super) fn prepared(
+    a: &SetArguments,
+    set: &KnownSet,
+    question: Question,
+) -> Result<Prepared, ClientError> {
     let options = Options {
         seed: Some(set.seed),
         settings: SettingsChoice {

@@ -37,7 +37,7 @@ pub fn headline(summary: &QuestionSummary) -> String {
                 counted(points, "point")
             )
         }
-        ("sample", points, components) => {
+        ("sample" | "real-points", points, components) => {
             format!(
                 "{} of {}",
                 counted(points, "point"),
@@ -152,6 +152,7 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
         ],
         "sample" => &["id", "count", "wanted", "failed"],
         "certify" => &["id", "points", "certified", "distinct"],
+        "real-points" => &["id", "points", "has_real_points", "settled"],
         "real-curve" => &[
             "id",
             "degree",
@@ -211,6 +212,12 @@ fn cell(value: &Value) -> String {
 /// summary.json, and samples.csv with real and imaginary parts.
 fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result<(), ClientError> {
     make_folder(folder)?;
+    if summary.question == "real-points" {
+        let points = summary.points.iter().flatten();
+        let points = points.map(|p| (cell(&p["component"]), &p["point"]));
+        let text = listed(points, summary.problem.variables);
+        write_file(folder, "samples.csv", &text)?;
+    }
     if summary.question == "sample" {
         let mut out = create(folder, "samples.csv")?;
         let counts = summary.components.iter().flatten();
@@ -240,6 +247,19 @@ fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result
         )?;
     }
     write_file(folder, "summary.json", &json::summary(summary_json))
+}
+
+/// Points with their components, one a line.
+fn listed<'a>(points: impl Iterator<Item = (String, &'a Value)>, variables: u64) -> String {
+    let parts = (0..variables).map(|v| format!("re{v},im{v}"));
+    let parts: Vec<String> = parts.collect();
+    let mut text = format!("component,{}\n", parts.join(","));
+    for (id, point) in points {
+        let coordinates = point.as_array().into_iter().flatten();
+        let numbers: Vec<String> = coordinates.map(|z| format!("{},{}", z[0], z[1])).collect();
+        let _ = writeln!(text, "{id},{}", numbers.join(","));
+    }
+    text
 }
 
 /// The points of arcs, one a line.

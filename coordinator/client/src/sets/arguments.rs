@@ -26,7 +26,8 @@ pub struct SetArguments {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
-    /// Also write summary.json here, points as samples.csv, real curves as curve.json and curve.svg
+    /// Also write summary.json here, points as samples.csv, real curves as curve.json and curve.svg, components as a
+    /// SET
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// How progress is shown until the answer is there.
@@ -110,7 +111,26 @@ pub struct Project {
     pub onto: Vec<String>,
 }
 
-/// `cognate multidegree` and `cognate certify`.
+/// `cognate intersect`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate intersect here plane.bertini --output curve      by the equations of a file in the same variables
+  cognate intersect here there --output points             component by component
+  cognate intersect here here --component 2.1 --other 1.2  two components of one decomposition")]
+pub struct Intersect {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Other components, in any of the forms of SET, or a file with equations in the same variables
+    #[arg(value_name = "SET|FILE")]
+    pub second: PathBuf,
+    /// Of other components only these, such as 1.2; may be given several times [default: all]
+    #[arg(long = "other", value_name = "ID", value_parser = id)]
+    pub others: Vec<ComponentId>,
+}
+
+/// `cognate multidegree`, `certify`, `singular-locus` and `real-points`.
 #[derive(Clone, Debug, Args)]
 pub struct Plain {
     /// Components.

@@ -1,0 +1,86 @@
+//! Cutting: the problems in which further equations, or polars, cut a component.
+
+use super::super::{Context, Operand};
+use super::Wanted;
+use crate::decomposition::problem::Problem;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::rational::Rational;
+use cognate_solutions::involution::Involution;
+use cognate_systems::system::System;
+use cognate_systems::transform::{MOST_CRITICAL_VARIABLES, polar};
+use num_complex::Complex64;
+
+/// Numbers of random streams, apart from those of other questions.
+const POLARS: u64 = 1 << 51;
+const PLACE: u64 = 1 << 52;
+
+/// The problem that cuts a component; `None` where the equations that cut have no solutions. An error says why there is
+/// none.
+pub(super) fn problem(
+    with: &Context<'_>,
+    operand: &Operand,
+    wanted: Wanted,
+) -> Result<Option<Problem>, String> {
+    let dimension = operand.dimension();
+    let problem = with.problem;
+    let extended = match wanted {
+        Wanted::Equations { from } => problem.followed_by(with.whole, |i| i >= from as usize),
+        Wanted::Singular => polars(problem, dimension, None)?,
+        Wanted::Critical => {
+            let involution = problem.involution.as_ref();
+            polars(problem, dimension, Some(involution.ok_or(NOT_REAL)?))?
+        }
+        Wanted::Others => unreachable!("pairs are cut by no equations"),
+    };
+    let made = problem.cut_by(dimension, extended);
+    made.map_err(|error| error.to_string())
+}
+
+/// Said where there are no real points.
+pub(super) const NOT_REAL: &str = "complex conjugation does not map solutions to solutions";
+
+/// The equations with so many polars that they have nothing in common but the locus.
+fn polars(
+    problem: &Problem,
+    dimension: usize,
+    involution: Option<&Involution>,
+) -> Result<System, String> {
+    let n = problem.variables();
+    if n > MOST_CRITICAL_VARIABLES {
+        return Err(format!("{n} variables; at most {MOST_CRITICAL_VARIABLES}"));
+    }
+    let mut system = (*problem.given).clone();
+    let towards = involution.map(|involution| (place(problem), partners(involution, n)));
+    let square = problem.given.equation_count() == n - dimension;
+    let free = dimension - usize::from(towards.is_some());
+    // One more than general members of a linear system need, to have nothing in common outside of its base.
+    let count = if square && free == 0 {
+        1
+    } else {
+        dimension + 2
+    };
+    for number in 0..count as u64 {
+        let seed = problem.seed() ^ (number << 32);
+        let rows = problem.combinations(&system, dimension, seed);
+        system.expressions = rows.expressions;
+        let mut random = RandomStream::new(problem.seed(), Purpose::Question, POLARS | number);
+        let towards = towards.as_ref();
+        let towards = towards.map(|(point, partners)| (point.as_slice(), partners.as_slice()));
+        polar(&mut system, &rows.equations, towards, &mut random);
+    }
+    Ok(system)
+}
+
+/// A random real point.
+fn place(problem: &Problem) -> Vec<Rational> {
+    let mut random = RandomStream::new(problem.seed(), Purpose::Question, PLACE);
+    let mut part = || Rational::from((random.below(1999) as i32 - 999, 512u32));
+    (0..problem.variables()).map(|_| part()).collect()
+}
+
+/// With which variable conjugation exchanges each.
+fn partners(involution: &Involution, n: usize) -> Vec<usize> {
+    let places: Vec<Complex64> = (0..n).map(|v| Complex64::new(v as f64, 0.0)).collect();
+    let images = involution.image(&places).into_iter();
+    images.map(|z| z.re as usize).collect()
+}

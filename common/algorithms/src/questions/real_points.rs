@@ -1,0 +1,325 @@
+//! Real points: at least one on every connected part of the real points of each component.
+//!
+//! On each such part a point has the least distance to a random real one. Where the equations have their rank there, the
+//! distance is critical; else the point is on the singular locus (Hauenstein: Numerically computing real points on
+//! algebraic sets, Acta Appl. Math. 125, 2013; after Seidenberg, 1954). Polars cut out both together: their
+//! isolated points are asked whether they are real, and of singular sets of higher dimension those that are linear have
+//! a real point in the middle of a witness point and its conjugate; others are named.
+
+use super::locus::{Locus, Wanted, apart};
+use super::{Context, Operand};
+use crate::decomposition::deflated::doubles;
+use crate::decomposition::job::{Job, StageSystem};
+use cognate_continuation::bend::{doubles_of, exactly};
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::answer::{RealPoint, RealPoints as Found};
+use cognate_solutions::witness::{ComponentId, WitnessSet};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A point is real within this, relative to its size: regular ones, whose digits are known,
+const REAL: f64 = 1e-11;
+/// ... and singular ones.
+const REAL_SINGULAR: f64 = 1e-5;
+/// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most
+/// this factor.
+const CLEAR: f64 = 1e2;
+/// A conjugate of a point of a linear set is on the set within this.
+const BACK: f64 = 1e-8;
+/// Said where a path did not end.
+const NOT_CLEAR: &str = "whether a linear set is its own conjugate is not clear";
+
+/// What is being done with the current component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    Begin,
+    /// Whether the conjugate of a linear component's point is on the component.
+    Mirror,
+    Locus(Box<Locus>),
+    /// The same of linear sets of singular points, the last of them first.
+    Singular {
+        sets: Vec<WitnessSet>,
+        points: Vec<RealPoint>,
+        doubts: Vec<String>,
+    },
+}
+
+/// Component by component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct RealPoints {
+    phase: Phase,
+    found: Vec<Found>,
+}
+
+impl RealPoints {
+    pub fn new() -> Self {
+        Self {
+            phase: Phase::Begin,
+            found: Vec::new(),
+        }
+    }
+
+    pub fn take(&mut self) -> Vec<Found> {
+        std::mem::take(&mut self.found)
+    }
+
+    pub fn description(&self) -> &'static str {
+        match &self.phase {
+            Phase::Locus(locus) => locus.description(),
+            Phase::Begin | Phase::Mirror | Phase::Singular { .. } => "looking for real points",
+        }
+    }
+
+    pub fn system_of(&mut self, with: &mut Context<'_>, wanted: &StageSystem) -> Arc<System> {
+        match &mut self.phase {
+            Phase::Locus(locus) => locus.system_of(with, wanted),
+            Phase::Begin | Phase::Mirror | Phase::Singular { .. } => {
+                with.deflations.of_stage(with.problem, wanted)
+            }
+        }
+    }
+
+    pub fn advance(&mut self, with: &mut Context<'_>, mut done: Option<&Job>) -> Option<Job> {
+        loop {
+            let place = self.found.len();
+            let operand = with.operands.get(place)?;
+            let job = match (&mut self.phase, done.take()) {
+                (Phase::Begin, _) => self.begin(with, operand),
+                (Phase::Mirror, Some(job)) => {
+                    self.mirrored(with, operand, job);
+                    None
+                }
+                (Phase::Mirror, None) => unreachable!("it waits for a stage"),
+                (Phase::Locus(locus), job) => {
+                    let next = locus.advance(with, job);
+                    if next.is_none() {
+                        self.collect(with);
+                    }
+                    next
+                }
+                (Phase::Singular { .. }, job) => self.singular(with, operand, job),
+            };
+            if job.is_some() {
+                return job;
+            }
+        }
+    }
+
+    fn settle(&mut self, id: ComponentId, points: Vec<RealPoint>, doubts: Vec<String>) {
+        self.phase = Phase::Begin;
+        self.found.push(Found { id, points, doubts });
+    }
+
+    fn begin(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let Some(involution) = &with.problem.involution else {
+            let doubt = "complex conjugation does not map solutions to solutions";
+            self.settle(operand.id, Vec::new(), vec![doubt.into()]);
+            return None;
+        };
+        if operand.dimension() > 0 && operand.degree() == 1 {
+            self.phase = Phase::Mirror;
+            let own = with.problem.variables();
+            let image = involution.image(&operand.set.doubles()[0][..own]);
+            let through = vec![operand.slices_through(&image)];
+            return Some(operand.moved_to(with.problem, with.deflations, through));
+        }
+        self.cut(operand)
+    }
+
+    fn cut(&mut self, operand: &Operand) -> Option<Job> {
+        let place = self.found.len();
+        if operand.dimension() > 0 && !operand.set.ranks.is_empty() {
+            let doubt = "it is multiple and not linear: its real points are not searched";
+            self.settle(operand.id, Vec::new(), vec![doubt.into()]);
+            return None;
+        }
+        let locus = Locus::new(Wanted::Critical, place..place + 1);
+        self.phase = Phase::Locus(Box::new(locus));
+        None
+    }
+
+    /// A linear component that is its own conjugate has a point in the middle of one of its points and the conjugate.
+    fn mirrored(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) {
+        match self.real_of_linear(with, operand, job) {
+            Some(Some(point)) => self.settle(operand.id, vec![point], Vec::new()),
+            Some(None) => {
+                self.cut(operand);
+            }
+            None => self.settle(operand.id, Vec::new(), vec![NOT_CLEAR.into()]),
+        }
+    }
+
+    /// A real point of a linear set, from the path to a slice through the conjugate of its witness point: none where
+    /// the set is not its own conjugate; `None` where that is not clear.
+    fn real_of_linear(
+        &self,
+        with: &Context<'_>,
+        operand: &Operand,
+        job: &Job,
+    ) -> Option<Option<RealPoint>> {
+        let own = with.problem.variables();
+        let point = &operand.set.doubles()[0][..own];
+        let image = with.problem.involution.as_ref()?.image(point);
+        let ends = job.ends();
+        let (_, decision, end) = ends.first()?;
+        if decision.verdict != Verdict::Finite {
+            return None;
+        }
+        let back = apart(&image, &end[..own]) <= BACK;
+        let regular = operand.set.ranks.is_empty();
+        Some(back.then(|| self.middle(with, point, regular)))
+    }
+
+    /// Asks linear sets of singular points one after the other.
+    fn singular(
+        &mut self,
+        with: &mut Context<'_>,
+        component: &Operand,
+        job: Option<&Job>,
+    ) -> Option<Job> {
+        let phase = std::mem::replace(&mut self.phase, Phase::Begin);
+        let Phase::Singular {
+            mut sets,
+            mut points,
+            mut doubts,
+        } = phase
+        else {
+            unreachable!("singular sets are asked")
+        };
+        let operand = |with: &mut Context<'_>, set: &WitnessSet| {
+            Operand::new(with.problem, with.deflations, set)
+        };
+        if let Some(job) = job
+            && let Some(set) = sets.pop()
+        {
+            let made = operand(with, &set).ok();
+            match made.and_then(|operand| self.real_of_linear(with, &operand, job)) {
+                Some(Some(point)) => points.push(point),
+                Some(None) => doubts.push(not_searched(&set)),
+                None => doubts.push(NOT_CLEAR.into()),
+            }
+        }
+        while let Some(set) = sets.last() {
+            if set.settled()
+                && set.degree == 1
+                && let Ok(operand) = operand(with, set)
+                && let Some(involution) = &with.problem.involution
+            {
+                let own = with.problem.variables();
+                let image = involution.image(&operand.set.doubles()[0][..own]);
+                let through = vec![operand.slices_through(&image)];
+                self.phase = Phase::Singular {
+                    sets,
+                    points,
+                    doubts,
+                };
+                return Some(operand.moved_to(with.problem, with.deflations, through));
+            }
+            doubts.push(not_searched(set));
+            sets.pop();
+        }
+        points.sort_by(|a, b| {
+            let key = |p: &RealPoint| p.point.iter().map(|z| z.re).collect::<Vec<f64>>();
+            let pairs = key(a).into_iter().zip(key(b));
+            let mut orders = pairs.map(|(a, b)| a.total_cmp(&b));
+            let first = orders.find(|order| order.is_ne());
+            first.unwrap_or(std::cmp::Ordering::Equal)
+        });
+        self.settle(component.id, points, doubts);
+        None
+    }
+
+    /// The middle of a point, in unknowns, and its conjugate.
+    fn middle(&self, with: &Context<'_>, point: &[Complex64], regular: bool) -> RealPoint {
+        let image = match &with.problem.involution {
+            Some(involution) => involution.image(point),
+            None => point.to_vec(),
+        };
+        let pairs = point.iter().zip(&image);
+        let middle: Vec<Complex64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
+        RealPoint {
+            point: with.problem.to_variables(&middle),
+            regular,
+        }
+    }
+
+    /// The real ones among the points of the locus.
+    fn collect(&mut self, with: &mut Context<'_>) {
+        let Phase::Locus(locus) = &mut self.phase else {
+            unreachable!("a locus is there")
+        };
+        let (ends, problem) = locus.take_points(with);
+        let mut doubts = std::mem::take(&mut locus.doubts);
+        let variables = vec![String::new(); with.problem.variables()];
+        let locus = locus.take(&variables);
+        let (lost, unclear) = (ends.failed, ends.unclear);
+        if lost > 0 {
+            doubts.push(format!("{lost} paths to critical points failed"));
+        }
+        if unclear > 0 {
+            doubts.push(format!(
+                "whether {unclear} ends are critical points is not clear"
+            ));
+        }
+        let equations = problem.map(|problem| problem.level_equations(0));
+        let mut points: Vec<RealPoint> = Vec::new();
+        for end in &ends.singular {
+            let start: Vec<_> = end.values.iter().map(|&z| exactly(z)).collect();
+            let refined = equations
+                .as_ref()
+                .and_then(|equations| equations.refine(&start));
+            let refined = refined.filter(|refined| {
+                refined.condition < 1e10 && refined.correction < 1e-20 && refined.moved < 1e-4
+            });
+            let (point, regular, exact) = match refined {
+                Some(refined) => (doubles_of(&refined.point), true, true),
+                // An isolated component, or a singular point that is regular for deflated equations.
+                None => match with.deflations.regular_point(with.problem, 0, end) {
+                    Some(found) => {
+                        let own = with.problem.variables();
+                        (doubles(&found.refined, own), found.is_reduced(), true)
+                    }
+                    None => (end.values.clone(), false, false),
+                },
+            };
+            let Some(involution) = &with.problem.involution else {
+                continue;
+            };
+            let distance = apart(&point, &involution.image(&point));
+            let within = if exact { REAL } else { REAL_SINGULAR };
+            if distance > within * CLEAR {
+                continue;
+            }
+            if distance > within {
+                doubts.push("a point is neither clearly real nor clearly not".into());
+                continue;
+            }
+            let found = self.middle(with, &point, regular);
+            let same = |known: &RealPoint| apart(&known.point, &found.point) < REAL_SINGULAR;
+            if !points.iter().any(same) {
+                points.push(found);
+            }
+        }
+        for dimension in &locus.dimensions {
+            let number = dimension.number;
+            let said = dimension.doubts.iter();
+            doubts
+                .extend(said.map(|doubt| format!("singular points, dimension {number}: {doubt}")));
+        }
+        self.phase = Phase::Singular {
+            sets: locus.components,
+            points,
+            doubts,
+        };
+    }
+}
+
+/// What is said of a set of singular points that is not covered.
+fn not_searched(set: &WitnessSet) -> String {
+    let (dimension, degree) = (set.dimension(), set.degree);
+    format!(
+        "real points of a singular set of dimension {dimension} and degree {degree} are not searched"
+    )
+}

@@ -1,0 +1,82 @@
+//! Product: two systems side by side, in variables of their own.
+
+use crate::expression::{Expressions, Node, NodeId};
+use crate::system::{System, VariableGroup};
+use std::collections::HashMap;
+
+/// The equations of both systems, which have no parameters, as one affine group: first `own` variables of each, then
+/// what more the first has, then what more the second has. Its solutions are pairs of theirs.
+///
+/// # Panics
+/// When one of them has parameters, or fewer variables than `own`.
+pub fn product(first: &System, second: &System, own: usize) -> System {
+    let plain = |s: &System| s.parameters.is_empty() && s.variables.len() >= own;
+    assert!(
+        plain(first) && plain(second),
+        "no parameters, and variables of each"
+    );
+    let more = [first, second].map(|system| system.variables.len() - own);
+    let place = |which: usize, v: usize| match v < own {
+        true => which * own + v,
+        false => 2 * own + which * more[0] + v - own,
+    };
+    let mut result = System {
+        expressions: Expressions::new(),
+        equations: Vec::new(),
+        equation_names: Vec::new(),
+        variables: vec![String::new(); 2 * own + more[0] + more[1]],
+        groups: Vec::new(),
+        conjugates: Vec::new(),
+        symmetry: Vec::new(),
+        degenerate: Default::default(),
+        ..first.clone()
+    };
+    for (which, system) in [first, second].into_iter().enumerate() {
+        let mut memory: HashMap<NodeId, NodeId> = HashMap::new();
+        for (&equation, name) in system.equations.iter().zip(&system.equation_names) {
+            let copy = result.expressions.import(
+                &system.expressions,
+                equation,
+                &mut memory,
+                &mut |e, leaf| match leaf {
+                    Node::Variable(v) => {
+                        let place = place(which, *v as usize);
+                        e.variable(u32::try_from(place).expect("variables are counted in 32 bits"))
+                    }
+                    _ => unreachable!("a system without parameters has no other leaves"),
+                },
+            );
+            result.equations.push(copy);
+            // With a colon in it, it is the name of no variable in a file.
+            let side = which + 1;
+            result.equation_names.push(format!("{side}:{name}"));
+        }
+        for (v, name) in system.variables.iter().enumerate() {
+            result.variables[place(which, v)] = format!("{}:{name}", which + 1);
+        }
+    }
+    result.groups = vec![VariableGroup {
+        variables: (0..result.variables.len()).collect(),
+        homogeneous: false,
+    }];
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variables_of_both_stand_side_by_side() {
+        let read = |text: &[u8]| crate::formats::read("test", text).unwrap().system;
+        let first =
+            read(b"CONFIG\nEND;\nINPUT\nvariable_group x, y, l; function f; f = x*y - l;\nEND;\n");
+        let second = read(
+            b"CONFIG\nEND;\nINPUT\nvariable_group x, y; function f, g; f = x^2; g = y;\nEND;\n",
+        );
+        let both = product(&first, &second, 2);
+        assert_eq!(both.check(), Ok(()));
+        assert_eq!(both.variables, ["1:x", "1:y", "2:x", "2:y", "1:l"]);
+        assert_eq!(both.equation_count(), 3);
+    }
+}
