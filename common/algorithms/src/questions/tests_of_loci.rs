@@ -158,7 +158,9 @@ fn both_ways(first: &str, second: &str, variables: &str, seed: u64) -> [Decompos
 
 #[test]
 fn intersections_by_equations_and_by_pairs() {
-    let cases: [(&str, &str, &str, &[(u32, u64)]); 6] = [
+    /// Two systems, their variables, and the components of the intersection: dimension and degree.
+    type Case<'a> = (&'a str, &'a str, &'a str, &'a [(u32, u64)]);
+    let cases: [Case<'_>; 6] = [
         // Twisted cubics of the types (1, 2) and (2, 1) on a quadric meet in five points (Hartshorne, V.1.9).
         (
             "y - x^2, z - x*y",

@@ -112,7 +112,7 @@ impl Locus {
         for (result, decision, values) in job.ends() {
             match decision.verdict {
                 Verdict::AtInfinity => continue,
-                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::Excess => {
+                Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => {
                     superset.failed += 1;
                     continue;
                 }
