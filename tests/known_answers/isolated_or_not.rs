@@ -252,7 +252,7 @@ fn a_cycle_of_40_sheets_closes() {
          f = 3*x^2*y^9 + y^9 + 5*x^4;
          g = 9*x^3*y^8 + 11*y^10 + 9*x*y^8;",
     );
-    let (_, sets) = solve(&system, &PlanOptions::default(), &|_| None);
+    let (_, sets) = solve(&system, &SolveOptions::default(), &|_| None);
     let set = &sets[0];
     let paths = &set.paths;
     assert_eq!((paths.total, paths.finite, paths.failed), (67, 23, 0));
