@@ -108,6 +108,15 @@ fn client(address: &str, subjects: &[Subject], jobs: Vec<u64>, at_once: u64) -> 
     }
 }
 
+/// The median wait for a small job that is alone.
+fn alone(address: &str, subjects: &[Subject]) -> Duration {
+    let few = (2_000_000..2_000_000 + subjects.len() as u64).collect();
+    let seen = client(address, subjects, few, 1);
+    let mut waits: Vec<Duration> = seen.iter().map(|one| one.wait).collect();
+    waits.sort_unstable();
+    waits.get(waits.len() / 2).copied().unwrap_or_default()
+}
+
 /// The value that so many of a hundred are below; 0 of nothing.
 fn percentile(sorted: &[Duration], percent: usize) -> f64 {
     let at = sorted.len() * percent / 100;
@@ -129,13 +138,7 @@ fn main() -> ExitCode {
         let job = watching.submit(&subject.submission(1_000_000 + number as u64));
         watching.wait_until_solved(&job);
     }
-    let few = (2_000_000..2_000_000 + subjects.len() as u64).collect();
-    let mut alone: Vec<Duration> = client(&cluster.address(), &subjects, few, 1)
-        .iter()
-        .map(|one| one.wait)
-        .collect();
-    alone.sort_unstable();
-    let alone = alone.get(alone.len() / 2).copied().unwrap_or_default();
+    let alone = alone(&cluster.address(), &subjects);
     let large = (wanted.quartics > 0).then(|| {
         let subject = Subject::quartics(wanted.quartics);
         let job = watching.submit(&subject.submission(1));

@@ -112,20 +112,16 @@ impl HomotopyKind {
         }
     }
 
-    /// Values of the system's parameters where paths to the set number `target` end, with 0 for the path variable
-    /// of the system; `None` where paths end at a system without them.
+    /// Values of the system's parameters where paths to end number `target` end, with 0 for the path variable of
+    /// the system: all ends have the one set, where there is one. `None` where paths end at a system without them.
     ///
     /// # Panics
-    /// When there are not so many sets.
+    /// When there are several sets, and not so many.
     pub fn end_parameters(
         &self,
         target: usize,
         path_variable: Option<usize>,
     ) -> Option<Cow<'_, [Complex64]>> {
-        assert!(
-            target < self.parameter_sets(),
-            "the homotopy ends at this set"
-        );
         match self {
             Self::StraightLine { parameters }
             | Self::Generic { parameters }

@@ -158,16 +158,7 @@ fn without_method(m: v1::Options) -> Result<Options, ProtocolError> {
             deflate: m.deflate,
         },
         trace_test: m.trace_test,
-        confidence: match m.confidence {
-            Some(p) if !(p > 0.0 && p < 1.0) => {
-                return Err(ProtocolError::invalid(
-                    "confidence",
-                    p,
-                    "a probability between 0 and 1, both excluded",
-                ));
-            }
-            confidence => confidence,
-        },
+        confidence: confidence(m.confidence)?,
         warnings: m.warnings,
         sets: match m.sets.is_empty() {
             true => None,
@@ -176,6 +167,16 @@ fn without_method(m: v1::Options) -> Result<Options, ProtocolError> {
         decompose,
         question,
     })
+}
+
+fn confidence(confidence: Option<f64>) -> Result<Option<f64>, ProtocolError> {
+    match confidence {
+        Some(p) if !(p > 0.0 && p < 1.0) => {
+            let expected = "a probability between 0 and 1, both excluded";
+            Err(ProtocolError::invalid("confidence", p, expected))
+        }
+        confidence => Ok(confidence),
+    }
 }
 
 fn digits(digits: Option<u32>) -> Result<Option<u32>, ProtocolError> {

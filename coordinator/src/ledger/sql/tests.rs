@@ -106,6 +106,28 @@ async fn coordinators_of_one_database_take_turns() {
     );
 }
 
+/// As after a server that was killed and started again: all connections are dead, and nobody's call fails.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn dead_connections_cost_nobody_a_call() {
+    use sqlx::{Connection, PgConnection};
+    let Some(server) = postgres() else { return };
+    let url = database(&server).await;
+    let ledger = SqlLedger::postgres(&url, None).await.unwrap();
+    let mut other = PgConnection::connect(&url).await.expect("the database");
+    for round in 0..3 {
+        let end = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity
+                   WHERE datname = current_database() AND pid <> pg_backend_pid()";
+        let ended = sqlx::raw_sql(end).fetch_all(&mut other).await.unwrap();
+        assert!(ended.len() >= 2, "one that writes, and those that read");
+        let id = format!("r{round}");
+        let job = ledger.submit(request(&id), new_job("t", 1)).await;
+        assert!(job.expect("it is written").is_new);
+        let jobs = ledger.jobs(10).await.expect("they are read");
+        assert_eq!(jobs.len(), round + 1);
+    }
+    ledger.close().await;
+}
+
 async fn reopen(path: &Path) -> Result<SqlLedger, LedgerError> {
     SqlLedger::sqlite(path, Arc::new(SystemClock::default())).await
 }
