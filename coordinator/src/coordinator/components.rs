@@ -30,11 +30,14 @@ impl Coordinator {
             CoordinatorError::Problem(format!("the system of job {job} cannot be read: {error}"))
         };
         let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
-        let AnySolve::Decomposition(solve) = algorithm.solve() else {
-            return Err(unreadable("it was planned as another job".into()));
+        let (system, seed) = match algorithm.solve() {
+            AnySolve::Decomposition(solve) => (solve.system(), solve.seed()),
+            // What intersections and singular loci are.
+            AnySolve::Question(solve) => (solve.system(), solve.seed()),
+            _ => return Err(unreadable("it was planned as another job".into())),
         };
-        let system = solve.system().map_err(|e| unreadable(e.to_string()))?;
+        let system = system.map_err(|e| unreadable(e.to_string()))?;
         let text = formats::json::write(&system).map_err(|e| unreadable(e.to_string()))?;
-        Ok((text, solve.seed()))
+        Ok((text, seed))
     }
 }

@@ -23,7 +23,7 @@ mod tests_of_loci;
 use crate::answer::AnsweredQuestion;
 use crate::decomposition::deflated::Deflations;
 use crate::decomposition::job::{Job, StageSystem};
-use crate::decomposition::problem::Problem;
+use crate::decomposition::problem::{Problem, with_values};
 use crate::decomposition::{DecompositionOptions, ProblemError};
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
@@ -284,6 +284,17 @@ impl QuestionSolve {
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.state.options.max_retries = max_retries;
         Self::try_from(self.state.clone()).unwrap_or(self)
+    }
+
+    /// The system at the values of its parameters.
+    pub fn system(&self) -> Result<System, ProblemError> {
+        let values = &self.state.options.parameters;
+        with_values(&self.state.system, values).map(std::borrow::Cow::into_owned)
+    }
+
+    /// Seed of everything random.
+    pub fn seed(&self) -> u64 {
+        self.state.options.seed
     }
 
     /// What was found, when `next` has said `Done`.

@@ -4,7 +4,7 @@ use super::critical::{MOST_CRITICAL_VARIABLES, columns_of, determinant};
 use crate::expression::NodeId;
 use crate::system::System;
 use cognate_numeric::random::RandomStream;
-use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::rational::ComplexRational;
 
 /// Random integers are at most this.
 const MOST: i64 = 99;
@@ -13,8 +13,8 @@ const MOST: i64 = 99;
 /// `towards` where it is given, has dependent rows, and on a random hypersurface of such determinants elsewhere: the
 /// rows that are missing to a square are random integers. `combinations` are equations in the same expressions.
 ///
-/// With `towards`, values of the variables and for each variable the one that conjugation exchanges it with, the row is
-/// half the gradient of the sum of (x_v - q_v)(x_w - q_w) over all v with partner w: the square of the distance to q
+/// With `towards`, values of the variables at a real point and for each variable the one that conjugation exchanges it
+/// with, the row is half the gradient of the sum of (x_v - q_v)(x_w - q_w) over all v with partner w: the square of the distance to q
 /// (Hauenstein: Numerically computing real points on algebraic sets, Acta Appl. Math. 125, 2013).
 ///
 /// # Panics
@@ -22,7 +22,7 @@ const MOST: i64 = 99;
 pub fn polar(
     system: &mut System,
     combinations: &[NodeId],
-    towards: Option<(&[Rational], &[usize])>,
+    towards: Option<(&[ComplexRational], &[usize])>,
     random: &mut RandomStream,
 ) {
     let n = system.variables.len();
@@ -36,7 +36,7 @@ pub fn polar(
     if let Some((point, partners)) = towards {
         for (column, &partner) in columns.iter_mut().zip(partners) {
             let x = e.variable(u32::try_from(partner).expect("variables are counted in 32 bits"));
-            let q = e.constant(ComplexRational::real(point[partner].clone()));
+            let q = e.constant(point[partner].clone());
             column.push(Some(e.subtract(x, q)));
         }
     }
@@ -67,7 +67,7 @@ mod tests {
         let own = system.equations.clone();
         let mut random = RandomStream::new(1, Purpose::Test, 0);
         polar(&mut system, &own, None, &mut random);
-        let point: Vec<Rational> = (1..=3).map(|k| Rational::from((k, 7))).collect();
+        let point: Vec<ComplexRational> = (1..=3).map(|k| ComplexRational::real((k, 7))).collect();
         polar(&mut system, &own, Some((&point, &[0, 1, 2])), &mut random);
         assert_eq!(system.check(), Ok(()));
         assert_eq!(degrees(&system).unwrap().total, [3, 2, 3]);

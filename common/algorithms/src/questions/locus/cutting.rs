@@ -4,11 +4,12 @@ use super::super::{Context, Operand};
 use super::Wanted;
 use crate::decomposition::problem::Problem;
 use cognate_numeric::random::{Purpose, RandomStream};
-use cognate_numeric::rational::Rational;
+use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_solutions::involution::Involution;
 use cognate_systems::system::System;
 use cognate_systems::transform::{MOST_CRITICAL_VARIABLES, polar};
 use num_complex::Complex64;
+use std::cmp::Ordering;
 
 /// Numbers of random streams, apart from those of other questions.
 const POLARS: u64 = 1 << 51;
@@ -50,7 +51,10 @@ fn polars(
         return Err(format!("{n} variables; at most {MOST_CRITICAL_VARIABLES}"));
     }
     let mut system = (*problem.given).clone();
-    let towards = involution.map(|involution| (place(problem), partners(involution, n)));
+    let towards = involution.map(|involution| {
+        let partners = partners(involution, n);
+        (place(problem, &partners), partners)
+    });
     let square = problem.given.equation_count() == n - dimension;
     let free = dimension - usize::from(towards.is_some());
     // One more than general members of a linear system need, to have nothing in common outside of its base.
@@ -71,11 +75,20 @@ fn polars(
     Ok(system)
 }
 
-/// A random real point.
-fn place(problem: &Problem) -> Vec<Rational> {
+/// A random real point: values of variables that conjugation exchanges are conjugates.
+fn place(problem: &Problem, partners: &[usize]) -> Vec<ComplexRational> {
     let mut random = RandomStream::new(problem.seed(), Purpose::Question, PLACE);
     let mut part = || Rational::from((random.below(1999) as i32 - 999, 512u32));
-    (0..problem.variables()).map(|_| part()).collect()
+    let mut point: Vec<ComplexRational> = Vec::with_capacity(partners.len());
+    for (v, &partner) in partners.iter().enumerate() {
+        let (re, im) = (part(), part());
+        point.push(match partner.cmp(&v) {
+            Ordering::Less => point[partner].conjugate(),
+            Ordering::Equal => ComplexRational::real(re),
+            Ordering::Greater => ComplexRational::new(re, im),
+        });
+    }
+    point
 }
 
 /// With which variable conjugation exchanges each.
