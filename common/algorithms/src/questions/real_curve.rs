@@ -188,7 +188,7 @@ impl RealCurves {
         let degree = critical_degree(with, &self.now.form);
         match degree {
             0 => self.no_critical_points(with),
-            1 => self.to_critical_points(with),
+            1 => self.track_critical_points(with),
             degree => {
                 self.phase = Phase::MoveSlice;
                 Some(self.level(with, Some(degree - 1)))
@@ -228,10 +228,10 @@ impl RealCurves {
                 _ => return self.doubt("a point was lost on the way to another slice"),
             }
         }
-        self.to_critical_points(with)
+        self.track_critical_points(with)
     }
 
-    fn to_critical_points(&mut self, with: &mut Context<'_>) -> Option<Job> {
+    fn track_critical_points(&mut self, with: &mut Context<'_>) -> Option<Job> {
         self.phase = Phase::CriticalPoints;
         Some(self.level(with, None))
     }
