@@ -156,34 +156,33 @@ fn both_ways(first: &str, second: &str, variables: &str, seed: u64) -> [Decompos
     })
 }
 
+/// Equations of both sides, and dimension and degree of what they have in common.
+type Case<'a> = (&'a str, &'a str, &'a [(u32, u64)]);
+
 #[test]
 fn intersections_by_equations_and_by_pairs() {
-    /// Two systems, their variables, and the components of the intersection: dimension and degree.
-    type Case<'a> = (&'a str, &'a str, &'a str, &'a [(u32, u64)]);
-    let cases: [Case<'_>; 6] = [
+    let cases: [Case; 6] = [
         // Twisted cubics of the types (1, 2) and (2, 1) on a quadric meet in five points (Hartshorne, V.1.9).
         (
             "y - x^2, z - x*y",
             "x*(y^2 + 3*y + 1) - 2*y^2 + y - 5, z - x*y",
-            "x, y, z",
             &[(0, 1); 5],
         ),
         // ... of one type in four.
         (
             "y - x^2, z - x*y",
             "y*(x^2 + x - 3) - 4*x^2 + 1, z - x*y",
-            "x, y, z",
             &[(0, 1); 4],
         ),
-        ("x^2 + y^2 + z^2 - 1", "x + 2*y - z", "x, y, z", &[(1, 2)]),
+        ("x^2 + y^2 + z^2 - 1", "x + 2*y - z", &[(1, 2)]),
         // A tangent plane: two lines.
-        ("x^2 + y^2 + z^2 - 1", "z - 1", "x, y, z", &[(1, 1), (1, 1)]),
+        ("x^2 + y^2 + z^2 - 1", "z - 1", &[(1, 1), (1, 1)]),
         // A line that lies in the surface stays whole.
-        ("x, y - 1", "x*z + y^2 - 1", "x, y, z", &[(1, 1)]),
-        ("x^2 + y^2 - 1, z", "x^2 + y^2 - 1, z - 1", "x, y, z", &[]),
+        ("x, y - 1", "x*z + y^2 - 1", &[(1, 1)]),
+        ("x^2 + y^2 - 1, z", "x^2 + y^2 - 1, z - 1", &[]),
     ];
-    for (number, (first, second, variables, expected)) in cases.into_iter().enumerate() {
-        for (way, found) in both_ways(first, second, variables, 3 + number as u64)
+    for (number, (first, second, expected)) in cases.into_iter().enumerate() {
+        for (way, found) in both_ways(first, second, "x, y, z", 3 + number as u64)
             .into_iter()
             .enumerate()
         {
