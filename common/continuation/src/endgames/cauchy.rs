@@ -305,24 +305,7 @@ impl Cauchy {
         let size = norm(point);
         let closed = (1e-9f64).max(100.0 * self.noise);
         if distance(point, &self.start) > closed * size || !self.returns(form, size) {
-            // A solution as near to infinity as t^(1/c) is here belongs to c sheets, which close: what
-            // looks like divergence is believed where more sheets than are tried meet.
-            let most = settings.max_winding_number;
-            let believed = BELIEVED.min(most);
-            let patience = (FIRST_TURNS << (self.unclosed / 2).min(16)).min(believed);
-            let diverges = self.turns >= patience && self.powers_here();
-            if self.turns >= patience && !diverges && !self.many_sheets() {
-                self.powers.clear();
-                return self.not_closed(settings);
-            }
-            if self.turns >= most || diverges && self.turns >= believed {
-                return self.does_not_close(settings);
-            }
-            self.add(point, form, &homogenizing);
-            return Next::Vertex {
-                radius: self.radius,
-                vertex: 1,
-            };
+            return self.after_open_turn(point, form, &homogenizing, settings);
         }
         let infinity = self.at_infinity(size, settings);
         match infinity {
@@ -392,6 +375,34 @@ impl Cauchy {
         }
         self.previous = Some((self.turns, mean));
         self.inward(SHRINKAGE, settings)
+    }
+
+    /// A turn is made that has not brought the path back to where its turns began: another one here, or further in.
+    fn after_open_turn(
+        &mut self,
+        point: &[Complex64],
+        form: Complex64,
+        homogenizing: &[Homogenizing],
+        settings: &Settings,
+    ) -> Next {
+        // A solution as near to infinity as t^(1/c) is here belongs to c sheets, which close: what
+        // looks like divergence is believed where more sheets than are tried meet.
+        let most = settings.max_winding_number;
+        let believed = BELIEVED.min(most);
+        let patience = (FIRST_TURNS << (self.unclosed / 2).min(16)).min(believed);
+        let diverges = self.turns >= patience && self.powers_here();
+        if self.turns >= patience && !diverges && !self.many_sheets() {
+            self.powers.clear();
+            return self.not_closed(settings);
+        }
+        if self.turns >= most || diverges && self.turns >= believed {
+            return self.does_not_close(settings);
+        }
+        self.add(point, form, homogenizing);
+        Next::Vertex {
+            radius: self.radius,
+            vertex: 1,
+        }
     }
 
     /// The largest power sum at t = 0 as a part of what it could be (for two sheets the square of
@@ -651,8 +662,8 @@ mod tests {
         }
     }
 
-    /// So many sheets that no turn closes: x_1 = t^(1/50) (1 + 0.03 t^(1/50)) goes to 0, the same
-    /// with a limit does not.
+    /// Of 50 sheets x_1 = t^(1/50) (1 + 0.03 t^(1/50)) goes to 0, which its valuation says before the path has closed;
+    /// with a limit the path closes.
     #[test]
     fn a_path_that_does_not_close_diverges_by_its_valuation_only() {
         let one = Complex64::new(1.0, 0.0);
@@ -661,13 +672,19 @@ mod tests {
             infinity_turns: Vec::new(),
             power_sum: None,
         };
-        for (limit, expected) in [(0.0, diverging), (1.0, Next::Unsettled)] {
+        let end = |limit: f64| {
             let x = |s: Complex64| s * (one + s * 0.03) + limit;
             let path = |s: Complex64| vec![one + s, x(s)];
             // t d/dt = (s/50) d/ds.
             let valuation = |s: Complex64| vec![s / 50.0 * (one + s * 0.06) / x(s)];
-            assert_eq!(drive(50, 1e-3, &path, &valuation).0, expected);
-        }
+            drive(50, 1e-3, &path, &valuation).0
+        };
+        assert_eq!(end(0.0), diverging);
+        let Next::Settled(settled) = end(1.0) else {
+            panic!("{:?}", end(1.0))
+        };
+        assert_eq!(settled.winding_number, 50);
+        assert!((settled.endpoint[1] - one).norm_sqr() < 1e-20);
     }
 
     /// Seven solutions of which a homogenising coordinate is the root of 1e-9, as cyclic-7 has them: until t
