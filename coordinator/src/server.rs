@@ -365,17 +365,17 @@ async fn listen(
         .http2_keepalive_timeout(Some(keep_alive))
         .tcp_keepalive(Some(keep_alive));
     let served = match listener {
-        Listener::Tcp(listener) => {
+        Listener::Tcp(listener, callers) => {
             let mut server = server.layer(Guard(security.tokens)).layer(admission);
-            let incoming = transport::tcp_connections(listener, connections);
+            let incoming = transport::tcp_connections(listener, callers, connections);
             server
                 .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await
         }
-        Listener::Tls(listener) => {
+        Listener::Tls(listener, callers) => {
             let tls = security.tls.map(|tls| tls.config()).unwrap_or_default();
-            let incoming = transport::tcp_connections(listener, connections);
+            let incoming = transport::tcp_connections(listener, callers, connections);
             match server.tls_config(tls) {
                 Ok(server) => {
                     let mut server = server.layer(Guard(security.tokens)).layer(admission);

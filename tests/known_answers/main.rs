@@ -22,4 +22,5 @@ mod scaled_units;
 mod singular_endpoints;
 mod start_costs;
 mod straight_line_programs;
+mod textbook_systems;
 mod twenty_variables;

@@ -98,7 +98,7 @@ fn a_solution_that_turns_take_for_infinite_is_not_lost_in_silence() {
          f = x^2*y^6 - 4000000000003/1500000*x*y^3 + 16/3; \
          g = y^3 - 8*y^2 + 2500000021*y - 5000000018;",
     );
-    for (seed, is_sure) in [(496_851_144, true), (2, true), (1, false), (4, false)] {
+    for (seed, is_sure) in [(496_851_144, true), (2, false), (1, false), (4, false)] {
         let of = options(seed, SolveMethod::LINEAR_PRODUCT);
         let (_, sets) = solve(&system, &of, &|_| None);
         let set = &sets[0];

@@ -1,9 +1,13 @@
 //! What each start would cost: published numbers, found without being told the groups.
 
+use crate::check::solve;
 use cognate_algorithms::start_costs::{StartCosts, StartKind};
+use cognate_algorithms::{SolveMethod, SolveOptions, plan};
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::completeness::Completeness;
 use cognate_systems::named::{cyclic, eco, katsura, noon};
 use cognate_systems::system::{System, VariableGroup};
-use cognate_tests::systems::{shared, six_revolute_axis_vectors};
+use cognate_tests::systems::{shared, six_revolute_axis_vectors, written};
 
 /// All variables in one affine group, as in a file that names no groups.
 fn without_groups(mut system: System) -> System {
@@ -102,4 +106,71 @@ fn mixed_volumes_are_the_published_ones() {
             costs.notes
         );
     }
+}
+
+/// Ten quadrics with one leading form in ten unknowns: their differences are linear, so that two of the 1024
+/// paths that degrees, groups and mixed cells say end at solutions.
+fn quadrics_with_one_leading_form() -> String {
+    let mut random = RandomStream::new(5, Purpose::Test, 0);
+    let mut number = || random.below(19) as i64 - 9;
+    let names: Vec<String> = (1..=10).map(|k| format!("x{k}")).collect();
+    let mut leading = String::from("0");
+    for (i, x) in names.iter().enumerate() {
+        for y in &names[i..] {
+            leading += &format!(" + ({})*{x}*{y}", number());
+        }
+    }
+    let mut text = format!("variable_group {}; function ", names.join(", "));
+    text += &(1..=10)
+        .map(|k| format!("f{k}"))
+        .collect::<Vec<_>>()
+        .join(", ");
+    text += ";";
+    for k in 1..=10 {
+        let linear = names.iter().map(|x| format!(" + ({})*{x}", number()));
+        let linear: String = linear.collect();
+        text += &format!(" f{k} = {leading}{linear} + {};", number() + 20);
+    }
+    text
+}
+
+#[test]
+fn where_most_paths_are_wasted_equations_are_taken_one_by_one() {
+    let system = written(&quadrics_with_one_leading_form());
+    let options = SolveOptions::default();
+    let chosen = plan(&system, &options).unwrap();
+    assert_eq!(chosen.start, StartKind::Regeneration, "{}", chosen.why);
+    assert!(
+        chosen
+            .why
+            .contains("of the 1024 paths by the total-degree start"),
+        "{}",
+        chosen.why
+    );
+    let (_, sets) = solve(&system, &options, &|_| None);
+    let counts = &sets[0].counts;
+    assert_eq!((counts.distinct, counts.complete), (2, Completeness::Yes));
+    assert!(sets[0].settled());
+    let all = plan(&katsura(10).system, &options).unwrap();
+    assert_ne!(all.start, StartKind::Regeneration);
+}
+
+/// The first equation is a square: all solutions are double, and lost where regeneration begins with it. An answer that
+/// may miss solutions is settled only where that start was asked for.
+#[test]
+fn what_a_chosen_regeneration_leaves_behind_is_not_settled() {
+    let text = quadrics_with_one_leading_form();
+    let (before, after) = text.split_once("f1 = ").unwrap();
+    let (_, after) = after.split_once(';').unwrap();
+    let system = written(&format!("{before}f1 = (x1 + 2*x2 - 3*x5 + 1)^2;{after}"));
+    let mut options = SolveOptions::default();
+    assert_eq!(
+        plan(&system, &options).unwrap().start,
+        StartKind::Regeneration
+    );
+    let (_, sets) = solve(&system, &options, &|_| None);
+    assert!(!sets[0].settled() && sets[0].paths.failed == 2);
+    options.method = SolveMethod::Regeneration;
+    let (_, sets) = solve(&system, &options, &|_| None);
+    assert!(sets[0].settled() && sets[0].counts.complete == Completeness::NotKnown);
 }

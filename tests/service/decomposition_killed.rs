@@ -1,10 +1,16 @@
 //! A worker and a coordinator are killed in the middle of a decomposition: the same components, byte for byte.
 
+use crate::questions_killed::{SET, check, components, listed, submission};
 use crate::worker_lost::{nervous, slow_worker};
+use cognate_protocol::submission::{Decompose, Options};
 use cognate_protocol::v1;
+use cognate_solutions::witness::KnownComponents;
 use cognate_tests::client::{Submission, accepted, has_ended};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions};
 use serde_json::Value;
+
+/// Components of the system.
+const EXPECTED: [(u64, u64); 6] = [(2, 2), (1, 3), (1, 1), (1, 1), (1, 1), (0, 1)];
 
 /// A quadric surface, a cubic curve, three lines and a point: 236 paths in three dimensions.
 fn problem() -> Submission {
@@ -23,13 +29,8 @@ fn files(cluster: &Cluster, job: &str) -> [String; 2] {
     let shown = cluster.command(&["results", job, "--format", "json", "--output", &output]);
     assert_eq!(shown.status.code(), Some(0), "{shown:?}");
     let summary: Value = serde_json::from_slice(&shown.stdout).expect("one JSON object");
-    let list = summary["decomposition"]["components"].as_array();
-    let of = |c: &Value| (c["dimension"].as_u64(), c["degree"].as_u64());
-    let components: Vec<_> = list.expect("a list").iter().map(of).collect();
-    let expected = [(2, 2), (1, 3), (1, 1), (1, 1), (1, 1), (0, 1)];
-    assert_eq!(components, expected.map(|(n, d)| (Some(n), Some(d))));
-    ["decomposition.json", "witness_points.jsonl"]
-        .map(|name| std::fs::read_to_string(folder.join(name)).expect("the file is there"))
+    assert_eq!(listed(&summary), EXPECTED);
+    SET.map(|name| std::fs::read_to_string(folder.join(name)).expect("the file is there"))
 }
 
 #[test]
@@ -68,4 +69,31 @@ fn kills_leave_no_trace_in_a_decomposition() {
     );
     cluster.workers.remove(0);
     cluster.stop();
+}
+
+/// The components of the first equation, which two others cut.
+#[test]
+fn kills_leave_no_trace_where_equations_are_added() {
+    let sphere = "s = x^2 + y^2 + z^2 - 1;";
+    let first = "f = (y - x^2)*s*(x - 1/2);";
+    let others = "g = (z - x^3)*s*(y - 1/2); h = (y - x^2)*(z - x^3)*s*(z - 1/2);";
+    let text = |names: &str, equations: &str| {
+        format!(
+            "CONFIG\nEND;\nINPUT\nvariable_group x, y, z; function {names}; {sphere} {equations}\nEND;\n"
+        )
+    };
+    let known = KnownComponents {
+        equations: 1,
+        components: components(&text("f", first)),
+    };
+    let options = Options {
+        decompose: Some(Decompose {
+            known: Some(known),
+            ..Decompose::default()
+        }),
+        ..Options::default()
+    };
+    let extended = submission(text("f, g, h", &format!("{first} {others}")), options);
+    let summary = check(&extended, [10, 40], &SET);
+    assert_eq!(listed(&summary), EXPECTED);
 }

@@ -26,6 +26,8 @@ pub struct CoordinatorOptions {
     pub least_free_mib: Option<u64>,
     /// Planning counts mixed cells in so many operations at most.
     pub counting_operations: Option<u64>,
+    /// So long objects stay in the trash, and so long it is between two looks at everything.
+    pub garbage: Option<Duration>,
 }
 
 impl CoordinatorOptions {
@@ -41,6 +43,11 @@ impl CoordinatorOptions {
         }
         if let Some(operations) = self.counting_operations {
             text += &format!("counting_operations = {operations}\n");
+        }
+        if let Some(time) = self.garbage {
+            let hours = time.as_secs_f64() / 3600.0;
+            text += &format!("garbage_grace_hours = {hours:?}\n");
+            text += &format!("garbage_interval_hours = {hours:?}\n");
         }
         if let Some(paths) = self.chunk_paths {
             // As much work as nobody has, but no more paths than these.

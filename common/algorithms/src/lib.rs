@@ -50,6 +50,7 @@ pub mod questions;
 pub mod regeneration_solve;
 pub mod retried_stage;
 pub mod run_locally;
+mod sampled_ends;
 mod set_structures;
 pub mod solve;
 pub mod solve_options;
@@ -71,5 +72,7 @@ pub use solve_options::{
     ClosingOptions, KnownSolutions, MonodromyOptions, SolveMethod, SolveOptions, TrackingOptions,
 };
 
+#[cfg(test)]
+mod restarts;
 #[cfg(test)]
 mod synthetic;

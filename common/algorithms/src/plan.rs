@@ -15,6 +15,7 @@ use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::{PlanError, checked_volume};
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::regeneration_solve::{Levels, RegenerationSolve};
+use crate::sampled_ends::SampledEnds;
 use crate::set_structures::set_names;
 pub use crate::solve_options::{
     ClosingOptions, KnownSolutions, MonodromyOptions, SolveMethod, SolveOptions, TrackingOptions,
@@ -173,7 +174,7 @@ fn plan_start_system(
         return plan_polyhedral(system, parameters, "asked for".to_string(), options);
     }
     if *method == SolveMethod::Regeneration {
-        return plan_regeneration(system, parameters, options);
+        return plan_regeneration(system, parameters, None, options);
     }
     let mut starts = Starts::of(system, options.seed)?;
     let named = |error: PlanError, starts: &Starts| match error {
@@ -247,8 +248,17 @@ fn plan_start_system(
             (tracked, start)
         }
     };
-    let homotopy = HomotopyKind::StraightLine { parameters };
-    Ok(finish(tracked, homotopy, start_points, kind, why, options))
+    let homotopy = HomotopyKind::StraightLine {
+        parameters: parameters.clone(),
+    };
+    let first = first_stage(homotopy, start_points, options);
+    if *method == SolveMethod::Auto
+        && let Some(wasted) = SampledEnds::of_wasted(&tracked, &first, &options.tracking.tolerances)
+    {
+        let why = format!("{wasted} by the {kind} start");
+        return plan_regeneration(system, parameters, Some(why), options);
+    }
+    Ok(finish(tracked, first, kind, why, options))
 }
 
 /// From the mixed cells of a system with as many equations as unknowns.
@@ -296,10 +306,11 @@ fn plan_polyhedral(
     })
 }
 
-/// Equation by equation, the lower degrees first.
+/// Equation by equation, the lower degrees first. `chosen`: why, where it was not asked for.
 fn plan_regeneration(
     system: &System,
     parameters: Vec<Complex64>,
+    chosen: Option<String>,
     options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
     let starts = Starts::of(system, options.seed)?;
@@ -314,6 +325,7 @@ fn plan_regeneration(
         parameters,
         settings: options.tracking.settings.clone(),
         seed: options.seed,
+        asked_for: chosen.is_none(),
     };
     let point =
         slices::common_point(options.seed, tracked.variables.len()).ok_or(PlanError::NoPaths)?;
@@ -329,8 +341,9 @@ fn plan_regeneration(
         start: StartKind::Regeneration,
         paths: Some(paths),
         why: format!(
-            "asked for; equation by equation, at most {bound} paths on a level; solutions that \
-             are singular, or become so on the way, may be missed"
+            "{}; equation by equation, at most {bound} paths on a level; solutions that \
+             are singular, or become so on the way, may be missed",
+            chosen.as_deref().unwrap_or("asked for")
         ),
     })
 }
@@ -384,10 +397,10 @@ fn plan_given(
         count: start.count,
     };
     let why = "start solutions are given".to_string();
+    let first = first_stage(homotopy, start_points, options);
     Ok(finish(
         system.clone(),
-        homotopy,
-        start_points,
+        first,
         StartKind::Given,
         why,
         options,
@@ -500,16 +513,8 @@ fn plan_coefficient_loops(
     })
 }
 
-fn finish(
-    system: System,
-    homotopy: HomotopyKind,
-    start_points: StartPoints,
-    start: StartKind,
-    why: String,
-    options: &SolveOptions,
-) -> Plan {
-    let several = matches!(homotopy, HomotopyKind::Parameter { .. });
-    let first = Stage {
+fn first_stage(homotopy: HomotopyKind, start_points: StartPoints, options: &SolveOptions) -> Stage {
+    Stage {
         id: StageId(0),
         system: None,
         work: Work::Track,
@@ -518,7 +523,17 @@ fn finish(
         settings: options.tracking.settings.clone(),
         seed: options.seed,
         attempt: 0,
-    };
+    }
+}
+
+fn finish(
+    system: System,
+    first: Stage,
+    start: StartKind,
+    why: String,
+    options: &SolveOptions,
+) -> Plan {
+    let several = matches!(first.homotopy, HomotopyKind::Parameter { .. });
     let paths = first.items();
     assert!(paths.is_some(), "the number of paths is under the limit");
     let tolerances = options.tracking.tolerances.clone();

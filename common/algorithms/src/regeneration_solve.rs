@@ -40,6 +40,8 @@ pub struct Levels {
     pub settings: Settings,
     /// Seed of the slices and of everything else.
     pub seed: u64,
+    /// Whether this method was asked for: where it was not, an answer that may miss solutions is not settled.
+    pub asked_for: bool,
 }
 
 /// Equation by equation.
@@ -124,9 +126,12 @@ impl RegenerationSolve {
             } else if slid || decision.verdict == Verdict::Failed {
                 // From one generic slice to another all solutions are regular.
                 self.lost.push(result.clone());
-            } else if decision.verdict != Verdict::AtInfinity {
+            } else if decision.verdict != Verdict::AtInfinity && !self.reached_the_system() {
                 // The ends of the last level are all in the answer.
-                self.left_behind += u64::from(!self.reached_the_system());
+                self.left_behind += 1;
+                if !self.levels.asked_for {
+                    self.lost.push(result.clone());
+                }
             }
         }
         let number = self.levels.order.len() as u32;

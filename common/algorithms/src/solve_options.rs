@@ -46,7 +46,8 @@ impl Default for SolveOptions {
 /// finds isolated solutions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum SolveMethod {
-    /// The start system with the fewest paths.
+    /// The start system with the fewest paths; equation by equation where it has very many, and most of a sample
+    /// are wasted.
     #[default]
     Auto,
     /// All affine groups as one.

@@ -110,7 +110,16 @@ pub struct MovedSlice {
     pub reached: f64,
 }
 
+/// Slices farther away than this leave a residual in proportion to their distance.
+const FAR_SLICE: f64 = 0.01;
+
 impl MovedSlice {
+    /// The residual of a slice that is far away as it would be nearer: what Newton's method leaves there on a set is a
+    /// part of the distance.
+    pub fn near_residual(&self) -> f64 {
+        self.residual / (self.distance / FAR_SLICE).max(1.0)
+    }
+
     /// False where a number is none or negative.
     pub fn is_sound(&self) -> bool {
         [self.distance, self.residual, self.reached]

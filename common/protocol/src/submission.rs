@@ -3,7 +3,7 @@
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::{Preset, Settings};
 use cognate_solutions::closing_options::ClosingOptions;
-use cognate_solutions::witness::{Method, Question, WitnessSet};
+use cognate_solutions::witness::{KnownComponents, Method, Question, WitnessSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -84,7 +84,7 @@ pub struct Asked {
 }
 
 /// Which components a client asks for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decompose {
     /// Lowest and highest dimension; `None`: all.
     pub dimensions: Option<[u32; 2]>,
@@ -94,6 +94,8 @@ pub struct Decompose {
     pub method: Option<Method>,
     /// Whether a second way is compared with the first.
     pub verify: bool,
+    /// All components of the first equations, where they are known.
+    pub known: Option<KnownComponents>,
 }
 
 /// The start system that a client asks for.

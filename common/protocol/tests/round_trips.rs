@@ -12,7 +12,7 @@ use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use cognate_solutions::witness::question::SecondSet;
 use cognate_solutions::witness::witness_set::Multiplicity;
 use cognate_solutions::witness::{
-    ComponentId, Evidence, Irreducible, Method, Question, WitnessSet,
+    ComponentId, Evidence, Irreducible, KnownComponents, Method, Question, WitnessSet,
 };
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -49,7 +49,12 @@ proptest! {
         let dimensions = (seed % 2 == 0).then_some([(seed % 5) as u32, 5 + (seed % 7) as u32]);
         let idle_loops = (seed % 3 == 0).then_some(1 + (seed % 200) as u32);
         let method = Method::ALL.get((seed % 5) as usize).copied();
-        let decompose = Some(Decompose { dimensions, idle_loops, method, verify: seed % 3 == 1 });
+        let known = (seed % 4 == 1).then_some(KnownComponents {
+            equations: 1 + (seed % 9) as u32,
+            components: vec![component(1, 2), component(0, 1)],
+        });
+        let verify = seed % 3 == 1;
+        let decompose = Some(Decompose { dimensions, idle_loops, method, verify, known });
         for options in [Options { decompose, ..options.clone() }, options] {
             let submission = Submission { source: source.clone(), options };
             let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
@@ -156,32 +161,33 @@ fn signs_of_zero_and_kinds_of_nan_are_kept_or_made_one() {
     assert_eq!(with(f64::NAN), with(f64::from_bits(0x7ff8_0000_dead_beef)));
 }
 
+/// A component of so many points of two coordinates.
+fn component(dimension: u32, points: usize) -> WitnessSet {
+    let number = |k: usize| Complex64::new(k as f64, 0.5);
+    WitnessSet {
+        id: ComponentId {
+            dimension,
+            number: 2,
+        },
+        degree: points as u64,
+        multiplicity: Multiplicity {
+            scheme: None,
+            tracked: 1,
+            dual_dimensions: Vec::new(),
+        },
+        irreducible: Irreducible::Yes,
+        deflation: vec![1, 3],
+        self_conjugate: None,
+        slice: vec![vec![number(7); 3]; dimension as usize],
+        points: (0..points)
+            .map(|k| vec![number(k), number(k + 1)])
+            .collect(),
+        evidence: Evidence::default(),
+    }
+}
+
 #[test]
 fn questions_about_loci_come_back() {
-    let id = |dimension: u32| ComponentId {
-        dimension,
-        number: 2,
-    };
-    let set = |dimension: u32, points: usize| {
-        let number = |k: usize| Complex64::new(k as f64, 0.5);
-        WitnessSet {
-            id: id(dimension),
-            degree: points as u64,
-            multiplicity: Multiplicity {
-                scheme: None,
-                tracked: 1,
-                dual_dimensions: Vec::new(),
-            },
-            irreducible: Irreducible::Yes,
-            deflation: vec![1, 3],
-            self_conjugate: None,
-            slice: vec![vec![number(7); 3]; dimension as usize],
-            points: (0..points)
-                .map(|k| vec![number(k), number(k + 1)])
-                .collect(),
-            evidence: Evidence::default(),
-        }
-    };
     let second = |components| SecondSet {
         own: 3,
         from: 2,
@@ -191,10 +197,10 @@ fn questions_about_loci_come_back() {
         Question::SingularLocus,
         Question::RealPoints,
         Question::Intersect(second(Vec::new())),
-        Question::Intersect(second(vec![set(1, 4), set(0, 1)])),
+        Question::Intersect(second(vec![component(1, 4), component(0, 1)])),
     ] {
         let asked = Asked {
-            components: vec![set(1, 2)],
+            components: vec![component(1, 2)],
             question,
         };
         let options = Options {

@@ -52,7 +52,7 @@ pub struct Tolerances {
     /// larger or smaller than the border between values and noise.
     pub rank_margin: f64,
     /// A moved slice meets a solution where the equations, scaled to 1, are at most this in
-    /// double-doubles. Near a point of multiplicity m they are up to the distance to the power m; near a
+    /// double-doubles (see [`MovedSlice::near_residual`]). Near a point of multiplicity m they are up to the distance to the power m; near a
     /// set of multiplicity 3 and more Newton's method in doubles comes to about 1e-22.
     pub slice_residual: f64,
     /// Above this residual nothing was found on a slice at all.
@@ -269,7 +269,7 @@ fn multiplicity(found: &LocalDimension, tolerances: &Tolerances) -> Option<u32> 
 
 /// Whether solutions were met on all slices that pass the endpoint at small distances.
 fn is_met(found: &LocalDimension, tolerances: &Tolerances) -> bool {
-    let met = |slice: &MovedSlice| slice.residual <= tolerances.slice_residual;
+    let met = |slice: &MovedSlice| slice.near_residual() <= tolerances.slice_residual;
     let slices = &found.moved_slices;
     let (far, near): (Vec<_>, Vec<_>) = slices.iter().partition(|s| s.distance > FAR_SLICE);
     // Far away Newton's method may find nothing; but a residual that is small there and falls with

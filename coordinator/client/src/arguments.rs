@@ -19,7 +19,7 @@ use cognate_protocol::option_misfit::any_of;
 use cognate_protocol::submission::{PrecisionChoice, StartKind};
 use cognate_solutions::witness::Method;
 use cognate_worker::transport::connect::CredentialFiles;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().effects(Effects::BOLD))
@@ -86,6 +86,10 @@ pub enum Command {
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths
     Coordinator(Coordinator),
+    /// Whether all that a service remembers is there and whole, and what is there that nothing names
+    Fsck(Fsck),
+    /// Copy what a service remembers, also while it runs
+    Backup(Backup),
     /// Run a worker that tracks paths for a coordinator
     Worker(Worker),
     /// Hand a system to a coordinator; prints the job's id
@@ -98,6 +102,8 @@ pub enum Command {
     Explain(OneJob),
     /// Stop a job
     Cancel(OneJob),
+    /// Remove jobs that have ended, with all that only they need
+    Delete(Delete),
     /// All jobs of a coordinator
     Jobs(Listing),
     /// All workers of a coordinator
@@ -355,11 +361,26 @@ Examples:
   cognate decompose twisted_cubic.bertini
   cognate decompose system.bertini --verify
   cognate decompose system.bertini --dimension 1..2 --format json | jq .decomposition.components
-  cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl")]
+  cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl
+  cognate decompose --resume here --add more.bertini --output there")]
 pub struct Decompose {
     /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
-    #[arg(help_heading = "Problem")]
-    pub file: PathBuf,
+    #[arg(help_heading = "Problem", required_unless_present = "resume")]
+    pub file: Option<PathBuf>,
+    /// Components that were found before, of which --add cuts: the folder of --output, or the id of a job of
+    /// --coordinator
+    #[arg(long, value_name = "SET", requires = "add", help_heading = "Problem",
+        conflicts_with_all = ["file", "target_parameters", "groups", "seed", "exact", "precision"])]
+    pub resume: Option<PathBuf>,
+    /// Equations in the same variables: all components of the system of --resume with these
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "resume",
+        conflicts_with = "file",
+        help_heading = "Problem"
+    )]
+    pub add: Option<PathBuf>,
     /// The components of a decomposition that are meant.
     #[command(flatten)]
     pub components: ComponentArguments,
@@ -399,10 +420,10 @@ pub struct Decompose {
 }
 
 impl Decompose {
-    /// What is decomposed, as the options of a solve.
-    pub fn problem(&self) -> ProblemArguments {
+    /// This file with its options, as those of a solve.
+    pub fn problem(&self, file: &Path) -> ProblemArguments {
         ProblemArguments {
-            file: self.file.clone(),
+            file: file.to_path_buf(),
             target_parameters: self.target_parameters.clone(),
             groups: self.groups.clone(),
             seed: self.seed,
@@ -696,6 +717,9 @@ pub struct Coordinator {
     /// A file with the tokens that TCP callers must have: lines of `client TOKEN` or `worker TOKEN`
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
+    /// Delete jobs that ended longer ago than so many days [default: 0, never]
+    #[arg(long, value_name = "N")]
+    pub retain_days: Option<f64>,
 }
 
 /// `cognate worker`.
@@ -821,6 +845,68 @@ pub struct OneJob {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
+}
+
+/// `cognate delete`.
+#[derive(Clone, Debug, Args)]
+pub struct Delete {
+    /// Ids of the jobs
+    #[arg(required = true, value_name = "JOB")]
+    pub jobs: Vec<String>,
+    /// Stop a job that goes on; without, it is refused
+    #[arg(long)]
+    pub cancel_first: bool,
+    /// The coordinator that is asked.
+    #[command(flatten)]
+    pub service: ServiceArguments,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}
+
+/// Where a coordinator on this machine keeps what it remembers.
+#[derive(Clone, Debug, Args)]
+pub struct DataArguments {
+    /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE
+    #[arg(
+        long,
+        value_name = "URL",
+        default_value = "sqlite:cognate-data/ledger.db"
+    )]
+    pub ledger: String,
+    /// Where results are kept
+    #[arg(long, value_name = "DIR", default_value = "cognate-data/results")]
+    pub results: PathBuf,
+}
+
+/// `cognate fsck`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+The coordinator may run or not. Exit code 1: an object that is needed is missing or damaged.")]
+pub struct Fsck {
+    /// Ledger and results.
+    #[command(flatten)]
+    pub data: DataArguments,
+    /// Remove what no row names, if it is not younger than a running coordinator's work
+    #[arg(long)]
+    pub repair: bool,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+}
+
+/// `cognate backup`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+A coordinator goes on from the copy: --ledger sqlite:DIR/ledger.db --results DIR/results.
+Exit code 1: an object that is needed is missing or damaged in the copy.")]
+pub struct Backup {
+    /// A folder that is made for the copy
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Ledger and results.
+    #[command(flatten)]
+    pub data: DataArguments,
 }
 
 /// `cognate results`.

@@ -6,9 +6,14 @@ use cognate_coordinator::chunks::leasing::Policy;
 use cognate_coordinator::chunks::sizing::Sizing;
 use cognate_coordinator::chunks::speculation::Speculation;
 use cognate_coordinator::config::{Config, Rules};
+use cognate_coordinator::results::retention::Retention;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+const HOUR: Duration = Duration::from_secs(3600);
+/// Unit of `retain_days`.
+pub const DAY: Duration = Duration::from_secs(24 * 3600);
 
 /// What a file says; an absent field keeps its default.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -73,6 +78,9 @@ tables! {
         speculation_least_seconds: f64,
         held_paths: u64,
         counting_operations: u64,
+        retain_days: f64,
+        garbage_grace_hours: f64,
+        garbage_interval_hours: f64,
     }
     /// The fields of `Sizing`.
     ChunksTable {
@@ -106,6 +114,27 @@ impl ConfigFile {
             Some(mib) => Some(mib.saturating_mul(1 << 20)),
             None => Config::default().shared_memory,
         }
+    }
+
+    fn retention(&self, default: Retention) -> Result<Retention, String> {
+        let r = &self.rules;
+        let ms = |name, asked: Option<f64>, unit, default| match asked {
+            Some(asked) => age_ms(name, asked, unit),
+            None => Ok(default),
+        };
+        let every = r
+            .garbage_interval_hours
+            .map(|hours| hours * HOUR.as_secs_f64());
+        Ok(Retention {
+            keep_ms: ms("retain_days", r.retain_days, DAY, default.keep_ms)?,
+            grace_ms: ms(
+                "garbage_grace_hours",
+                r.garbage_grace_hours,
+                HOUR,
+                default.grace_ms,
+            )?,
+            every: time("garbage_interval_hours", every, default.every)?,
+        })
     }
 
     /// The deadlines and limits, or which of them makes no sense.
@@ -152,6 +181,7 @@ impl ConfigFile {
                 counting_operations: r.counting_operations.unwrap_or(policy.counting_operations),
                 planning: policy.planning,
                 conduct: policy.conduct,
+                retention: self.retention(policy.retention)?,
                 speculation: Speculation {
                     times: r.speculation_times.unwrap_or(policy.speculation.times),
                     least_ms: in_ms(
@@ -186,6 +216,15 @@ impl ConfigFile {
             streams,
         })
     }
+}
+
+/// A time in these units, which may be 0, in milliseconds.
+pub fn age_ms(name: &str, asked: f64, unit: Duration) -> Result<u64, String> {
+    let time = Duration::try_from_secs_f64(asked * unit.as_secs_f64());
+    let ms = time
+        .ok()
+        .and_then(|time| u64::try_from(time.as_millis()).ok());
+    ms.ok_or_else(|| format!("{name} = {asked}; expected 0 or more"))
 }
 
 /// A time that is long enough to be one.

@@ -258,6 +258,20 @@ impl Connection {
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().state())
     }
 
+    /// Deletes a job; gives what was removed.
+    pub async fn delete(
+        &mut self,
+        job: &str,
+        cancel_first: bool,
+    ) -> Result<v1::DeleteResponse, ClientError> {
+        let request = v1::DeleteRequest {
+            job: job.into(),
+            cancel_first,
+        };
+        let answer = self.client.delete(request).await;
+        Ok(answer.map_err(|e| self.explain(&e))?.into_inner())
+    }
+
     /// The newest jobs.
     pub async fn jobs(&mut self) -> Result<Vec<v1::JobOverview>, ClientError> {
         let answer = self

@@ -184,11 +184,13 @@ pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Pr
             .warnings
             .push("the file asks for digits; witness points have those of doubles".into());
     }
+    let known = options.decompose.take().and_then(|resumed| resumed.known);
     options.decompose = Some(Decompose {
         dimensions: wanted.dimension.map(|d| [d.lowest, d.highest]),
         idle_loops: wanted.loops,
         method: wanted.method.method(),
         verify: wanted.verify,
+        known,
     });
     prepared
 }

@@ -190,3 +190,93 @@ fn parameters_get_their_values() {
         assert_eq!(components(&json(&output)), expected);
     }
 }
+
+/// A decomposition goes on with further equations, as one of all of them; what is none of a system is refused.
+#[test]
+fn equations_are_added_to_a_decomposition() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+        command
+            .args(arguments)
+            .output()
+            .expect("the program starts")
+    };
+    let code = |output: &Output| output.status.code();
+    let said = |output: &Output| String::from_utf8_lossy(&output.stderr).into_owned();
+    let whole = decompose(folder.path(), UNION, &["--output", &place("union")]);
+    assert_eq!(code(&whole), Some(0), "{whole:?}");
+    let added = "CONFIG\nEND;\nINPUT\nvariable_group y, x;\nfunction h;\nh = (x - 3)*(x + 2*y - 1);\nEND;\n";
+    std::fs::write(place("added"), added).expect("the folder is writable");
+    let resumed = [
+        "decompose",
+        "--resume",
+        &place("union"),
+        "--add",
+        &place("added"),
+    ];
+    let to = ["--verify", "--format", "json", "--output", &place("more")];
+    let output = run(&[&resumed[..], &to].concat());
+    assert_eq!(code(&output), Some(0), "{output:?}");
+    let summary = json(&output);
+    // The line stays, and so does the point (3, 5); of the parabola (3, 9) is left, and what is on the line is junk.
+    assert_eq!(components(&summary), [(1, 1), (0, 1), (0, 1)]);
+    assert_eq!(summary["decomposition"]["verification"]["agrees"], true);
+    assert_eq!(summary["problem"]["equations"], 3);
+    // What was made is a set again.
+    let again = run(&[
+        "decompose",
+        "--resume",
+        &place("more"),
+        "--add",
+        &place("added"),
+    ]);
+    assert_eq!(code(&again), Some(0), "{again:?}");
+    // A locus is no decomposition; nor is one of which not all dimensions were asked.
+    let locus = run(&[
+        "singular-locus",
+        &place("more"),
+        "--component",
+        "1.1",
+        "--output",
+        &place("locus"),
+    ]);
+    assert_eq!(code(&locus), Some(0), "{locus:?}");
+    let refused = run(&[
+        "decompose",
+        "--resume",
+        &place("locus"),
+        "--add",
+        &place("added"),
+    ]);
+    assert_eq!(code(&refused), Some(2), "{refused:?}");
+    assert!(said(&refused).contains("locus"), "{refused:?}");
+    let curves = decompose(
+        folder.path(),
+        UNION,
+        &["--dimension", "1", "--output", &place("curves")],
+    );
+    assert_eq!(code(&curves), Some(0), "{curves:?}");
+    let some = [
+        "decompose",
+        "--resume",
+        &place("curves"),
+        "--add",
+        &place("added"),
+    ];
+    let refused = run(&some);
+    assert_eq!(code(&refused), Some(2), "{refused:?}");
+    assert!(said(&refused).contains("1 to 1"), "{refused:?}");
+    let enough = run(&[&some[..], &["--dimension", "1"]].concat());
+    assert_eq!(code(&enough), Some(0), "{enough:?}");
+    for wrong in [
+        &["decompose", "--resume", &place("union")][..],
+        &["decompose", &place("added"), "--add", &place("added")],
+        &[&resumed[..], &["--seed", "3"]].concat(),
+        &[&resumed[..], &["--method", "cascade"]].concat(),
+    ] {
+        let refused = run(wrong);
+        assert_eq!(code(&refused), Some(2), "{wrong:?}: {refused:?}");
+    }
+}

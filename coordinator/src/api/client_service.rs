@@ -386,6 +386,27 @@ impl ClientApi for ClientService {
         }))
     }
 
+    async fn delete(
+        &self,
+        request: Request<v1::DeleteRequest>,
+    ) -> Result<Response<v1::DeleteResponse>, Status> {
+        let m = request.into_inner();
+        let job = job(&m.job)?;
+        let coordinator = self.context.coordinator.clone();
+        // Once begun it is done, also where the client leaves.
+        let removed = guarded(async move { Ok(coordinator.delete(job, m.cancel_first).await?) });
+        let removed = removed.await?;
+        let grace_ms = self.context.coordinator.policy().retention.grace_ms;
+        Ok(Response::new(v1::DeleteResponse {
+            stages: removed.stages,
+            chunks: removed.chunks,
+            objects: removed.results.objects,
+            bytes: removed.results.bytes,
+            deleted_before: removed.before,
+            grace_seconds: grace_ms as f64 / 1000.0,
+        }))
+    }
+
     async fn list_jobs(
         &self,
         request: Request<v1::ListJobsRequest>,

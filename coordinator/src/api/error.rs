@@ -101,10 +101,14 @@ fn code(error: &CoordinatorError) -> Code {
         CoordinatorError::UnknownStage { .. }
         | CoordinatorError::Ledger(LedgerError::UnknownJob(_))
         | CoordinatorError::Store(StoreError::Missing(_)) => Code::NotFound,
-        CoordinatorError::NoResult { .. } | CoordinatorError::OtherAnswer { .. } => {
-            Code::FailedPrecondition
-        }
-        CoordinatorError::Ledger(LedgerError::RequestReused(_)) => Code::AlreadyExists,
+        CoordinatorError::NoResult { .. }
+        | CoordinatorError::OtherAnswer { .. }
+        | CoordinatorError::GoesOn { .. }
+        | CoordinatorError::ForeignResults(_)
+        | CoordinatorError::Store(StoreError::Foreign(_)) => Code::FailedPrecondition,
+        CoordinatorError::Ledger(
+            LedgerError::RequestReused(_) | LedgerError::RequestOfDeleted(_),
+        ) => Code::AlreadyExists,
         CoordinatorError::NotPlanned(_) | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => {
             Code::ResourceExhausted
         }

@@ -6,6 +6,7 @@ use crate::coordinator::conduct::ConductRules;
 use crate::jobs::planning_queue::PlanningLimits;
 use crate::ledger::identity::{RequestId, WorkerId};
 use crate::ledger::rows::LeaseRequest;
+use crate::results::retention::Retention;
 use cognate_algorithms::plan::PLANNING_OPERATIONS;
 
 /// The numbers by which chunks are leased, renewed and taken back.
@@ -45,6 +46,8 @@ pub struct Policy {
     pub sizing: Sizing,
     /// When the last chunks of a stage are given to a second worker.
     pub speculation: Speculation,
+    /// How long what has ended is kept.
+    pub retention: Retention,
 }
 
 impl Default for Policy {
@@ -63,6 +66,7 @@ impl Default for Policy {
             planning: PlanningLimits::default(),
             sizing: Sizing::default(),
             speculation: Speculation::default(),
+            retention: Retention::default(),
         }
     }
 }

@@ -38,6 +38,19 @@ pub enum CoordinatorError {
         /// Why it failed or was cancelled.
         reason: Option<String>,
     },
+    /// The job has not ended, so that it is not deleted.
+    #[error("job {job} is {}: only a job that has ended is deleted (or `--cancel-first`)", state.name())]
+    GoesOn {
+        /// The job.
+        job: JobId,
+        /// State of the job.
+        state: JobState,
+    },
+    /// The folder of the results has some that are not this ledger's: whose it is must be said first.
+    #[error(
+        "there are results of {0} jobs that this ledger does not know: nothing is removed (`cognate fsck` lists them)"
+    )]
+    ForeignResults(u64),
     /// The job has an answer of another kind than the one that was asked for.
     #[error("job {job} is {is}")]
     OtherAnswer {

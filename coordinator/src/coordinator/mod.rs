@@ -8,9 +8,11 @@ mod changes;
 mod components;
 pub mod conduct;
 mod error;
+pub mod inspection;
 mod large_answer;
 mod mixed_cells;
 mod recorded;
+pub mod removal;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;
@@ -23,6 +25,8 @@ mod tests_of_counting;
 mod tests_of_decomposition;
 #[cfg(test)]
 mod tests_of_limits;
+#[cfg(test)]
+mod tests_of_removal;
 mod work;
 
 pub use answers::{ClassifiedPath, Explanation};
@@ -49,7 +53,7 @@ use cognate_numeric::NUMERICS_REVISION;
 use cognate_protocol::submission::{Options, StartSolutions};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex};
 use tokio::sync::Notify;
 
@@ -110,6 +114,8 @@ pub struct Coordinator {
     solutions: Recent<Digest, Vec<SolutionSet>>,
     /// Of stages that count mixed cells: those of each finished chunk, by its first item.
     cells: Recent<(JobId, StageId), HashMap<u64, u64>>,
+    /// Jobs that have ended, whose late results were looked for.
+    tidied: Mutex<HashSet<JobId>>,
 }
 
 impl Coordinator {
@@ -139,6 +145,7 @@ impl Coordinator {
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),
             cells: Recent::new(KEPT),
+            tidied: Mutex::default(),
         })
     }
 

@@ -44,6 +44,7 @@ impl Coordinator {
     pub async fn run(self: Arc<Self>, stop: CancellationToken) {
         let tasks = TaskTracker::new();
         tasks.spawn(Arc::clone(&self).run_examination(stop.clone()));
+        tasks.spawn(Arc::clone(&self).run_removal(stop.clone()));
         let expiry = tasks.track_future(Arc::clone(&self).run_expiry(stop.clone()));
         let stewards = Arc::clone(&self).run_stewards(stop.clone(), tasks.clone());
         tokio::join!(expiry, stewards);
@@ -111,7 +112,7 @@ impl Coordinator {
 
     /// Whether the ledger's clock has gone further since it was `seen` than time has, by more than this:
     /// somebody has set a database server's clock.
-    async fn clock_has_jumped(
+    pub(super) async fn clock_has_jumped(
         &self,
         seen: &mut Option<(Instant, LedgerTime)>,
         allowed: Duration,

@@ -305,7 +305,8 @@ impl Cluster {
         );
     }
 
-    async fn act(&mut self) {
+    /// One thing that chance chooses.
+    pub async fn act(&mut self) {
         let process = self.dice.roll(self.processes.len() as u64) as usize;
         let worker = self.dice.roll(self.workers.len() as u64) as usize;
         let cut_off = self.silent.is_some_and(|silent| silent == worker);

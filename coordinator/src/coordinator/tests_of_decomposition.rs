@@ -8,7 +8,7 @@ use cognate_solutions::witness::Question;
 use cognate_summary::AnySummary;
 
 /// A double line, a parabola, and a circle.
-fn problem() -> NewProblem {
+pub(super) fn problem() -> NewProblem {
     let text = "variable_group x, y; function f; f = (x - y)^2*(y - x^2 + 2)*(x^2 + y^2 - 3);";
     let mut problem = problem_of(text, None);
     problem.options.decompose = Some(Decompose::default());

@@ -84,7 +84,7 @@ async fn run(problem: &NewProblem, seed: u64, held_paths: u64, faults: bool) -> 
 }
 
 /// From four solutions of a family to four members; at one of them they are double.
-fn family(max_steps: Option<u32>) -> NewProblem {
+pub(super) fn family(max_steps: Option<u32>) -> NewProblem {
     let text = "variable_group x, y; parameter p, q; function f, g; f = x^2 - p; g = y^2 - q*x^2;";
     let real = |values: &[f64]| -> Vec<Complex64> {
         values.iter().map(|&re| Complex64::new(re, 0.0)).collect()

@@ -196,7 +196,7 @@ pub fn plan_job(
     start_solutions: Option<&[u8]>,
     counting_operations: u64,
 ) -> Result<Plan, PlanningError> {
-    let decompose = options.decompose;
+    let decompose = options.decompose.clone();
     let asked = options.question.clone();
     let options = SolveOptions {
         counting_operations,
@@ -273,6 +273,7 @@ fn plan_decomposition(
         method: wanted.method,
         verify: wanted.verify,
         certify: options.closings.certify,
+        known: wanted.known,
         ..tracking_of_components(options)?
     };
     let solve = DecompositionSolve::new(system, &options)?;

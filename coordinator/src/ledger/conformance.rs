@@ -67,6 +67,8 @@ macro_rules! ledger_conformance {
             case!(lost_results_are_done_again);
             case!(a_lease_stands_with_who_has_it);
             case!(jobs_that_only_wait_want_no_look);
+            case!(a_job_that_has_ended_is_deleted_once);
+            case!(what_is_deleted_stays_deleted);
 
             #[test]
             fn it_agrees_with_the_oracle() {
@@ -84,8 +86,10 @@ macro_rules! ledger_conformance {
 }
 pub(crate) use ledger_conformance;
 
+mod removal;
 mod speculation;
 mod suspicion;
+pub use self::removal::*;
 pub use self::speculation::*;
 pub use self::suspicion::*;
 

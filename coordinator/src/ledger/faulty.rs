@@ -103,6 +103,15 @@ impl Ledger for FaultyLedger {
     async fn cancel(&self, job: JobId, reason: &str) -> Result<Cancelled, LedgerError> {
         self.write(self.inner.cancel(job, reason)).await
     }
+    async fn delete(&self, job: JobId) -> Result<Deleted, LedgerError> {
+        self.write(self.inner.delete(job)).await
+    }
+    async fn is_deleted(&self, job: JobId) -> Result<bool, LedgerError> {
+        self.inner.is_deleted(job).await
+    }
+    async fn identity(&self) -> Result<Option<String>, LedgerError> {
+        self.inner.identity().await
+    }
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
         self.inner.job(job).await
     }

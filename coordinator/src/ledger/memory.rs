@@ -56,6 +56,9 @@ impl Ledger for MemoryLedger {
             }
             return Ok(Submitted { job, is_new: false });
         }
+        if tables.deleted.contains(&job) {
+            return Err(LedgerError::RequestOfDeleted(id));
+        }
         // Nobody saves up virtual time while he has no jobs.
         let active = |tables: &Tables| -> Vec<(Tenant, i64)> {
             let unfinished = tables.jobs.values().filter(|j| !j.row.state.has_ended());
@@ -79,7 +82,8 @@ impl Ledger for MemoryLedger {
         });
         let waiting = same_tenant.map(|j| j.virtual_time).max();
         let virtual_time = first_virtual_time(least, waiting);
-        let number = tables.jobs.len() as u64 + 1;
+        let latest = tables.jobs.values().map(|job| job.row.number).max();
+        let number = latest.unwrap_or(0) + 1;
         let row = JobRow {
             job,
             number,
@@ -120,6 +124,34 @@ impl Ledger for MemoryLedger {
         row.ended = Some(now);
         tables.release_all(job);
         Ok(Cancelled::Now)
+    }
+
+    async fn delete(&self, job: JobId) -> Result<Deleted, LedgerError> {
+        let mut tables = self.tables();
+        let Some(found) = tables.jobs.get(&job) else {
+            return match tables.deleted.contains(&job) {
+                true => Ok(Deleted::Before),
+                false => Err(LedgerError::UnknownJob(job)),
+            };
+        };
+        if !found.row.state.has_ended() {
+            return Ok(Deleted::GoesOn(found.row.state));
+        }
+        let stages = found.stages.len() as u64;
+        let chunks = found.stages.values().map(|s| s.chunks.len() as u64).sum();
+        tables.jobs.remove(&job);
+        tables.requests.retain(|_, made| *made != job);
+        tables.elders.retain(|chunk, _| chunk.job != job);
+        tables.deleted.insert(job);
+        Ok(Deleted::Now { stages, chunks })
+    }
+
+    async fn is_deleted(&self, job: JobId) -> Result<bool, LedgerError> {
+        Ok(self.tables().deleted.contains(&job))
+    }
+
+    async fn identity(&self) -> Result<Option<String>, LedgerError> {
+        Ok(None)
     }
 
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {

@@ -36,6 +36,9 @@ pub enum LedgerError {
     /// One request id was used for two different jobs.
     #[error("request id `{0}` was used before, for another problem or other options")]
     RequestReused(RequestId),
+    /// One request id was used for a job that was deleted since.
+    #[error("request id `{0}` was used before, for a job that is deleted")]
+    RequestOfDeleted(RequestId),
     /// The pieces of a split do not make up a chunk that is ready.
     #[error("the pieces do not make up a chunk of job {0} that is ready")]
     NotAPartition(JobId),
@@ -84,6 +87,12 @@ pub trait Ledger: Send + Sync {
     async fn submit(&self, id: RequestId, job: NewJob) -> Result<Submitted, LedgerError>;
     /// Ends a job that has not ended yet; returns its leased chunks to ready.
     async fn cancel(&self, job: JobId, reason: &str) -> Result<Cancelled, LedgerError>;
+    /// Deletes a job that has ended: its rows go, and its id is never used again.
+    async fn delete(&self, job: JobId) -> Result<Deleted, LedgerError>;
+    /// Whether there was a job of this id that is deleted.
+    async fn is_deleted(&self, job: JobId) -> Result<bool, LedgerError>;
+    /// Name of this ledger, made with it; `None` where the ledger ends with its process.
+    async fn identity(&self) -> Result<Option<String>, LedgerError>;
     /// One job.
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError>;
     /// Jobs in the order of their submission, the latest `limit` of them.

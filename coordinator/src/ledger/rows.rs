@@ -86,6 +86,22 @@ pub enum Cancelled {
     HadEnded(JobState),
 }
 
+/// What a deletion did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Deleted {
+    /// The job had ended, and its rows are gone now.
+    Now {
+        /// Number of stages that it had.
+        stages: u64,
+        /// Number of chunks that it had.
+        chunks: u64,
+    },
+    /// It was deleted before.
+    Before,
+    /// It has not ended, and nothing was changed.
+    GoesOn(JobState),
+}
+
 /// A job's row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JobRow {

@@ -28,6 +28,10 @@ enum Call {
     Cancel {
         job: usize,
     },
+    Delete {
+        job: usize,
+        again: u8,
+    },
     Steward {
         job: usize,
         who: u8,
@@ -99,6 +103,7 @@ fn call() -> impl Strategy<Value = Call> {
         1 => (job.clone(), 0..4u8).prop_filter_map("rarely", |(job, dice)| {
             (dice == 0).then_some(Call::Cancel { job })
         }),
+        1 => (job.clone(), 0..4u8).prop_map(|(job, again)| Call::Delete { job, again }),
         4 => (job.clone(), 0..6u8, 500..4000u64).prop_map(|(job, who, duration_ms)| {
             Call::Steward { job, who: who / 5, duration_ms }
         }),
@@ -209,6 +214,20 @@ impl Pair<'_> {
         accepted
     }
 
+    /// Deletes a job, if it has ended, or one that may have been deleted before.
+    async fn delete(&self, index: usize, again: u8, accepted: &mut BTreeSet<(StageOf, u64)>) {
+        let job = match self.job(index).await {
+            Some(row) => row.job,
+            None => JobId::of_request(&request(&format!("r{again}"))),
+        };
+        if let Some(Deleted::Now { .. }) = both!(self, delete(job)) {
+            accepted.retain(|((of, _), _)| *of != job);
+        }
+        both!(self, is_deleted(job));
+        both!(self, job(job));
+        both!(self, stages(job));
+    }
+
     async fn job(&self, index: usize) -> Option<JobRow> {
         let jobs = both!(self, jobs(10)).unwrap_or_default();
         jobs.get(index).cloned()
@@ -311,6 +330,7 @@ impl Pair<'_> {
                     both!(self, cancel(row.job, "test"));
                 }
             }
+            Call::Delete { job, again } => self.delete(job, again, accepted).await,
             Call::Steward {
                 job,
                 who,

@@ -15,7 +15,7 @@ const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL04");
 const LARGE: RecordKind = RecordKind(b"CGNLRG03");
 
 /// Decompositions as objects.
-const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC04");
+const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC05");
 
 /// Answers of components as objects.
 const ANSWER: RecordKind = RecordKind(b"CGNANS01");

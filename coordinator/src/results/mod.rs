@@ -2,4 +2,7 @@
 
 pub mod answer;
 pub mod finished;
+pub mod references;
+pub mod retention;
 pub mod store;
+pub mod trash;

@@ -5,6 +5,7 @@
 //! and ledger row finds its object again. Every object is checked when it is
 //! read: a damaged one is reported, never believed.
 
+use super::trash::{JOBS, OBJECTS};
 use crate::ledger::identity::{ItemRange, LeaseId, digest_of};
 use crate::ledger::rows::{Outcomes, ResultObject};
 use bytes::Bytes;
@@ -48,6 +49,9 @@ pub enum StoreError {
         "the folder `{0}` of the results is not there (it has no file `{MARKER}`): is it mounted?"
     )]
     Away(String),
+    /// The folder holds results of another ledger.
+    #[error("{0}: nothing is removed from it")]
+    Foreign(String),
     /// The storage failed.
     #[error("the result store failed: {0}")]
     Storage(#[from] object_store::Error),
@@ -73,6 +77,9 @@ impl StoreError {
     }
 }
 
+/// Kind and length that every record begins with.
+const RECORD_HEAD: usize = 16;
+
 /// Magic and version of a chunk's results; then the length of the records, then the records'
 /// hash, then the records, compressed.
 const MAGIC: &[u8; 8] = b"CGNCHK01";
@@ -95,12 +102,15 @@ pub const MARKER: &str = "cognate-results";
 const MARKED: &str = "Results of cognate. This file stays as long as they do: a coordinator takes a \
                       folder without it for one that is not mounted.\n";
 
+/// The marker's line that says whose results these are.
+const OWNER: &str = "ledger ";
+
 /// The objects of all jobs.
 #[derive(Clone, Debug)]
 pub struct Store {
-    objects: Arc<dyn ObjectStore>,
+    pub(super) objects: Arc<dyn ObjectStore>,
     /// The folder with the marker; `None` in memory.
-    folder: Option<PathBuf>,
+    pub(super) folder: Option<PathBuf>,
 }
 
 impl Store {
@@ -143,6 +153,45 @@ impl Store {
         }
     }
 
+    /// Whether nobody has said yet whose results these are; an error where they are not those of the ledger of
+    /// this name. What lives in memory is its process's.
+    pub fn belongs_to(&self, ledger: Option<&str>) -> Result<bool, StoreError> {
+        let Some(folder) = &self.folder else {
+            return Ok(false);
+        };
+        let foreign = |why: &str| StoreError::Foreign(format!("{} {why}", folder.display()));
+        let Some(ledger) = ledger else {
+            return Err(foreign("outlives this ledger, which ends with its process"));
+        };
+        self.is_there()?;
+        let failed = |error| StoreError::Folder {
+            folder: folder.display().to_string(),
+            error,
+        };
+        let text = std::fs::read_to_string(folder.join(MARKER)).map_err(failed)?;
+        match text.lines().find_map(|line| line.strip_prefix(OWNER)) {
+            None => Ok(true),
+            Some(owner) if owner == ledger => Ok(false),
+            Some(owner) => Err(foreign(&format!(
+                "holds the results of the ledger {owner}, and this one is {ledger}"
+            ))),
+        }
+    }
+
+    /// Says whose results these are, for good.
+    pub fn give_to(&self, ledger: &str) -> Result<(), StoreError> {
+        let Some(folder) = &self.folder else {
+            return Ok(());
+        };
+        let fresh = folder.join(format!("{MARKER}.{}", uuid::Uuid::new_v4().simple()));
+        let written = std::fs::write(&fresh, format!("{MARKED}{OWNER}{ledger}\n"));
+        let named = written.and_then(|()| std::fs::rename(&fresh, folder.join(MARKER)));
+        named.map_err(|error| StoreError::Folder {
+            folder: folder.display().to_string(),
+            error,
+        })
+    }
+
     /// Objects that live as long as this process.
     pub fn in_memory() -> Self {
         Self {
@@ -168,7 +217,7 @@ impl Store {
             Ok(found) => Ok(found.bytes().await?),
             Err(object_store::Error::NotFound { .. }) => {
                 self.is_there()?;
-                Err(StoreError::Missing(address.to_string()))
+                self.read_trashed(address).await
             }
             Err(error) => Err(error.into()),
         }
@@ -252,8 +301,7 @@ impl Store {
         {
             Ok(head) => Ok(head[..] == kind.0[..]),
             Err(object_store::Error::NotFound { .. }) => {
-                self.is_there()?;
-                Err(StoreError::Missing(address.to_string()))
+                Ok(self.read(&address).await?.starts_with(kind.0))
             }
             Err(error) => Err(error.into()),
         }
@@ -268,16 +316,9 @@ impl Store {
         let bytes = self.get(digest).await?;
         let address = object_address(digest);
         off_thread(true, move || {
-            let (head, compressed) = bytes
-                .split_at_checked(16)
-                .filter(|(head, _)| head.starts_with(kind.0))
+            let length = record_length(kind, &bytes)
                 .ok_or_else(|| damaged(&address, "it is of another kind or version"))?;
-            let word = head[8..16].first_chunk::<8>();
-            let length = word
-                .map(|word| u64::from_le_bytes(*word))
-                .and_then(|length| usize::try_from(length).ok())
-                .ok_or_else(|| damaged(&address, "it claims to be absurdly long"))?;
-            let plain = decompress(&address, compressed, length)?;
+            let plain = decompress(&address, &bytes[RECORD_HEAD..], length)?;
             postcard::from_bytes(&plain).map_err(|error| damaged(&address, error))
         })
         .await
@@ -373,6 +414,13 @@ async fn off_thread<T: Send + 'static>(long: bool, work: impl FnOnce() -> T + Se
     }
 }
 
+/// The length before compression that a record of this kind says it has; `None` where the bytes are none.
+fn record_length(kind: &RecordKind, bytes: &[u8]) -> Option<usize> {
+    let word = bytes.get(8..RECORD_HEAD)?.first_chunk::<8>()?;
+    let length = usize::try_from(u64::from_le_bytes(*word)).ok()?;
+    bytes.starts_with(kind.0).then_some(length)
+}
+
 fn damaged(address: &Address, what: impl std::fmt::Display) -> StoreError {
     StoreError::Damaged {
         address: address.to_string(),
@@ -381,9 +429,9 @@ fn damaged(address: &Address, what: impl std::fmt::Display) -> StoreError {
 }
 
 /// Objects by digest are spread over 256 folders, which file systems like better than one.
-fn object_address(digest: Digest) -> Address {
+pub(super) fn object_address(digest: Digest) -> Address {
     let name = digest.to_string();
-    Address::from(format!("objects/{}/{name}", &name[..2]))
+    Address::from(format!("{OBJECTS}/{}/{name}", &name[..2]))
 }
 
 fn results_address(lease: LeaseId, items: ItemRange) -> Address {
@@ -391,7 +439,7 @@ fn results_address(lease: LeaseId, items: ItemRange) -> Address {
     let (job, stage) = (lease.chunk.job, lease.chunk.stage.0);
     let epoch = lease.epoch.0;
     // One folder a job: making folders takes longer than writing small results.
-    Address::from(format!("jobs/{job}/{stage}.{first}-{last}.{epoch}"))
+    Address::from(format!("{JOBS}/{job}/{stage}.{first}-{last}.{epoch}"))
 }
 
 /// The hash of the results' records and the object that holds them.

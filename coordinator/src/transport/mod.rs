@@ -3,6 +3,7 @@
 //! One gRPC service behind all of them.
 
 pub mod introduction;
+pub mod same_user;
 pub mod shared_memory;
 pub mod tcp;
 pub mod unix;
@@ -12,6 +13,7 @@ use crate::api::security::Security;
 use crate::config::ListenAddress;
 use futures::Stream;
 use std::io;
+use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream, UnixStream};
 
@@ -56,13 +58,42 @@ pub enum ListenError {
     },
 }
 
+/// Whose connections are taken before anything else is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Callers {
+    /// Anybody's: callers show who they are, or nobody is asked.
+    All,
+    /// Those of this process's user, on this machine.
+    SameUser,
+}
+
+impl Callers {
+    /// Whether a connection is taken. One whose user cannot be found out is not.
+    async fn takes(self, stream: &TcpStream, peer: SocketAddr) -> bool {
+        if self == Self::All {
+            return true;
+        }
+        let Ok(own) = stream.local_addr() else {
+            return false;
+        };
+        let looked = tokio::task::spawn_blocking(move || same_user::user_of(peer, own)).await;
+        let user = looked.ok().flatten();
+        let takes = user == Some(rustix::process::geteuid().as_raw());
+        if !takes {
+            tracing::warn!(%peer, ?user, "a connection of another user is refused: \
+                give them tokens with --token-file, or say --insecure to ask nobody who they are");
+        }
+        takes
+    }
+}
+
 /// A listener that is open: the socket is bound, and connections queue up.
 #[derive(Debug)]
 pub enum Listener {
     /// TCP.
-    Tcp(TcpListener),
+    Tcp(TcpListener, Callers),
     /// TCP and TLS.
-    Tls(TcpListener),
+    Tls(TcpListener, Callers),
     /// A Unix socket, which is removed when the listener closes.
     Unix(unix::Socket),
 }
@@ -76,11 +107,16 @@ impl Listener {
         insecure: bool,
     ) -> Result<Self, ListenError> {
         let open_to_all = insecure || security.knows_callers();
+        let callers = match open_to_all {
+            true => Callers::All,
+            false => Callers::SameUser,
+        };
         match address {
             ListenAddress::Tcp(authority) | ListenAddress::Tls(authority)
                 if security.tls.is_some() =>
             {
-                tcp::bind(authority, open_to_all).await.map(Self::Tls)
+                let listener = tcp::bind(authority, open_to_all).await?;
+                Ok(Self::Tls(listener, callers))
             }
             ListenAddress::Tls(_) => Err(ListenError::NoCertificate {
                 address: address.clone(),
@@ -91,7 +127,7 @@ impl Listener {
                 if beyond && security.tokens.is_some() {
                     tracing::warn!(%address, "tokens travel in the clear: give it --tls-certificate");
                 }
-                Ok(Self::Tcp(listener))
+                Ok(Self::Tcp(listener, callers))
             }
             ListenAddress::Unix(path) => unix::Socket::bind(path).await.map(Self::Unix),
         }
@@ -104,8 +140,8 @@ impl Listener {
             address.map_or_else(|e| e.to_string(), |address| address.to_string())
         };
         match self {
-            Self::Tcp(listener) => ListenAddress::Tcp(bound(listener)),
-            Self::Tls(listener) => ListenAddress::Tls(bound(listener)),
+            Self::Tcp(listener, _) => ListenAddress::Tcp(bound(listener)),
+            Self::Tls(listener, _) => ListenAddress::Tls(bound(listener)),
             Self::Unix(socket) => ListenAddress::Unix(socket.path().to_owned()),
         }
     }
@@ -114,16 +150,20 @@ impl Listener {
 /// Connections over TCP, without end.
 pub fn tcp_connections(
     listener: TcpListener,
+    callers: Callers,
     connections: Connections,
 ) -> impl Stream<Item = io::Result<Introduced<TcpStream>>> {
     futures::stream::unfold(
         (listener, connections),
-        |(listener, connections)| async move {
+        move |(listener, connections)| async move {
             loop {
                 let place = connections.place().await;
                 let accepted = match listener.accept().await {
                     // Small messages go out at once.
-                    Ok((stream, _)) => stream.set_nodelay(true).map(|()| stream),
+                    Ok((stream, peer)) if callers.takes(&stream, peer).await => {
+                        stream.set_nodelay(true).map(|()| stream)
+                    }
+                    Ok(_) => continue,
                     Err(error) => Err(error),
                 };
                 match accepted {

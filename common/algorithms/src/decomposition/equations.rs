@@ -12,6 +12,7 @@ use super::job::{Job, StageSystem};
 use super::junk::JunkFilter;
 use super::problem::{Problem, REFINED};
 use super::superset::Superset;
+use cognate_continuation::bend::RefinedPoint;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
 use cognate_solutions::classification::Verdict;
@@ -89,6 +90,32 @@ impl Equations {
             sets: PureSet::everything(point).into_iter().collect(),
             supersets: BTreeMap::new(),
             lost: BTreeMap::new(),
+        }
+    }
+
+    /// From these sets of the first equations, as many as are known, each set on the problem's slices; and the paths lost
+    /// on the way to them, by dimension.
+    pub fn from_sets(
+        problem: &Problem,
+        (sets, lost): (Vec<PureSet>, BTreeMap<usize, u64>),
+    ) -> Self {
+        let own = problem.variables();
+        let taken = problem.known;
+        let mut supersets = BTreeMap::new();
+        if taken == problem.order.len() {
+            // Nothing cuts.
+            for set in &sets {
+                for point in &set.points {
+                    keep(superset(&mut supersets, set.dimension), set, point, own);
+                }
+            }
+        }
+        Self {
+            taken,
+            phase: Phase::Begin,
+            sets,
+            supersets,
+            lost: lost.into_iter().map(|(m, lost)| (m, [lost, 0])).collect(),
         }
     }
 
@@ -170,9 +197,7 @@ impl Equations {
             for point in &set.points {
                 match problem.solves(&point.point[..own], &REFINED) {
                     Some(true) => {
-                        let superset = superset(&mut self.supersets, m);
-                        superset.regular.extend(set.keeps(point, own));
-                        superset.singular.extend(set.keeps_multiple(point, own));
+                        keep(superset(&mut self.supersets, m), set, point, own);
                     }
                     // A point that lies on no further hypersurface is gone.
                     Some(false) if m == 0 => {}
@@ -229,6 +254,12 @@ impl Equations {
 fn superset(supersets: &mut BTreeMap<usize, Superset>, dimension: usize) -> &mut Superset {
     let known = supersets.entry(dimension);
     known.or_insert_with(|| Superset::empty(dimension))
+}
+
+/// Takes a point of a set on which the equations hold.
+fn keep(superset: &mut Superset, set: &PureSet, point: &RefinedPoint, own: usize) {
+    superset.regular.extend(set.keeps(point, own));
+    superset.singular.extend(set.keeps_multiple(point, own));
 }
 
 fn add(lost: &mut BTreeMap<usize, [u64; 2]>, dimension: usize, more: [u64; 2]) {

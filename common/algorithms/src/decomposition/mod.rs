@@ -17,12 +17,16 @@ mod equations;
 pub(crate) mod job;
 pub(crate) mod junk;
 pub(crate) mod moved;
+pub(crate) mod operand;
 mod options;
 pub(crate) mod problem;
 mod proof;
+mod resumed;
 mod slices;
 pub(crate) mod split;
 pub(crate) mod superset;
+#[cfg(test)]
+mod tests_of_resumed;
 mod unions;
 
 use crate::answer::Answer;
@@ -35,7 +39,7 @@ use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
-    ComponentId, Decomposition, Dimension, Doubt, Method, TrackedPaths, WitnessSet,
+    ComponentId, Decomposition, Dimension, Doubt, KnownComponents, Method, TrackedPaths, WitnessSet,
 };
 use cognate_systems::system::System;
 pub use costs::DecompositionCosts;
@@ -43,10 +47,12 @@ use deflated::{Deflations, PureSet};
 use equations::{Equations, Prefixes};
 use job::{Job, StageSystem};
 use junk::JunkFilter;
+use operand::TrackedSet;
 pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
 use proof::Proving;
+use resumed::Resumed;
 use serde::{Deserialize, Serialize};
 use slices::Slices;
 use split::Split;
@@ -55,6 +61,8 @@ use std::sync::Arc;
 /// Where a decomposition is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Step {
+    /// Known components go to the slices on which other equations cut them.
+    Resumed(Resumed),
     /// Combination by combination: points of all dimensions.
     Cascade(Cascade),
     /// Equation by equation.
@@ -114,6 +122,8 @@ pub struct DecompositionSolve {
     /// Systems that were made of the problem.
     deflations: Deflations,
     prefixes: Prefixes,
+    /// Components of the first equations, while they move.
+    known: Option<TrackedSet>,
 }
 
 impl PartialEq for DecompositionSolve {
@@ -132,41 +142,54 @@ impl TryFrom<State> for DecompositionSolve {
     type Error = ProblemError;
 
     fn try_from(state: State) -> Result<Self, ProblemError> {
-        Ok(Self {
-            problem: Arc::new(Problem::of_options(&state.system, &state.options)?),
-            deflations: Deflations::default(),
-            prefixes: Prefixes::default(),
-            state,
-        })
+        let problem = Problem::of_options(&state.system, &state.options)?;
+        Self::of_state(state, problem)
     }
 }
 
 impl DecompositionSolve {
-    /// The decomposition of a system that has been checked.
-    pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
-        let problem = Problem::of_options(system, options)?;
-        let method = options.method;
-        let method = method.unwrap_or_else(|| costs::choose(&problem).0);
+    fn of_state(state: State, problem: Problem) -> Result<Self, ProblemError> {
+        let known = match (&state.step, &state.options.known) {
+            (Step::Resumed(_), Some(known)) => Some(tracked(&problem, known)?),
+            _ => None,
+        };
         Ok(Self {
-            state: State {
-                system: Arc::new(system.clone()),
-                options: options.clone(),
-                method,
-                purpose: Purpose::First,
-                first: None,
-                step: first_step(method, &problem),
-                job: None,
-                stages: Vec::new(),
-                dimensions: Vec::new(),
-                sets: Vec::new(),
-                components: Vec::new(),
-                paths: TrackedPaths::default(),
-                paths_of_loops: TrackedPaths::default(),
-            },
             problem: Arc::new(problem),
             deflations: Deflations::default(),
             prefixes: Prefixes::default(),
+            known,
+            state,
         })
+    }
+
+    /// The decomposition of a system that has been checked.
+    pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
+        let problem = Problem::of_options(system, options)?;
+        let method = match (&options.known, options.method) {
+            (Some(_), _) => Method::Equations,
+            (None, Some(method)) => method,
+            (None, None) => costs::choose(&problem).0,
+        };
+        let step = match options.known {
+            Some(_) => Step::Resumed(Resumed::default()),
+            None => first_step(method, &problem),
+        };
+        let state = State {
+            system: Arc::new(system.clone()),
+            options: options.clone(),
+            method,
+            purpose: Purpose::First,
+            first: None,
+            step,
+            job: None,
+            stages: Vec::new(),
+            dimensions: Vec::new(),
+            sets: Vec::new(),
+            components: Vec::new(),
+            paths: TrackedPaths::default(),
+            paths_of_loops: TrackedPaths::default(),
+        };
+        Self::of_state(state, problem)
     }
 
     /// The same with another limit of repetitions, where nothing is open yet.
@@ -185,6 +208,11 @@ impl DecompositionSolve {
         let made = (problem, &mut self.deflations);
         match &mut state.step {
             Step::Done(_) => None,
+            Step::Resumed(resumed) => {
+                state.paths.add(&paths);
+                let known = self.known.as_mut()?;
+                resumed.advance(problem, known, done.as_ref())
+            }
             Step::Cascade(cascade) => {
                 state.paths.add(&paths);
                 cascade.advance(problem, done.as_ref())
@@ -213,6 +241,12 @@ impl DecompositionSolve {
     fn next_step(&mut self) {
         let (state, problem) = (&mut self.state, &*self.problem);
         match &mut state.step {
+            Step::Resumed(resumed) => {
+                let equations = Equations::from_sets(problem, resumed.take());
+                state.step = Step::Equations(equations);
+                self.known = None;
+                return;
+            }
             Step::Cascade(cascade) => {
                 state.step = Step::JunkFilter(JunkFilter::new(cascade.supersets(problem), false));
                 return;
@@ -308,6 +342,7 @@ impl DecompositionSolve {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
+            locus: false,
             asked: [*self.problem.asked.start(), *self.problem.asked.end()],
             components: std::mem::take(&mut self.state.components),
             dimensions: std::mem::take(&mut self.state.dimensions),
@@ -338,6 +373,10 @@ impl DecompositionSolve {
     /// The system of the open job.
     fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
         match &self.state.step {
+            Step::Resumed(resumed) => {
+                let known = self.known.as_mut();
+                resumed.system_of(known.expect("they are known while they move"), wanted)
+            }
             Step::Equations(equations) => {
                 let count = equations.prefix();
                 let (problem, deflations) = self.prefixes.of(&self.problem, count);
@@ -379,6 +418,13 @@ pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
     }
     found.check_counts();
     found
+}
+
+/// Known components in the units of the problem, of which their equations are a part.
+fn tracked(problem: &Problem, known: &KnownComponents) -> Result<TrackedSet, ProblemError> {
+    let part = problem.part(|i| i < known.equations as usize)?;
+    let tracked = TrackedSet::new(Arc::new(part), &known.components);
+    tracked.map_err(|error| ProblemError::Known(error.to_string()))
 }
 
 /// Where a way to the answer begins.
@@ -444,6 +490,7 @@ impl Solve for DecompositionSolve {
     fn progress(&self) -> Progress {
         Progress {
             description: match &self.state.step {
+                Step::Resumed(resumed) => resumed.description().into(),
                 Step::Cascade(cascade) => cascade.description(&self.problem),
                 Step::Equations(equations) => equations.description(&self.problem),
                 Step::Slices(slices) => slices.description(&self.problem),
@@ -476,6 +523,15 @@ fn grid(point: &[num_complex::Complex64]) -> Vec<i64> {
         .collect()
 }
 
+/// Lowest and highest dimension that components of a system can have, of those that are asked.
+pub fn dimensions(
+    system: &System,
+    options: &DecompositionOptions,
+) -> Result<[u32; 2], ProblemError> {
+    let asked = Problem::of_options(system, options)?.asked;
+    Ok([*asked.start(), *asked.end()])
+}
+
 /// Decomposes in one thread, with lanes of this width.
 ///
 /// ```
@@ -501,6 +557,7 @@ pub fn run_locally(solve: DecompositionSolve, width: usize) -> Result<Decomposit
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::restarts;
     use crate::run_locally::drive;
     use crate::{AnyAlgorithm, AnySolve, PathAlgorithm};
     use cognate_continuation::path_result::{Coordinates, PathResult};
@@ -643,32 +700,12 @@ mod tests {
     /// done is given back, too.
     fn with_restarts(system: &System, options: &DecompositionOptions) -> (Decomposition, String) {
         let solve = DecompositionSolve::new(system, options).unwrap();
-        let mut solve = AnyAlgorithm::from(AnySolve::Decomposition(Box::new(solve)));
-        let mut open: Option<Box<crate::Opening>> = None;
-        let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+        let solve = AnySolve::Decomposition(Box::new(solve));
         let mut kinds = String::new();
-        loop {
-            match solve.next() {
-                Next::Open(opening) => open = Some(opening),
-                Next::Wait => {
-                    let opening = open.take().unwrap();
-                    let snapshot = solve.snapshot();
-                    let again = AnyAlgorithm::restore(&snapshot).unwrap();
-                    assert!(again == solve && again.snapshot() == snapshot);
-                    solve = again;
-                    let made = opening.objects.iter();
-                    objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
-                    let find = |digest: Digest| objects.get(&digest).cloned();
-                    let stage = &opening.stage;
-                    kinds.push_str(&format!("{:?} {:?}; ", stage.work, stage.homotopy));
-                    let system = opening.system.as_deref().unwrap();
-                    let prepared = PreparedWork::new(system, stage, &find).unwrap();
-                    let results = prepared.run(0..prepared.items(), 8);
-                    solve.absorb(opening.stage.id, &mut results.into_iter());
-                }
-                Next::Done => break,
-            }
-        }
+        let solve = restarts::with_restarts(solve, &mut |opening| {
+            let stage = &opening.stage;
+            kinds.push_str(&format!("{:?} {:?}; ", stage.work, stage.homotopy));
+        });
         assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
         let Some(Answer::Decomposition(decomposition)) = solve.answer(system) else {
             panic!("a decomposition ends with one");

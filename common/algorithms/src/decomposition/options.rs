@@ -3,7 +3,7 @@
 use crate::retried_stage::MAX_RETRIES;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_solutions::classification::Tolerances;
-use cognate_solutions::witness::Method;
+use cognate_solutions::witness::{KnownComponents, Method};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -35,6 +35,8 @@ pub struct DecompositionOptions {
     pub confirm_junk: bool,
     /// Loops in a row that bring no points together before points stay apart.
     pub idle_loops: u32,
+    /// Components that the other equations cut; `None`: none is known.
+    pub known: Option<KnownComponents>,
 }
 
 impl Default for DecompositionOptions {
@@ -51,6 +53,7 @@ impl Default for DecompositionOptions {
             max_retries: MAX_RETRIES,
             confirm_junk: true,
             idle_loops: 12,
+            known: None,
         }
     }
 }

@@ -10,7 +10,7 @@ use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_solutions::involution::Involution;
 use cognate_solutions::witness::Method;
 use cognate_systems::expression::NodeId;
-use cognate_systems::polynomial::{Degrees, PolynomialError, degrees};
+use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::{
@@ -64,6 +64,9 @@ pub enum ProblemError {
     /// It has no degrees.
     #[error("{0}")]
     Degrees(String),
+    /// Known components are none of the first equations.
+    #[error("known components: {0}")]
+    Known(String),
 }
 
 impl From<PolynomialError> for ProblemError {
@@ -82,6 +85,8 @@ pub(crate) struct Problem {
     degrees: Degrees,
     /// The equations in the order in which they cut: of small degree first.
     pub order: Vec<usize>,
+    /// Of how many of the first of these components are known.
+    pub known: usize,
     /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
     /// others that are never reached.
     pub staircase: Arc<System>,
@@ -125,10 +130,13 @@ impl Problem {
         tracking: Tracking,
         options: &DecompositionOptions,
     ) -> Result<Self, ProblemError> {
+        let count = system.equation_count();
         let (system, kept) = without_vanishing(with_values(system, &options.parameters)?);
         if system.equations.is_empty() {
             return Err(ProblemError::Everything);
         }
+        // In an affine chart an equation that is not homogeneous in its group would be another one.
+        check_homogeneous(&system, &degrees(&system)?)?;
         let seed = tracking.seed;
         let system = System {
             scaling: scaling_of(&system, &[]),
@@ -138,7 +146,7 @@ impl Problem {
         let given = equilibrate(&affine_chart(&system.in_unknowns(), seed), seed);
         let patches = given.equation_count() - kept.len();
         let sources = vec![None; patches].into_iter();
-        let sources = sources.chain(kept.into_iter().map(Some)).collect();
+        let sources: Vec<Option<usize>> = sources.chain(kept.into_iter().map(Some)).collect();
         let of_given = degrees(&given)?;
         let variables = given.variable_count();
         let plain = SlicedEquations::new(&given, Vec::new());
@@ -171,12 +179,16 @@ impl Problem {
         staircase.degenerate.clear();
         let row_degrees = degrees(&staircase)?.total;
         let involution = Involution::of(&given, &[]).ok();
+        let own = known_equations(options, count)?;
+        let other = |i: usize| sources[i].is_some_and(|source: usize| source >= own);
         let mut order: Vec<usize> = (0..given.equation_count()).collect();
-        order.sort_by_key(|&i| (of_given.total[i], i));
+        order.sort_by_key(|&i| (other(i), of_given.total[i], i));
+        let known = order.iter().filter(|&&i| !other(i)).count();
         Ok(Self {
             given: Arc::new(given),
             sources,
             order,
+            known: if options.known.is_some() { known } else { 0 },
             degrees: of_given,
             staircase: Arc::new(staircase),
             row_degrees,
@@ -209,6 +221,7 @@ impl Problem {
             sources: chosen.iter().map(|&i| self.sources[i]).collect(),
             degrees: of_chosen,
             order: (0..count).collect(),
+            known: 0,
             staircase: Arc::clone(&self.staircase),
             row_degrees: Vec::new(),
             levels: self.levels,
@@ -243,6 +256,7 @@ impl Problem {
         Ok(Self {
             factors: FactorValues::new(&given, self.seed())?,
             order: (0..places.len()).collect(),
+            known: 0,
             sources: places.iter().map(|&i| self.sources[i]).collect(),
             levels,
             asked_levels: levels,
@@ -302,6 +316,7 @@ impl Problem {
             row_degrees: degrees(&staircase)?.total,
             staircase: Arc::new(staircase),
             order: chosen.clone(),
+            known: 0,
             sources: sources.chain(vec![None; chosen.len() - own]).collect(),
             levels,
             asked_levels: levels,
@@ -637,6 +652,21 @@ pub(crate) fn with_values<'a>(
     Ok(Cow::Owned(fix_parameters(system, &exact)?))
 }
 
+/// Of how many of the first of so many equations components are known; all where none are.
+fn known_equations(options: &DecompositionOptions, count: usize) -> Result<usize, ProblemError> {
+    let own = match &options.known {
+        None => count,
+        Some(known) => known.equations as usize,
+    };
+    match (1..=count).contains(&own) {
+        true => Ok(own),
+        false => {
+            let said = format!("they are of {own} equations; the system has {count}");
+            Err(ProblemError::Known(said))
+        }
+    }
+}
+
 /// Rank of the Jacobian at a random point; an error where a row of it is not finite, or 0 for its size.
 fn rank_at_random(
     equations: &SlicedEquations,
@@ -663,6 +693,27 @@ fn rank_at_random(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_not_homogeneous_in_its_group_is_refused() {
+        let of = |f: &str| {
+            let text = format!(
+                "CONFIG\nEND;\nINPUT\nhom_variable_group x, y; hom_variable_group u, v; function f; f = {f};\nEND;\n"
+            );
+            let system = cognate_systems::formats::read("test", text.as_bytes())
+                .unwrap()
+                .system;
+            Problem::of_options(&system, &DecompositionOptions::default()).map(|_| ())
+        };
+        assert_eq!(of("x^2*u - y^2*v"), Ok(()));
+        for f in ["x^2*u - y^2", "x*u - y*v + 1", "x^2*u + x*y*v + y*u"] {
+            let refused = of(f);
+            assert!(
+                matches!(refused, Err(ProblemError::Degrees(_))),
+                "{f}: {refused:?}"
+            );
+        }
+    }
 
     #[test]
     fn products_beyond_the_range_of_doubles_are_refused_by_name() {

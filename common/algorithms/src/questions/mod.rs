@@ -10,7 +10,6 @@ mod locus;
 mod member;
 mod mobility;
 mod multidegree;
-mod operand;
 mod project;
 mod real_curve;
 mod real_points;
@@ -23,6 +22,8 @@ mod tests_of_loci;
 use crate::answer::AnsweredQuestion;
 use crate::decomposition::deflated::Deflations;
 use crate::decomposition::job::{Job, StageSystem};
+use crate::decomposition::operand::{self, Operand, TrackedSet};
+pub use crate::decomposition::operand::{MOST_WITNESS_POINTS, OperandError};
 use crate::decomposition::problem::{Problem, with_values};
 use crate::decomposition::{DecompositionOptions, ProblemError};
 use crate::progress::{Progress, StageProgress, VerdictCounts};
@@ -41,8 +42,6 @@ use locus::{Locus, Wanted};
 use member::Member;
 use mobility::Mobility;
 use multidegree::Multidegree;
-use operand::Operand;
-pub use operand::{MOST_WITNESS_POINTS, OperandError};
 use project::Project;
 use real_curve::RealCurves;
 use real_points::RealPoints;
@@ -103,14 +102,6 @@ struct Others {
     components: Vec<WitnessSet>,
 }
 
-/// A second set, in the unknowns that are tracked.
-#[derive(Clone, Debug)]
-struct Other {
-    problem: Arc<Problem>,
-    operands: Arc<Vec<Operand>>,
-    deflations: Deflations,
-}
-
 /// What is written down of a question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct State {
@@ -134,14 +125,31 @@ struct State {
 #[serde(into = "State", try_from = "State")]
 pub struct QuestionSolve {
     state: State,
-    /// Made of the state, and made again where it is read back: of the equations that the components are of, of all
-    /// equations, of the second set.
-    problem: Arc<Problem>,
-    operands: Arc<Vec<Operand>>,
-    deflations: Deflations,
+    sets: Sets,
+}
+
+/// What is made of the state, and made again where it is read back.
+#[derive(Clone, Debug)]
+struct Sets {
+    /// The components, with the equations that they are of.
+    first: TrackedSet,
+    /// All equations.
     whole: Arc<Problem>,
     whole_deflations: Deflations,
-    other: Option<Other>,
+    second: Option<TrackedSet>,
+}
+
+impl Sets {
+    fn context(&mut self) -> Context<'_> {
+        Context {
+            problem: &self.first.problem,
+            operands: &self.first.operands,
+            deflations: &mut self.first.deflations,
+            whole: &self.whole,
+            whole_deflations: &mut self.whole_deflations,
+            other: self.second.as_mut(),
+        }
+    }
 }
 
 impl PartialEq for QuestionSolve {
@@ -161,38 +169,28 @@ impl TryFrom<State> for QuestionSolve {
 
     fn try_from(state: State) -> Result<Self, QuestionError> {
         let whole = Arc::new(Problem::of_options(&state.system, &state.options)?);
-        let of = |problem: Arc<Problem>, components: &[WitnessSet]| {
-            let mut deflations = Deflations::default();
-            let operands = operand::all(&problem, &mut deflations, components)?;
-            let operands = Arc::new(operands);
-            Ok::<_, QuestionError>(Other {
-                problem,
-                operands,
-                deflations,
-            })
-        };
         let problem = match state.own {
             None => Arc::clone(&whole),
             Some(own) => Arc::new(whole.part(|i| i < own as usize)?),
         };
-        let first = of(problem, &state.components)?;
-        let other = match &state.others {
+        let first = TrackedSet::new(problem, &state.components)?;
+        let second = match &state.others {
             None => None,
-            Some(others) if others.from == 0 => Some(of(Arc::clone(&whole), &others.components)?),
+            Some(others) if others.from == 0 => {
+                Some(TrackedSet::new(Arc::clone(&whole), &others.components)?)
+            }
             Some(others) => {
                 let part = whole.part(|i| i >= others.from as usize)?;
-                Some(of(Arc::new(part), &others.components)?)
+                Some(TrackedSet::new(Arc::new(part), &others.components)?)
             }
         };
-        Ok(Self {
-            problem: first.problem,
-            operands: first.operands,
-            deflations: first.deflations,
+        let sets = Sets {
+            first,
             whole,
             whole_deflations: Deflations::default(),
-            other,
-            state,
-        })
+            second,
+        };
+        Ok(Self { state, sets })
     }
 }
 
@@ -205,7 +203,7 @@ struct Context<'a> {
     whole: &'a Problem,
     whole_deflations: &'a mut Deflations,
     /// A second set.
-    other: Option<&'a mut Other>,
+    other: Option<&'a mut TrackedSet>,
 }
 
 impl QuestionSolve {
@@ -322,14 +320,7 @@ impl QuestionSolve {
 
     /// The system of the open job.
     fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
-        let mut with = Context {
-            problem: &self.problem,
-            operands: &self.operands,
-            deflations: &mut self.deflations,
-            whole: &self.whole,
-            whole_deflations: &mut self.whole_deflations,
-            other: self.other.as_mut(),
-        };
+        let mut with = self.sets.context();
         match &mut self.state.asking {
             Asking::Locus(asking) => asking.system_of(&mut with, wanted),
             Asking::RealPoints(asking) => asking.system_of(&mut with, wanted),
@@ -346,14 +337,7 @@ impl QuestionSolve {
             state.crossings_left += job.crossings_left();
         }
         let done = done.as_ref();
-        let mut with = Context {
-            problem: &self.problem,
-            operands: &self.operands,
-            deflations: &mut self.deflations,
-            whole: &self.whole,
-            whole_deflations: &mut self.whole_deflations,
-            other: self.other.as_mut(),
-        };
+        let mut with = self.sets.context();
         let job = match &mut state.asking {
             Asking::Check(asking) => asking.advance(&mut with, done),
             Asking::Certify(asking) => asking.advance(&mut with, done),

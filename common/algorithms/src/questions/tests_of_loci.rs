@@ -367,33 +367,9 @@ fn real_points_that_are_not_searched_are_named() {
 
 /// Asks with a state that is written down and read back before each stage.
 fn with_restarts(system: &System, solve: QuestionSolve) -> Answer {
-    use crate::{AnyAlgorithm, AnySolve, PathAlgorithm};
-    use cognate_continuation::prepared_work::PreparedWork;
-    use cognate_continuation::start_points::{Digest, StoredPoints};
-    use std::collections::HashMap;
-    let mut solve = AnyAlgorithm::from(AnySolve::Question(Box::new(solve)));
-    let mut open: Option<Box<crate::Opening>> = None;
-    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-    loop {
-        match solve.next() {
-            Next::Open(opening) => open = Some(opening),
-            Next::Wait => {
-                let opening = open.take().unwrap();
-                let snapshot = solve.snapshot();
-                let again = AnyAlgorithm::restore(&snapshot).unwrap();
-                assert!(again == solve && again.snapshot() == snapshot);
-                solve = again;
-                let made = opening.objects.iter();
-                objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
-                let find = |digest: Digest| objects.get(&digest).cloned();
-                let system = opening.system.as_deref().unwrap();
-                let prepared = PreparedWork::new(system, &opening.stage, &find).unwrap();
-                let results = prepared.run(0..prepared.items(), 8);
-                solve.absorb(opening.stage.id, &mut results.into_iter());
-            }
-            Next::Done => break,
-        }
-    }
+    use crate::PathAlgorithm;
+    let solve = crate::AnySolve::Question(Box::new(solve));
+    let solve = crate::restarts::with_restarts(solve, &mut |_| {});
     match solve.answer(system) {
         Some(crate::Answer::Question(asked)) => asked.answer,
         Some(crate::Answer::Decomposition(found)) => Answer::Components(Box::new((*found).clone())),

@@ -230,10 +230,17 @@ impl SlicedEquations {
         Linearized::new(self.linearize(x), self.variables, beside)
     }
 
-    /// Sizes of the rows a little beside a point, in a direction in which no coordinate is special; none where no
-    /// row is small at the point.
-    fn sizes_beside(&self, x: &[Number]) -> Vec<f64> {
-        let small = row_sizes(&self.linearize(x), self.variables);
+    /// The Jacobian at a point with its rows scaled by their sizes beside the point, and these sizes.
+    fn decompose_first(&self, x: &[Number]) -> (Linearized, Vec<f64>) {
+        let matrix = self.linearize(x);
+        let beside = self.sizes_beside(x, &matrix);
+        (Linearized::new(matrix, self.variables, &beside), beside)
+    }
+
+    /// Sizes of the rows a little beside a point, at which the Jacobian is this one, in a direction in which no
+    /// coordinate is special; none where no row is small at the point.
+    fn sizes_beside(&self, x: &[Number], at: &Matrix<DoubleDouble<f64>>) -> Vec<f64> {
+        let small = row_sizes(at, self.variables);
         if small.iter().all(|&size| size >= 1.0) {
             return Vec::new();
         }
@@ -297,21 +304,27 @@ impl SlicedEquations {
         )
     }
 
+    /// The values beside a Jacobian.
+    fn values(&self, at: &Matrix<DoubleDouble<f64>>) -> Vec<Complex64> {
+        let rows = 0..at.rows();
+        rows.map(|i| rounded(at.at(i, self.variables))).collect()
+    }
+
     /// Newton's method (of Gauss, where there are more equations than variables) from near a witness point;
     /// `None` where it leaves or does not settle.
     pub fn refine(&self, start: &[Number]) -> Option<RefinedPoint> {
         let mut x = start.to_vec();
-        let beside = self.sizes_beside(&x);
-        let mut at = self.decompose(&x, &beside);
+        let (mut at, beside) = self.decompose_first(&x);
         let (mut last, mut moved) = (f64::INFINITY, 0.0);
         for round in 0..MOST_ROUNDS {
             if round > 0 && last > NEAR {
                 at = self.decompose(&x, &beside);
             }
-            let now = self.linearize(&x);
-            let values: Vec<Complex64> = (0..now.rows())
-                .map(|i| rounded(now.at(i, self.variables)))
-                .collect();
+            // Where the Jacobian was taken the values are known.
+            let values = match last > NEAR {
+                true => self.values(&at.matrix),
+                false => self.values(&self.linearize(&x)),
+            };
             let step = at.solve(&values);
             let size = length(&doubles(&x)).max(1.0);
             let correction = length(&step) / size;
@@ -396,8 +409,7 @@ impl SlicedEquations {
     /// How a witness point moves when the constants of the slices move in this direction; with
     /// [`Self::at_parameters`] the parameters, all of them.
     pub fn bend(&self, refined: &RefinedPoint, direction: &[Complex64]) -> Bend {
-        let beside = self.sizes_beside(&refined.point);
-        let at = self.decompose(&refined.point, &beside);
+        let (at, _) = self.decompose_first(&refined.point);
         let (rows, x) = (self.rows(), &refined.point);
         let mut right = zeros(rows + self.slices.len());
         let moved: Vec<Number> = direction.iter().map(|&v| exactly(v)).collect();

@@ -531,6 +531,13 @@ impl Cauchy {
         }
     }
 
+    /// What two radii agreed on is no solution: it is the constant term of a Laurent series, that is, branch points
+    /// or poles lie inside both.
+    pub fn agreed_on_none(&mut self, settings: &Settings) -> Next {
+        self.previous = None;
+        self.inward(SHRINKAGE, settings)
+    }
+
     /// The turns at this radius have not closed.
     fn not_closed(&mut self, settings: &Settings) -> Next {
         self.unclosed += 1;

@@ -7,14 +7,17 @@
 //! 117-118, 1997; Zeng: The closedness subspace method for computing the multiplicity structure of a
 //! polynomial system, Contemp. Math. 496, 2009).
 
+use super::null_space::null_space;
 use super::series::{Monomials, Series};
-use super::split::rank;
+use super::split::{CUT, rank};
 use cognate_numeric::linear_algebra::svd::Svd;
 use num_complex::Complex64;
 
 /// More multiplications than this in one sweep of a singular value decomposition are not made: they
-/// would take a second.
+/// would take a second. Columns are made orthogonal once instead.
 const MOST_WORK: usize = 40_000_000;
+/// More multiplications than this are not made for that: it would take seconds.
+const MOST_WORK_ONCE: usize = 600_000_000;
 
 /// Leading coefficients below this, squared, are rounding errors.
 const LEADING: f64 = 1e-12;
@@ -75,7 +78,8 @@ impl DualSpace {
         let rows = pairs * mu + equations.len() + mu;
         // Unknown (v, j): how much of functional j the product of variable v with the new one has.
         let unknowns = s * mu;
-        if unknowns * unknowns * rows > MOST_WORK {
+        let work = unknowns * unknowns * rows;
+        if work > MOST_WORK_ONCE {
             return Err(Stop::TooLarge);
         }
         let mut columns = vec![vec![Complex64::default(); rows]; unknowns];
@@ -117,12 +121,19 @@ impl DualSpace {
             }
             row += 1;
         }
-        let svd = Svd::of(columns);
-        let rank = rank(&svd.values, noise, margin);
-        if rank == unknowns {
+        let integrands = if work > MOST_WORK {
+            let (basis, clear) = null_space(columns, CUT * noise);
+            *margin = margin.min(clear);
+            basis
+        } else {
+            let mut svd = Svd::of(columns);
+            let rank = rank(&svd.values, noise, margin);
+            svd.domain.split_off(rank)
+        };
+        if integrands.is_empty() {
             return Err(Stop::Whole);
         }
-        for integrand in &svd.domain[rank..] {
+        for integrand in &integrands {
             self.append(monomials, &shares, integrand, mu);
         }
         Ok(())

@@ -13,7 +13,9 @@
 
 pub mod candidates;
 mod dual_space;
+mod exact_point;
 mod moved_slice;
+mod null_space;
 mod precise_point;
 pub mod prepared;
 pub mod series;
@@ -31,7 +33,7 @@ use split::{FARTHEST, Split};
 
 /// Smallest relative error that is assumed of an endpoint: estimates of singular ones are no
 /// better than this.
-const LEAST_ERROR: f64 = 1e-11;
+pub(super) const LEAST_ERROR: f64 = 1e-11;
 /// More monomials than this are not handled: their matrix would take seconds.
 const MOST_MONOMIALS: usize = 3000;
 /// Below this margin nothing is asked any more.
@@ -48,7 +50,7 @@ const WITHIN_DATA: f64 = 100.0;
 /// What is asked of one endpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
-    /// Estimated relative error of the endpoint.
+    /// Relative error of the point, at most.
     pub accuracy: f64,
     /// An isolated point has at most this multiplicity: the number of paths that end there,
     /// and of those of which the end is not known. `u64::MAX` where no such number is known.
@@ -76,7 +78,7 @@ pub fn local_dimension(
         moved_slices: Vec::new(),
     };
     let size = norm(point);
-    let error = question.accuracy.max(LEAST_ERROR) * size;
+    let error = question.accuracy * size;
     if let Some(margin) = regular_nearby(system, target, point, FARTHEST * error) {
         found.dual_dimensions.push(1);
         found.margin = margin;

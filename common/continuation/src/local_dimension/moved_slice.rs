@@ -45,6 +45,8 @@ const MET: f64 = 1e-20;
 const TELLING: f64 = 0.01;
 /// A slice farther away than this need not meet a set through the point.
 const FAR: f64 = 0.05;
+/// A residual above this, on a slice that is far, is one of a place where there is nothing.
+const MISSED: f64 = 1e-8;
 /// Residuals of a double-double evaluation, equations and coordinates scaled to 1, that are rounding.
 const ROUNDING: f64 = 1e-28;
 
@@ -99,9 +101,15 @@ pub(super) fn meets(slices: &[MovedSlice]) -> bool {
 
 /// The same where residuals up to this, and rounding, are as good as 0.
 pub(super) fn meets_within(slices: &[MovedSlice], residual: f64) -> bool {
-    let met = |slice: &MovedSlice| slice.residual <= residual.max(MET);
-    let mut near = slices.iter().filter(|slice| slice.distance < FAR);
-    near.clone().any(|slice| slice.distance >= TELLING) && near.all(met)
+    let met = |slice: &MovedSlice| slice.near_residual() <= residual.max(MET);
+    // Far away Newton's method may find nothing; but a residual that is small there and falls with
+    // the distance is that of a point of high multiplicity.
+    let clear = |slice: &MovedSlice| met(slice) || slice.residual > MISSED;
+    let (far, near): (Vec<&MovedSlice>, Vec<&MovedSlice>) =
+        slices.iter().partition(|slice| slice.distance >= FAR);
+    near.iter().any(|slice| slice.distance >= TELLING)
+        && near.into_iter().all(met)
+        && far.into_iter().all(clear)
 }
 
 /// Whether the first slices came nearer to a solution than the others did.
@@ -165,12 +173,13 @@ impl<'a> Slices<'a> {
                 }
             }
             let (residual, offset) = best;
-            let met = residual <= MET;
-            found.push(MovedSlice {
+            let slice = MovedSlice {
                 distance: distance / size,
                 residual,
                 reached: square(&offset).sqrt() / size,
-            });
+            };
+            let met = slice.near_residual() <= MET;
+            found.push(slice);
             if met {
                 direction = Some(offset);
             }

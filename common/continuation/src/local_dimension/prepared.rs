@@ -1,7 +1,8 @@
 //! PreparedLocalDimension: a stage that asks of stored endpoints whether they are isolated.
 
 use super::candidates::{Candidate, EXTRA, from_stored};
-use super::local_dimension;
+use super::exact_point::exact_point;
+use super::{LEAST_ERROR, Question, local_dimension};
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
 use crate::homotopies::HomotopyKind;
@@ -12,6 +13,8 @@ use crate::sharpening::search::sharpen;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::work::Stage;
+use cognate_numeric::rational::ComplexRational;
+use cognate_numeric::scalar::Complex;
 use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees};
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -24,12 +27,21 @@ const CONFIRMING_DIGITS: u32 = 50;
 /// The margin of a multiplicity that deflated equations do not confirm.
 const UNCONFIRMED: f64 = 1.0;
 
+/// An exact solution is that of an endpoint where it is so many times the endpoint's error away,
+const NEXT: f64 = 10.0;
+/// and no farther than this.
+const FARTHEST_EXACT: f64 = 1e-6;
+/// Relative error of a point whose exact coordinates are rounded to doubles, in the chart.
+const ROUNDED: f64 = 1e-15;
+
 /// The equations that are asked, and the endpoints.
 #[derive(Debug)]
 pub struct PreparedLocalDimension {
     asked: AskedSystem,
-    /// The same equations, exactly.
+    /// The same equations, exactly, in the unknowns that are tracked,
     system: System,
+    /// and in the variables.
+    given: System,
     /// Values of its parameters at each target.
     parameters: Vec<Vec<Complex64>>,
     seed: u64,
@@ -74,15 +86,11 @@ impl PreparedLocalDimension {
                 });
             }
         }
-        let in_unknowns = |candidate: Candidate| Candidate {
-            values: system.scaling.to_unknowns(&candidate.values),
-            ..candidate
-        };
         let candidates: Vec<Candidate> = (0..stored.len())
             .map(|index| from_stored(&stored, index).filter(|c| c.target < targets))
-            .map(|candidate| candidate.map(in_unknowns))
             .collect::<Option<_>>()
             .ok_or_else(|| misfit("an endpoint's accuracy, bound or target is none"))?;
+        let variables = system;
         let system = &*system.in_unknowns();
         let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
         let found = degrees(system).map_err(wrong)?;
@@ -91,6 +99,7 @@ impl PreparedLocalDimension {
         Ok(Self {
             asked: AskedSystem::new(system, &found, &stage.homotopy, chart, stage.seed),
             system: system.clone(),
+            given: variables.clone(),
             parameters: given,
             seed: stage.seed,
             data_accuracy: match stage.settings.exact_data {
@@ -119,22 +128,51 @@ impl PreparedLocalDimension {
         items.map(|item| self.look(item)).collect()
     }
 
+    /// Values of the parameters at an endpoint's target.
+    fn parameters_of(&self, candidate: &Candidate) -> &[Complex64] {
+        // Where parameters do not matter one empty list of them stands for all targets.
+        let target = usize::try_from(candidate.target).ok();
+        let parameters = target.and_then(|target| self.parameters.get(target));
+        parameters.map_or(&[][..], Vec::as_slice)
+    }
+
+    /// The values of the unknowns of an endpoint, or of the exact solution that it is next to; whether it is
+    /// exact.
+    fn point_of(&self, candidate: &Candidate) -> (Vec<Complex64>, bool) {
+        let error = (NEXT * candidate.question.accuracy).min(FARTHEST_EXACT);
+        let parameters = self.parameters_of(candidate);
+        let exact = exact_point(&self.given, parameters, &candidate.values, error);
+        let rounded = exact.as_ref().map(|point| {
+            let round = |z: &ComplexRational| {
+                let z = Complex::<f64>::from_rational((), z);
+                Complex64::new(z.re, z.im)
+            };
+            point.iter().map(round).collect::<Vec<_>>()
+        });
+        let scaling = &self.given.scaling;
+        match rounded {
+            Some(values) => (scaling.to_unknowns(&values), true),
+            None => (scaling.to_unknowns(&candidate.values), false),
+        }
+    }
+
     /// Dual spaces know a multiple point to the accuracy of the endpoint; several points nearer
     /// together than that look like one. A multiple point is one of which deflated equations have as many digits
     /// as are asked for; where they have not, the margin says that the multiplicity is not clear.
-    fn confirmed(&self, candidate: &Candidate, found: LocalDimension) -> LocalDimension {
+    fn confirmed(
+        &self,
+        candidate: &Candidate,
+        unknowns: &[Complex64],
+        found: LocalDimension,
+    ) -> LocalDimension {
         let [.., before, last] = *found.dual_dimensions else {
             return found;
         };
         if last != before || last == 1 || found.margin <= UNCONFIRMED {
             return found;
         }
-        // Where parameters do not matter one empty list of them stands for all targets.
-        let target = usize::try_from(candidate.target).ok();
-        let parameters = target.and_then(|target| self.parameters.get(target));
-        let parameters = parameters.map_or(&[][..], Vec::as_slice);
-        let (values, seed) = (&candidate.values, self.seed);
-        let sharpened = sharpen(&self.system, parameters, values, CONFIRMING_DIGITS, seed);
+        let (parameters, seed) = (self.parameters_of(candidate), self.seed);
+        let sharpened = sharpen(&self.system, parameters, unknowns, CONFIRMING_DIGITS, seed);
         match sharpened {
             Ok(sharpened) if sharpened.deflations > 0 => found,
             Ok(_) | Err(_) => LocalDimension {
@@ -147,13 +185,27 @@ impl PreparedLocalDimension {
     fn look(&self, item: u64) -> PointResult<LocalDimension> {
         let candidate = &self.candidates[item as usize];
         let chart = self.asked.chart();
-        let point = chart.from_variables(&candidate.values);
+        let (unknowns, exact) = self.point_of(candidate);
+        let point = chart.from_variables(&unknowns);
         let found = point.as_ref().map(|point| {
-            let Candidate {
-                target, question, ..
-            } = candidate;
-            let found = local_dimension(&self.asked, *target, point, *question, self.data_accuracy);
-            self.confirmed(candidate, found)
+            let question = Question {
+                accuracy: match exact {
+                    true => ROUNDED,
+                    false => candidate.question.accuracy.max(LEAST_ERROR),
+                },
+                ..candidate.question
+            };
+            let found = local_dimension(
+                &self.asked,
+                candidate.target,
+                point,
+                question,
+                self.data_accuracy,
+            );
+            match exact {
+                true => found,
+                false => self.confirmed(candidate, &unknowns, found),
+            }
         });
         // A patch that misses the point, with probability 0, leaves it undecided.
         let mut endpoint = point.map_or_else(Vec::new, |point| chart.homogeneous(&point));

@@ -11,7 +11,7 @@ use num_complex::Complex64;
 
 /// Singular values below this many times the noise count as 0. What lies within the margin of a
 /// verdict's tolerance on either side is said by [`LocalDimension::margin`].
-const CUT: f64 = 30.0;
+pub(super) const CUT: f64 = 30.0;
 /// Rounding errors of the expansion, relative to what is expanded.
 const ROUNDING: f64 = 1e-13;
 /// Newton steps that bring the point nearer in the regular directions.

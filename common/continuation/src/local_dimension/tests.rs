@@ -32,7 +32,7 @@ fn tower(system: &System, at: &[f64], bound: u64, error: f64, seed: u64) -> Loca
     let found = degrees(system).expect("polynomials");
     let asked = AskedSystem::new(system, &found, &kind, chart, seed);
     let question = Question {
-        accuracy: error,
+        accuracy: error.max(LEAST_ERROR),
         bound,
         depth: 30,
     };

@@ -777,23 +777,20 @@ impl<'a, R: Real> Lockstep<'a, R> {
     /// Whether a path takes very many steps in doubles around 0, or past the endgame's boundary, or so short
     /// ones before it that it will not get there: it is their noise that it follows.
     fn labours(&self, lane: usize) -> bool {
-        let path = &self.lanes[lane];
-        let (t, h) = (self.batch.t(lane), self.batch.h.lane(lane));
-        if path.phase == Phase::Approaching
-            && self.tracking.bits == DOUBLE
-            && self.tracking.up
-            && path.steps_here >= MANY_STEPS
-            && h < SHORT * t.re
-        {
-            return true;
+        if self.tracking.bits > DOUBLE || !self.tracking.up {
+            return false;
         }
-        let in_endgame = match path.phase {
-            Phase::Turning | Phase::Inward => true,
-            Phase::Approaching => self.batch.t(lane).re <= self.settings.endgame_boundary,
+        let path = &self.lanes[lane];
+        let many = path.effort > u64::from(self.settings.max_steps / LABOUR);
+        match path.phase {
+            Phase::Turning | Phase::Inward => many,
+            Phase::Approaching => {
+                let (t, h) = (self.batch.t(lane).re, self.batch.h.lane(lane));
+                let too_short = path.steps_here >= MANY_STEPS && h < SHORT * t;
+                too_short || many && t <= self.settings.endgame_boundary
+            }
             _ => false,
-        };
-        let most = u64::from(self.settings.max_steps / LABOUR);
-        in_endgame && self.tracking.bits == DOUBLE && self.tracking.up && path.effort > most
+        }
     }
 
     /// A path that came up a rung from where fewer digits had lost it follows its whole way on

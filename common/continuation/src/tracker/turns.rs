@@ -21,6 +21,10 @@ use num_complex::Complex64;
 /// The first point of turns is where they may begin again on another rung if its last Newton
 /// correction is below this.
 const FIRM: f64 = 1e-10;
+/// Equations, scaled to 1, are at most this at the end of an endgame,
+const SOLVES: f64 = 1e-11;
+/// or so many times the end's estimated error.
+const SOLVES_WITHIN: f64 = 1e3;
 /// Valuations are compared when t has become this part of what it was.
 const ZONE: f64 = 0.5;
 
@@ -165,6 +169,10 @@ impl<R: Real> Lockstep<'_, R> {
                     self.point.clear();
                     self.point.extend_from_slice(&settled.endpoint);
                     report = self.refiner.report(&self.point, target);
+                    if report.residual > SOLVES.max(SOLVES_WITHIN * settled.accuracy) {
+                        let next = self.lanes[lane].cauchy.agreed_on_none(&self.settings);
+                        return self.follow_endgame(lane, next);
+                    }
                     report.accuracy = settled.accuracy;
                     PathOutcome::Singular
                 };

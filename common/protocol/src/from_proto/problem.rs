@@ -1,6 +1,6 @@
 //! Problem message to Submission, System message to a checked System.
 
-use super::question::question;
+use super::question::{question, witness_sets};
 use super::{digest, finite, method, points, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
@@ -14,7 +14,7 @@ use cognate_continuation::sharpening::MOST_DIGITS;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_solutions::closing_options::ClosingOptions;
-use cognate_solutions::witness;
+use cognate_solutions::witness::{self, KnownComponents};
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::formats::limits as sizes;
 use cognate_systems::scaling::Scaling;
@@ -225,11 +225,19 @@ fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
             ));
         }
     };
+    let known = match m.known {
+        None => None,
+        Some(known) => Some(KnownComponents {
+            equations: known.equations,
+            components: witness_sets(known.components).map_err(|e| e.within("decompose.known"))?,
+        }),
+    };
     Ok(Decompose {
         dimensions,
         idle_loops: m.idle_loops,
         method,
         verify: m.verify,
+        known,
     })
 }
 

@@ -102,7 +102,8 @@ fn rows(m: &v1::Points) -> Result<Vec<Vec<Complex64>>, ProtocolError> {
     Ok(rows.map(<[Complex64]>::to_vec).collect())
 }
 
-fn witness_sets(list: Vec<v1::WitnessSet>) -> Result<Vec<WitnessSet>, ProtocolError> {
+/// Components by their witness points.
+pub fn witness_sets(list: Vec<v1::WitnessSet>) -> Result<Vec<WitnessSet>, ProtocolError> {
     if list.len() > MOST_COMPONENTS {
         return Err(ProtocolError::invalid(
             "components",

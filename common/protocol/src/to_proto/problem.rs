@@ -1,6 +1,6 @@
 //! Submission to Problem message, System to System message.
 
-use super::question::question;
+use super::question::{question, witness_set};
 use super::{complexes, digest, points, small};
 use crate::submission::{
     Decompose, Options, PrecisionChoice, SettingsChoice, Source, StartKind, StartSolutions,
@@ -114,6 +114,10 @@ fn decompose(wanted: &Decompose) -> v1::Decompose {
         idle_loops: wanted.idle_loops,
         method: wanted.method.map(|method| method_number(method) as i32),
         verify: wanted.verify,
+        known: wanted.known.as_ref().map(|known| v1::KnownComponents {
+            equations: known.equations,
+            components: known.components.iter().map(witness_set).collect(),
+        }),
     }
 }
 

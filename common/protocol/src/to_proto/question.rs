@@ -73,7 +73,8 @@ fn rows(rows: &[&[Complex64]]) -> Option<v1::Points> {
     Some(points(&stored))
 }
 
-fn witness_set(set: &WitnessSet) -> v1::WitnessSet {
+/// A component by its witness points.
+pub fn witness_set(set: &WitnessSet) -> v1::WitnessSet {
     let slice: Vec<&[Complex64]> = set.slice.iter().map(Vec::as_slice).collect();
     let points: Vec<&[Complex64]> = set.points.iter().map(Vec::as_slice).collect();
     v1::WitnessSet {

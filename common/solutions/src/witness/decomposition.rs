@@ -63,6 +63,8 @@ pub struct Decomposition {
     pub method: Method,
     /// What a second way found; `None` where none was asked for.
     pub verification: Option<Verification>,
+    /// Whether these are components of a locus that was asked for, and not all components of the equations.
+    pub locus: bool,
     /// Lowest and highest dimension of the components that are wanted.
     pub asked: [u32; 2],
     /// The components: by dimension, degree and multiplicity, largest first.

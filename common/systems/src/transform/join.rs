@@ -1,6 +1,7 @@
 //! Join: a system with the equations of another, by the names of their variables.
 
-use crate::expression::{Node, NodeId};
+use super::import_renumbered::import_renumbered;
+use crate::expression::NodeId;
 use crate::system::System;
 use std::collections::HashMap;
 
@@ -46,18 +47,8 @@ pub fn join(first: &System, second: &System) -> Result<System, JoinError> {
     };
     let mut memory: HashMap<NodeId, NodeId> = HashMap::new();
     for (&equation, name) in second.equations.iter().zip(&second.equation_names) {
-        let copy = result.expressions.import(
-            &second.expressions,
-            equation,
-            &mut memory,
-            &mut |e, leaf| match leaf {
-                Node::Variable(v) => {
-                    let place = u32::try_from(places[*v as usize]);
-                    e.variable(place.expect("variables are counted in 32 bits"))
-                }
-                _ => unreachable!("a system without parameters has no other leaves"),
-            },
-        );
+        let from = (second, equation);
+        let copy = import_renumbered(&mut result.expressions, from, &mut memory, |v| places[v]);
         result.equations.push(copy);
         let mut name = name.clone();
         while result.equation_names.contains(&name) {

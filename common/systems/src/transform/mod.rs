@@ -9,6 +9,7 @@ mod deflate;
 mod factors;
 mod fix_parameters;
 mod homogenize;
+mod import_renumbered;
 mod independent;
 mod join;
 mod polar;

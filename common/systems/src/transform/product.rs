@@ -1,6 +1,7 @@
 //! Product: two systems side by side, in variables of their own.
 
-use crate::expression::{Expressions, Node, NodeId};
+use super::import_renumbered::import_renumbered;
+use crate::expression::{Expressions, NodeId};
 use crate::system::{System, VariableGroup};
 use std::collections::HashMap;
 
@@ -34,18 +35,8 @@ pub fn product(first: &System, second: &System, own: usize) -> System {
     for (which, system) in [first, second].into_iter().enumerate() {
         let mut memory: HashMap<NodeId, NodeId> = HashMap::new();
         for (&equation, name) in system.equations.iter().zip(&system.equation_names) {
-            let copy = result.expressions.import(
-                &system.expressions,
-                equation,
-                &mut memory,
-                &mut |e, leaf| match leaf {
-                    Node::Variable(v) => {
-                        let place = place(which, *v as usize);
-                        e.variable(u32::try_from(place).expect("variables are counted in 32 bits"))
-                    }
-                    _ => unreachable!("a system without parameters has no other leaves"),
-                },
-            );
+            let (from, place) = ((system, equation), |v| place(which, v));
+            let copy = import_renumbered(&mut result.expressions, from, &mut memory, place);
             result.equations.push(copy);
             // With a colon in it, it is the name of no variable in a file.
             let side = which + 1;

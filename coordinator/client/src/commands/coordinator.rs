@@ -1,7 +1,7 @@
 //! `cognate coordinator`: the service.
 
 use crate::arguments::Coordinator;
-use crate::config_file::ConfigFile;
+use crate::config_file::{ConfigFile, DAY, age_ms};
 use crate::error::{ClientError, Exit};
 use cognate_coordinator::api::security::{Tls, Tokens};
 use cognate_coordinator::config::{Config, ListenAddress};
@@ -90,6 +90,10 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
             return Err(wrong("--config", &what));
         }
     };
+    if let Some(days) = a.retain_days {
+        let keep = age_ms("--retain-days", days, DAY);
+        config.rules.policy.retention.keep_ms = keep.map_err(|e| wrong("--retain-days", &e))?;
+    }
     config.metrics = a.metrics.clone().or(file.metrics);
     config.insecure = a.insecure || file.insecure.unwrap_or(false);
     Ok(config)

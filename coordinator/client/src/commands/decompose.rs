@@ -1,15 +1,75 @@
 //! `cognate decompose`: every irreducible component of every dimension, on a coordinator of its own or on a
-//! running one.
+//! running one; of a system, or of one whose components are known with further equations.
 
-use crate::arguments::Decompose;
+use super::question::{joined, read};
+use crate::arguments::{Decompose, MethodName};
 use crate::commands::solve;
+use crate::connection::Target;
 use crate::error::{ClientError, Exit};
-use crate::problem;
+use crate::problem::{self, Prepared, read_system};
+use cognate_continuation::tracker::settings::Preset;
+use cognate_protocol::submission::{self, Options, SettingsChoice, Source, Submission};
+use cognate_solutions::closing_options::ClosingOptions;
+use cognate_solutions::witness::KnownComponents;
+use std::path::Path;
 
 /// Decomposes, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Decompose) -> Result<Exit, ClientError> {
-    let prepared = problem::for_components(problem::prepare(&a.problem())?, &a.components);
-    let output = a.output();
     let running = a.service.running()?;
+    let prepared = match (&a.file, &a.resume, &a.add) {
+        (Some(file), ..) => problem::prepare(&a.problem(file))?,
+        (None, Some(set), Some(added)) => resumed(a, set, added, running.as_ref()).await?,
+        (None, ..) => unreachable!("the parser wants a file, or --resume with --add"),
+    };
+    let prepared = problem::for_components(prepared, &a.components);
+    let output = a.output();
     solve::anywhere(&a.service, running.as_ref(), &output, &a.progress, prepared).await
+}
+
+/// The components of a set with further equations.
+async fn resumed(
+    a: &Decompose,
+    set: &Path,
+    added: &Path,
+    running: Option<&Target>,
+) -> Result<Prepared, ClientError> {
+    let method = a.components.method;
+    if !matches!(method, MethodName::Auto | MethodName::Equations) {
+        return Err(ClientError::Input {
+            origin: "--method".into(),
+            message: "does not go with --resume, which cuts equation by equation".into(),
+        });
+    }
+    let known = read(set, &[], running).await?;
+    known.check_whole(a.components.dimension.map_or(0, |d| d.lowest))?;
+    let system = joined(&known, added, &read_system(added, None)?.system)?;
+    let equations = known.system.equations.len();
+    let known_components = KnownComponents {
+        equations: u32::try_from(equations).expect("equations are counted in 32 bits"),
+        components: known.sets(),
+    };
+    let options = Options {
+        seed: Some(known.seed),
+        settings: SettingsChoice {
+            preset: Some(Preset::from(a.preset)),
+            ..SettingsChoice::default()
+        },
+        closings: ClosingOptions {
+            certify: a.certify,
+            ..ClosingOptions::default()
+        },
+        name: known.name.chars().take(60).collect(),
+        decompose: Some(submission::Decompose {
+            known: Some(known_components),
+            ..submission::Decompose::default()
+        }),
+        ..Options::default()
+    };
+    Ok(Prepared {
+        submission: Submission {
+            source: Source::System(Box::new(system)),
+            options,
+        },
+        name: known.name,
+    })
 }

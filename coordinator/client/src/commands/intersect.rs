@@ -1,14 +1,12 @@
 //! `cognate intersect`: what components have in common with other components, or with the solutions of a file. The job
 //! is of the equations of both together; its answer is a decomposition.
 
-use super::question::{prepared, read, send};
+use super::question::{joined, prepared, read, send};
 use crate::error::{ClientError, Exit};
 use crate::problem::read_system;
-use crate::sets::KnownSet;
 use crate::sets::arguments::Intersect;
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::SecondSet;
-use cognate_systems::transform::join;
 use std::path::Path;
 
 /// Reads and checks both, asks, and shows the answer.
@@ -32,7 +30,7 @@ pub async fn run(a: &Intersect) -> Result<Exit, ClientError> {
             }
             let system = match same {
                 true => first.system.clone(),
-                false => joined(a, &first, &other.system)?,
+                false => joined(&first, &a.second, &other.system)?,
             };
             let second = SecondSet {
                 own,
@@ -55,7 +53,7 @@ pub async fn run(a: &Intersect) -> Result<Exit, ClientError> {
                 from: own,
                 components: Vec::new(),
             };
-            (joined(a, &first, &given)?, second)
+            (joined(&first, &a.second, &given)?, second)
         }
     };
     let mut both = first;
@@ -71,14 +69,6 @@ fn is_set(path: &Path) -> bool {
         || names
             .iter()
             .any(|name| path.file_name().is_some_and(|n| n == *name))
-}
-
-fn joined(
-    a: &Intersect,
-    first: &KnownSet,
-    second: &cognate_systems::system::System,
-) -> Result<cognate_systems::system::System, ClientError> {
-    join(&first.system, second).map_err(|error| wrong(&a.second, &error.to_string()))
 }
 
 fn count(equations: usize) -> u32 {

@@ -1,11 +1,14 @@
 //! The commands, one file each.
 
+pub mod backup;
 pub mod cancel;
 pub mod convert;
 pub mod coordinator;
 pub mod decompose;
+pub mod delete;
 pub mod explain;
 pub mod fleet;
+pub mod fsck;
 pub mod info;
 pub mod intersect;
 pub mod jobs;

@@ -14,6 +14,8 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Asked, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::witness::question::SampleWish;
 use cognate_solutions::witness::{ComponentId, Question};
+use cognate_systems::system::System;
+use cognate_systems::transform::join;
 use std::path::Path;
 
 /// On which components points lie.
@@ -188,6 +190,16 @@ pub(super) fn prepared(
         },
         name: set.name.clone(),
     })
+}
+
+/// The system of a set with the equations of a file, in the same variables.
+pub(super) fn joined(
+    first: &KnownSet,
+    path: &Path,
+    second: &System,
+) -> Result<System, ClientError> {
+    join(&first.system, second)
+        .map_err(|error| wrong(&path.display().to_string(), &error.to_string()))
 }
 
 fn wrong(origin: &str, message: &str) -> ClientError {

@@ -225,15 +225,9 @@ fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result
             let count = c["count"].as_u64().unwrap_or(0) as usize;
             std::iter::repeat_n(cell(&c["id"]), count)
         });
-        let parts = (0..summary.problem.variables).map(|v| format!("re{v},im{v}"));
-        out.write(&format!(
-            "component,{}\n",
-            parts.collect::<Vec<_>>().join(",")
-        ))?;
+        out.write(&format!("component,{}\n", parts(summary.problem.variables)))?;
         for (id, point) in of.zip(summary.points.iter().flatten()) {
-            let coordinates = point.as_array().into_iter().flatten();
-            let numbers = coordinates.map(|z| format!("{},{}", z[0], z[1]));
-            out.write(&format!("{id},{}\n", numbers.collect::<Vec<_>>().join(",")))?;
+            out.write(&format!("{id},{}\n", numbers(point)))?;
         }
         out.finish()?;
     }
@@ -251,37 +245,35 @@ fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result
 
 /// Points with their components, one a line.
 fn listed<'a>(points: impl Iterator<Item = (String, &'a Value)>, variables: u64) -> String {
-    let parts = (0..variables).map(|v| format!("re{v},im{v}"));
-    let parts: Vec<String> = parts.collect();
-    let mut text = format!("component,{}\n", parts.join(","));
+    let mut text = format!("component,{}\n", parts(variables));
     for (id, point) in points {
-        let coordinates = point.as_array().into_iter().flatten();
-        let numbers: Vec<String> = coordinates.map(|z| format!("{},{}", z[0], z[1])).collect();
-        let _ = writeln!(text, "{id},{}", numbers.join(","));
+        let _ = writeln!(text, "{id},{}", numbers(point));
     }
     text
 }
 
+/// Heads of the columns with the real and imaginary parts of a point.
+fn parts(variables: u64) -> String {
+    let parts = (0..variables).map(|v| format!("re{v},im{v}"));
+    parts.collect::<Vec<String>>().join(",")
+}
+
+/// The real and imaginary parts of a point.
+fn numbers(point: &Value) -> String {
+    let coordinates = point.as_array().into_iter().flatten();
+    let numbers = coordinates.map(|z| format!("{},{}", z[0], z[1]));
+    numbers.collect::<Vec<String>>().join(",")
+}
+
 /// The points of arcs, one a line.
 fn arcs(curves: &[Value], variables: u64) -> String {
-    let parts = (0..variables).map(|v| format!("re{v},im{v}"));
-    let mut text = format!(
-        "component,edge,index,{}\n",
-        parts.collect::<Vec<_>>().join(",")
-    );
+    let mut text = format!("component,edge,index,{}\n", parts(variables));
     for curve in curves {
         for (edge, arc) in curve["edges"].as_array().into_iter().flatten().enumerate() {
             let samples = arc["samples"].as_array().into_iter().flatten();
             for (index, point) in samples.enumerate() {
-                let coordinates = point.as_array().into_iter().flatten();
-                let numbers = coordinates.map(|z| format!("{},{}", z[0], z[1]));
-                let numbers: Vec<String> = numbers.collect();
-                let _ = writeln!(
-                    text,
-                    "{},{edge},{index},{}",
-                    cell(&curve["id"]),
-                    numbers.join(",")
-                );
+                let (id, numbers) = (cell(&curve["id"]), numbers(point));
+                let _ = writeln!(text, "{id},{edge},{index},{numbers}");
             }
         }
     }

@@ -58,6 +58,7 @@ pub(super) fn read(folder: &Path) -> Result<KnownSet, ClientError> {
     Ok(KnownSet {
         name: folder.display().to_string(),
         system,
+        searched: None,
         seed: SEED,
         origin,
         components,

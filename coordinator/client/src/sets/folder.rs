@@ -1,6 +1,6 @@
 //! The folder that `decompose --output` wrote: decomposition.json, system.json, witness_points.jsonl.
 
-use super::{Described, Known, KnownSet, read_problem, read_text, wrong};
+use super::{Described, Known, KnownSet, Searched, read_problem, read_text, wrong};
 use crate::error::ClientError;
 use cognate_solutions::witness::ComponentId;
 use num_complex::Complex64;
@@ -55,6 +55,7 @@ pub(super) fn read(folder: &Path) -> Result<KnownSet, ClientError> {
     let known = KnownSet {
         name: folder.display().to_string(),
         system,
+        searched: Some(Searched::of(&described)),
         seed: described.seed,
         origin,
         components,

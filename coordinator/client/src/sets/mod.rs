@@ -10,8 +10,9 @@ mod tests;
 
 use super::connection::Connection;
 use super::error::ClientError;
-use cognate_algorithms::decomposition::DecompositionOptions;
+use cognate_algorithms::decomposition::{DecompositionOptions, dimensions};
 use cognate_algorithms::questions::{OperandError, QuestionError, QuestionSolve, run_locally};
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{Answer, ComponentId, Irreducible, Question, WitnessSet};
 use cognate_systems::formats;
 use cognate_systems::system::System;
@@ -37,6 +38,8 @@ pub struct KnownSet {
     pub name: String,
     /// The system at the values of its parameters.
     pub system: System,
+    /// What was searched, where that is known.
+    searched: Option<Searched>,
     /// Seed of the decomposition, which charts of homogeneous groups depend on.
     pub seed: u64,
     /// The file, or the job, with the components.
@@ -52,9 +55,36 @@ struct Described {
     components: Vec<WitnessSet>,
     dimensions: Vec<DescribedDimension>,
     seed: u64,
+    asked: [u32; 2],
+    /// Absent where an older program wrote it.
+    #[serde(default)]
+    locus: Option<bool>,
     /// Where the system is not in a file of its own.
     #[serde(default)]
     system: Option<String>,
+}
+
+/// Of which components a set holds all.
+#[derive(Clone, Debug)]
+struct Searched {
+    /// Lowest and highest dimension that was asked.
+    asked: [u32; 2],
+    /// Whether it is known to be a decomposition, and no locus.
+    whole: bool,
+    /// Dimensions in which components may be missing.
+    incomplete: Vec<u32>,
+}
+
+impl Searched {
+    fn of(described: &Described) -> Self {
+        let dimensions = described.dimensions.iter();
+        let incomplete = dimensions.filter(|d| d.complete != Completeness::Yes);
+        Self {
+            asked: described.asked,
+            whole: described.locus == Some(false),
+            incomplete: incomplete.map(|d| d.number).collect(),
+        }
+    }
 }
 
 /// What is asked of a dimension: that its components are all there.
@@ -62,6 +92,7 @@ struct Described {
 struct DescribedDimension {
     number: u32,
     degree: u64,
+    complete: Completeness,
 }
 
 impl KnownSet {
@@ -78,6 +109,7 @@ impl KnownSet {
         let known = Self {
             name: job.to_owned(),
             system,
+            searched: Some(Searched::of(&described)),
             seed: described.seed,
             origin: origin.clone(),
             components: described
@@ -138,6 +170,37 @@ impl KnownSet {
             .iter()
             .map(|known| known.set.clone())
             .collect()
+    }
+
+    /// Whether these are all components that other equations may cut down to the lowest dimension that is wanted.
+    pub fn check_whole(&self, lowest: u32) -> Result<(), ClientError> {
+        let refused = |message: &str| Err(wrong(&self.origin, message));
+        let Some(searched) = &self.searched else {
+            return refused(
+                "does not say which dimensions were searched; expected decomposition.json",
+            );
+        };
+        if !searched.whole {
+            return refused(
+                "holds components of a locus, or is of an older program; expected all components of a system",
+            );
+        }
+        let possible = dimensions(&self.system, &self.options());
+        let [least, most] = possible.map_err(|error| wrong(&self.origin, &error.to_string()))?;
+        let [from, to] = searched.asked;
+        if from > least.max(lowest) || to < most {
+            let message = format!(
+                "its dimensions {from} to {to} were searched; expected {} to {most}",
+                least.max(lowest)
+            );
+            return refused(&message);
+        }
+        if let Some(number) = searched.incomplete.iter().find(|&&n| n >= lowest) {
+            let message =
+                format!("dimension {number} may not be complete, so that nothing is made of it");
+            return refused(&message);
+        }
+        Ok(())
     }
 
     /// How this set is asked: by its own seed.

@@ -13,6 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Tables {
     pub requests: BTreeMap<RequestId, JobId>,
     pub jobs: BTreeMap<JobId, Job>,
+    pub deleted: BTreeSet<JobId>,
     /// Virtual time of each tenant: microseconds of CPU that were used or are in use.
     pub tenants: BTreeMap<Tenant, i64>,
     pub workers: BTreeMap<WorkerId, Worker>,

@@ -445,14 +445,15 @@ impl Connection {
         Ok(())
     }
 
-    /// Brings the schema to this version, all or nothing.
+    /// Brings the schema to this version, all or nothing; a ledger without an identity gets this one.
     pub async fn migrate(
         &mut self,
         migrations: &[&'static str],
         known: i64,
+        identity: &str,
     ) -> Result<(), LedgerError> {
         self.begin().await?;
-        let done = self.migrate_in(migrations, known).await;
+        let done = self.migrate_in(migrations, known, identity).await;
         match done {
             Ok(()) => self.commit().await,
             Err(error) => {
@@ -467,6 +468,7 @@ impl Connection {
         &mut self,
         migrations: &[&'static str],
         known: i64,
+        identity: &str,
     ) -> Result<(), LedgerError> {
         let count = match self {
             Self::Sqlite(..) => "SELECT COUNT(*) AS n FROM sqlite_master WHERE type = 'table'",
@@ -512,6 +514,10 @@ impl Connection {
             };
             query(write).bind(known).execute(self).await?;
         }
+        query("UPDATE ledger SET identity = ? WHERE identity IS NULL")
+            .bind(identity)
+            .execute(self)
+            .await?;
         Ok(())
     }
 }

@@ -6,10 +6,12 @@
 
 mod accusations;
 mod audit;
+pub mod copy;
 mod decode;
 mod engine;
 mod file_system;
 mod leases;
+mod removal;
 mod speculation;
 mod stewardship;
 mod writer;
@@ -33,7 +35,7 @@ const PATIENCE: Duration = Duration::from_secs(30);
 const PAUSE: Duration = Duration::from_millis(500);
 
 /// Version of the schema that this program writes.
-pub const SCHEMA_VERSION: i64 = 4;
+pub const SCHEMA_VERSION: i64 = 5;
 
 /// What makes version n + 1 of version n; the first makes version 1 of an empty database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
@@ -41,6 +43,7 @@ const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
     include_str!("../schema_2.sql"),
     include_str!("../schema_3.sql"),
     include_str!("../schema_4.sql"),
+    include_str!("../schema_5.sql"),
 ];
 
 /// A ledger in a database.
@@ -82,7 +85,10 @@ impl SqlLedger {
 
     async fn open(engine: Engine) -> Result<Self, LedgerError> {
         let mut connection = engine.connect().await?;
-        connection.migrate(&MIGRATIONS, SCHEMA_VERSION).await?;
+        let fresh = uuid::Uuid::new_v4().to_string();
+        connection
+            .migrate(&MIGRATIONS, SCHEMA_VERSION, &fresh)
+            .await?;
         let readers = engine.readers().await?;
         Ok(Self {
             writer: Writer::start(engine, connection),
@@ -145,6 +151,25 @@ impl Ledger for SqlLedger {
         self.writer
             .write(move |c, now| Box::pin(stewardship::cancel(c, now, job, reason)))
             .await
+    }
+
+    async fn delete(&self, job: JobId) -> Result<Deleted, LedgerError> {
+        self.writer
+            .write(move |c, now| Box::pin(removal::delete(c, now, job)))
+            .await
+    }
+
+    async fn is_deleted(&self, job: JobId) -> Result<bool, LedgerError> {
+        let row = removal::deleted(job).read_optional(&self.readers).await?;
+        Ok(row.is_some())
+    }
+
+    async fn identity(&self) -> Result<Option<String>, LedgerError> {
+        let row = query("SELECT identity FROM ledger")
+            .read_optional(&self.readers)
+            .await?;
+        let row = row.ok_or_else(|| LedgerError::Damaged("it has no identity".into()))?;
+        row.try_get("identity")
     }
 
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {

@@ -5,6 +5,7 @@ use super::audit;
 use super::decode::*;
 use super::engine::{Connection, query};
 use super::leases::{insert_ready, release_all};
+use super::removal::deleted;
 use super::speculation::drop_elder;
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
@@ -52,6 +53,9 @@ pub async fn submit(
             job: id,
             is_new: false,
         });
+    }
+    if deleted(id).fetch_optional(&mut *c).await?.is_some() {
+        return Err(LedgerError::RequestOfDeleted(request));
     }
     // Nobody saves up virtual time while he has no jobs.
     let row = query(

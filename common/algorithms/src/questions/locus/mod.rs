@@ -431,6 +431,7 @@ impl Locus {
             variables: variables.to_vec(),
             method: Method::Equations,
             verification: None,
+            locus: true,
             asked: [self.lowest() as u32, highest],
             components: std::mem::take(&mut self.components),
             dimensions: std::mem::take(&mut self.dimensions),
@@ -449,7 +450,7 @@ fn exact_end(values: Vec<Complex64>) -> SingularEnd {
     }
 }
 
-/// Whether two points are one, relative to their size.
+/// How far apart two points are, relative to the size of the first and 1.
 pub(super) fn apart(a: &[Complex64], b: &[Complex64]) -> f64 {
     let (mut apart, mut size) = (0.0, 1.0f64);
     for (x, y) in a.iter().zip(b) {

@@ -2,15 +2,16 @@
 //!
 //! What comes in is what somebody read or sent: its points are believed only where Newton's method settles at them.
 
-use crate::decomposition::deflated::{Deflations, PureSet, equal_ones_merged};
-use crate::decomposition::job::Job;
-use crate::decomposition::problem::Problem;
-use crate::decomposition::superset::SingularEnd;
+use super::deflated::{Deflations, PureSet, equal_ones_merged};
+use super::job::Job;
+use super::problem::Problem;
+use super::superset::SingularEnd;
 use cognate_continuation::bend::RefinedPoint;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_solutions::witness::{ComponentId, WitnessSet};
 use num_complex::Complex64;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Most witness points of all components about which something is asked.
 pub const MOST_WITNESS_POINTS: usize = 100_000;
@@ -221,6 +222,37 @@ impl Operand {
     }
 }
 
+/// Components of one problem, in the unknowns that are tracked.
+#[derive(Clone, Debug)]
+pub(crate) struct TrackedSet {
+    pub problem: Arc<Problem>,
+    pub operands: Arc<Vec<Operand>>,
+    pub deflations: Deflations,
+}
+
+impl TrackedSet {
+    /// The components, each named once, where all of their points are the problem's.
+    pub fn new(problem: Arc<Problem>, given: &[WitnessSet]) -> Result<Self, OperandError> {
+        let points = given.iter().map(|set| set.points.len()).sum();
+        if points > MOST_WITNESS_POINTS {
+            return Err(OperandError::TooMany(points));
+        }
+        let mut names = BTreeSet::new();
+        if let Some(twice) = given.iter().find(|set| !names.insert(set.id)) {
+            return Err(OperandError::Name(twice.id));
+        }
+        let mut deflations = Deflations::default();
+        let operands = given.iter();
+        let operands = operands.map(|set| Operand::new(&problem, &mut deflations, set));
+        let operands = operands.collect::<Result<_, _>>()?;
+        Ok(Self {
+            problem,
+            operands: Arc::new(operands),
+            deflations,
+        })
+    }
+}
+
 /// How far a point is from where it was, in the given unknowns, relative to its size or to 1.
 fn moved(refined: &RefinedPoint, start: &[Complex64]) -> f64 {
     let now = refined
@@ -281,26 +313,6 @@ fn check_shape(problem: &Problem, given: &WitnessSet) -> Result<(), OperandError
         });
     }
     Ok(())
-}
-
-/// All components, each named once.
-pub(crate) fn all(
-    problem: &Problem,
-    deflations: &mut Deflations,
-    given: &[WitnessSet],
-) -> Result<Vec<Operand>, OperandError> {
-    let points = given.iter().map(|set| set.points.len()).sum();
-    if points > MOST_WITNESS_POINTS {
-        return Err(OperandError::TooMany(points));
-    }
-    let mut names = BTreeSet::new();
-    if let Some(twice) = given.iter().find(|set| !names.insert(set.id)) {
-        return Err(OperandError::Name(twice.id));
-    }
-    let operands = given.iter();
-    operands
-        .map(|set| Operand::new(problem, deflations, set))
-        .collect()
 }
 
 /// The deflations after which the equations are regular at a point of a slice, where it is known to some digits

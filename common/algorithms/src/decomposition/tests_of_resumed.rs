@@ -1,0 +1,288 @@
+//! Components of some equations that others cut: the answer is that of all equations together.
+
+use super::*;
+use crate::restarts::with_restarts;
+use crate::run_locally::drive;
+use crate::{AnySolve, PathAlgorithm};
+use cognate_continuation::prepared_work::PreparedWork;
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_systems::formats;
+use std::collections::HashMap;
+
+fn system(text: &str) -> System {
+    let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
+    formats::read("test", text.as_bytes()).unwrap().system
+}
+
+/// A system of equations that are separated by commas.
+fn equations(variables: &str, list: &[&str]) -> System {
+    let list: Vec<&str> = list.iter().flat_map(|part| part.split(", ")).collect();
+    let names: Vec<String> = (0..list.len()).map(|k| format!("f{k}")).collect();
+    let pairs = names.iter().zip(&list);
+    let lines: String = pairs.map(|(name, f)| format!("{name} = {f}; ")).collect();
+    system(&format!(
+        "{variables}; function {}; {lines}",
+        names.join(", ")
+    ))
+}
+
+fn options(seed: u64) -> DecompositionOptions {
+    DecompositionOptions {
+        seed,
+        ..DecompositionOptions::default()
+    }
+}
+
+fn decomposed(system: &System, options: &DecompositionOptions) -> Decomposition {
+    run_locally(DecompositionSolve::new(system, options).unwrap(), 8).unwrap()
+}
+
+/// Options with the components of the first equations.
+fn resuming(variables: &str, first: &str, seed: u64) -> DecompositionOptions {
+    let system = equations(variables, &[first]);
+    let found = decomposed(&system, &options(seed));
+    assert!(found.settled(), "{first}: {found:#?}");
+    DecompositionOptions {
+        known: Some(KnownComponents {
+            equations: system.equations.len() as u32,
+            components: found.components,
+        }),
+        ..options(seed)
+    }
+}
+
+/// Dimension, degree and multiplicity of each component.
+fn listed(found: &Decomposition) -> Vec<(u32, u64, Option<u64>)> {
+    let each = found.components.iter();
+    each.map(|set| (set.dimension(), set.degree, set.multiplicity.scheme))
+        .collect()
+}
+
+/// Equations, further ones, and the components of all of them.
+type Case<'a> = (&'a str, &'a str, &'a str, &'a [(u32, u64, Option<u64>)]);
+
+const PLANE: &str = "variable_group x, y";
+const SPACE: &str = "variable_group x, y, z";
+
+const CASES: [Case; 15] = [
+    (
+        SPACE,
+        "x^2 + y^2 + z^2 - 1",
+        "x + 2*y - z",
+        &[(1, 2, Some(1))],
+    ),
+    // A tangent plane.
+    (
+        SPACE,
+        "x^2 + y^2 + z^2 - 1",
+        "z - 1",
+        &[(1, 1, Some(1)), (1, 1, Some(1))],
+    ),
+    // Of the components some lie in the hypersurface, and what is cut out of others lies in these.
+    (
+        SPACE,
+        "x*y*(x^2 + y^2 + z^2 - 1)",
+        "x*(z - 2*y)",
+        &[(2, 1, Some(1)), (1, 2, Some(1)), (1, 1, Some(1))],
+    ),
+    // Cubic, three lines, sphere and a point, from the first of three equations (Bertini's nid example).
+    (
+        SPACE,
+        "(y - x^2)*(x^2 + y^2 + z^2 - 1)*(x - 1/2)",
+        "(z - x^3)*(x^2 + y^2 + z^2 - 1)*(y - 1/2), (y - x^2)*(z - x^3)*(x^2 + y^2 + z^2 - 1)*(z - 1/2)",
+        &[
+            (2, 2, Some(1)),
+            (1, 3, Some(1)),
+            (1, 1, Some(1)),
+            (1, 1, Some(1)),
+            (1, 1, Some(1)),
+            (0, 1, Some(1)),
+        ],
+    ),
+    // Nothing is cut: an equation of the same ideal, and one that is 0.
+    (PLANE, "x*y", "x^2*y", &[(1, 1, Some(1)), (1, 1, Some(1))]),
+    (
+        PLANE,
+        "x*y",
+        "(x + y)^2 - x^2 - 2*x*y - y^2",
+        &[(1, 1, Some(1)), (1, 1, Some(1))],
+    ),
+    // A double plane that is cut, ...
+    (
+        SPACE,
+        "x^2*(y - 1)",
+        "z - x",
+        &[(1, 1, Some(2)), (1, 1, Some(1))],
+    ),
+    // ... one that becomes single, ...
+    (SPACE, "x^2*(y - 1)", "x", &[(2, 1, Some(1))]),
+    // ... and one that lies in a hypersurface and stays double.
+    (
+        SPACE,
+        "x^2*(y - 1)",
+        "x^3*(z - 2)",
+        &[(2, 1, Some(2)), (1, 1, Some(1))],
+    ),
+    // A curve is cut in points, of which one is double.
+    (
+        SPACE,
+        "y - x^2, z - x*y",
+        "(x - 1)*(y + z)",
+        &[(0, 1, Some(2)), (0, 1, Some(1)), (0, 1, Some(1))],
+    ),
+    (SPACE, "x^2 + y^2 - 1, z", "z - 1", &[]),
+    // A point stays, or leaves.
+    (
+        PLANE,
+        "x*(x - 1), x*y",
+        "y",
+        &[(0, 1, Some(1)), (0, 1, Some(1))],
+    ),
+    (PLANE, "x*(x - 1), x*y", "y - 1", &[(0, 1, Some(1))]),
+    // Lines of the projective plane.
+    (
+        "hom_variable_group x, y, z",
+        "x*y",
+        "x*z",
+        &[(1, 1, Some(1)), (0, 1, Some(1))],
+    ),
+    // Rank one: the quadric, then two more minors.
+    (
+        "variable_group a, b, c, d, e, f",
+        "a*e - b*d",
+        "a*f - c*d, b*f - c*e",
+        &[(4, 3, Some(1))],
+    ),
+];
+
+#[test]
+fn the_answer_is_that_of_all_equations() {
+    for (number, (variables, first, added, expected)) in CASES.into_iter().enumerate() {
+        for seed in 1..=3 {
+            let seed = seed + 100 * number as u64;
+            let options = resuming(variables, first, seed);
+            let whole = equations(variables, &[first, added]);
+            let found = decomposed(&whole, &options);
+            assert_eq!(
+                listed(&found),
+                expected,
+                "{first}; {added}; {seed}: {found:#?}"
+            );
+            assert!(
+                found.settled() && found.adds_up(),
+                "{first}; {added}; {seed}: {found:#?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn another_way_agrees() {
+    for (variables, first, added, expected) in [CASES[2], CASES[3], CASES[9]] {
+        let options = DecompositionOptions {
+            verify: true,
+            certify: true,
+            ..resuming(variables, first, 7)
+        };
+        let found = decomposed(&equations(variables, &[first, added]), &options);
+        assert_eq!(listed(&found), expected);
+        let verified = found.verification.as_ref().expect("two ways were gone");
+        assert!(verified.agrees && found.settled(), "{found:#?}");
+    }
+}
+
+/// Equation by equation, each time from what is there.
+#[test]
+fn one_equation_after_the_other() {
+    let minors = ["a*e - b*d", "b*f - c*e", "c*g - d*f"];
+    let variables = "variable_group a, b, c, d, e, f, g";
+    let mut options = resuming(variables, minors[0], 3);
+    for count in 2..=3 {
+        let whole = equations(variables, &minors[..count]);
+        let found = decomposed(&whole, &options);
+        assert!(found.settled(), "{found:#?}");
+        assert_eq!(
+            listed(&found),
+            listed(&decomposed(&whole, &self::options(40)))
+        );
+        options.known = Some(KnownComponents {
+            equations: count as u32,
+            components: found.components,
+        });
+    }
+}
+
+#[test]
+fn a_state_that_was_read_back_goes_on() {
+    let (variables, first, added, _) = CASES[3];
+    let options = resuming(variables, first, 5);
+    let whole = equations(variables, &[first, added]);
+    let lived = decomposed(&whole, &options);
+    let solve = DecompositionSolve::new(&whole, &options).unwrap();
+    let solve = with_restarts(AnySolve::Decomposition(Box::new(solve)), &mut |_| {});
+    let Some(Answer::Decomposition(restarted)) = solve.answer(&whole) else {
+        panic!("a decomposition ends with one");
+    };
+    assert_eq!(*restarted, lived);
+}
+
+#[test]
+fn what_is_no_component_is_refused() {
+    let (variables, first, added, _) = CASES[0];
+    let good = resuming(variables, first, 5);
+    let whole = equations(variables, &[first, added]);
+    let refused = |spoil: &dyn Fn(&mut KnownComponents)| {
+        let mut options = good.clone();
+        spoil(options.known.as_mut().unwrap());
+        let refused = DecompositionSolve::new(&whole, &options).map(|_| ());
+        assert!(
+            matches!(refused, Err(ProblemError::Known(_))),
+            "{refused:?}"
+        );
+    };
+    refused(&|known| known.equations = 0);
+    refused(&|known| known.equations = 3);
+    refused(&|known| known.components[0].points[0][1] += 1e-3);
+    refused(&|known| known.components[0].slice.truncate(1));
+    refused(&|known| known.components[0].points.truncate(1));
+    refused(&|known| known.components.push(known.components[0].clone()));
+    // A sphere is not among the solutions of the second equation.
+    refused(&|known| known.components[0].deflation = vec![0]);
+}
+
+/// A path that is lost between two slices is a doubt, where no other way follows.
+#[test]
+fn a_lost_witness_point_is_a_doubt() {
+    let (variables, first, added, _) = CASES[0];
+    let options = DecompositionOptions {
+        max_retries: 0,
+        method: Some(Method::Equations),
+        ..resuming(variables, first, 5)
+    };
+    let whole = equations(variables, &[first, added]);
+    let mut root = Root::new(DecompositionSolve::new(&whole, &options).unwrap());
+    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+    let mut stages = 0;
+    let done: Result<(), PrepareError> = drive(&mut root, &mut |opening| {
+        let made = opening.objects.iter();
+        objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+        let find = |digest: Digest| objects.get(&digest).cloned();
+        let system = opening.system.as_deref().unwrap_or(&whole);
+        let prepared = PreparedWork::new(system, &opening.stage, &find)?;
+        let mut results = prepared.run(0..prepared.items(), 8);
+        stages += 1;
+        if let (1, Some(ItemResult::Track(path))) = (stages, results.first_mut()) {
+            path.outcome = PathOutcome::Failed(Failure::TooManySteps);
+        }
+        Ok(results)
+    });
+    assert_eq!(done, Ok(()));
+    let found = root.solve.decomposition().unwrap();
+    assert!(!found.settled(), "{found:#?}");
+    let lost = Doubt::FailedPaths { paths: 1 };
+    assert!(
+        found.dimensions.iter().any(|d| d.doubts.contains(&lost)),
+        "{found:#?}"
+    );
+}

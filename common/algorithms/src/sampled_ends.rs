@@ -1,0 +1,91 @@
+//! A few paths of a start, tracked while a solve is planned: whether most of them are wasted.
+//!
+//! A start bounds the solutions by degrees or groups. Where only a few of very many paths end at regular
+//! solutions, going on equation by equation leaves the others behind early.
+
+use cognate_continuation::stage::PreparedStage;
+use cognate_continuation::work::Stage;
+use cognate_numeric::precision::DOUBLE;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::{Tolerances, Verdict, classify};
+use cognate_solutions::point_shape::PointShape;
+use cognate_systems::system::System;
+use std::fmt::{Display, Formatter};
+
+/// Starts with more paths are tried.
+const MANY_PATHS: u64 = 1000;
+/// By so many of their paths.
+const SAMPLE: u64 = 32;
+/// Of which at most so many end at regular solutions where most are wasted.
+const FEW: u64 = SAMPLE / 4;
+/// No path of a sample takes more steps: one that does ends at no regular solution, as far as planning is
+/// concerned.
+const STEPS: u32 = 1000;
+
+/// Where the paths of a sample end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct SampledEnds {
+    /// How many paths the start has.
+    paths: u64,
+    /// How many of the sample ended at regular solutions,
+    regular: u64,
+    /// ... at singular points that are not at infinity.
+    singular: u64,
+}
+
+impl SampledEnds {
+    /// Of a stage whose start points it makes itself, where it has very many paths and most are wasted; `None` where
+    /// they are not.
+    pub(crate) fn of_wasted(
+        system: &System,
+        stage: &Stage,
+        tolerances: &Tolerances,
+    ) -> Option<Self> {
+        let paths = stage.items().filter(|paths| *paths > MANY_PATHS)?;
+        let ends = Self::of(system, stage, paths, tolerances)?;
+        ends.most_are_wasted().then_some(ends)
+    }
+
+    /// In doubles; `None` where the stage cannot be prepared. The paths lie one in each equal part of all, where in
+    /// it the stage's seed says.
+    fn of(system: &System, stage: &Stage, paths: u64, tolerances: &Tolerances) -> Option<Self> {
+        let mut stage = stage.clone();
+        stage.settings.max_precision_bits = DOUBLE;
+        stage.settings.max_steps = STEPS;
+        let prepared = PreparedStage::new(system, &stage, &|_| None).ok()?;
+        let shape = PointShape::of(system);
+        let mut within = RandomStream::new(stage.seed, Purpose::Probe, 2);
+        let mut ends = Self {
+            paths,
+            ..Self::default()
+        };
+        for part in 0..SAMPLE {
+            let (from, to) = (paths * part / SAMPLE, paths * (part + 1) / SAMPLE);
+            let item = from + within.below(to - from);
+            for result in prepared.track(item..item + 1, 1) {
+                match classify(&result, &shape, tolerances).verdict {
+                    Verdict::Finite => ends.regular += 1,
+                    verdict if verdict.may_be_multiple() => ends.singular += 1,
+                    _ => {}
+                }
+            }
+        }
+        Some(ends)
+    }
+
+    /// Whether few paths end at regular solutions, and none is known to end where equation by equation solutions may
+    /// be missed.
+    fn most_are_wasted(self) -> bool {
+        self.regular <= FEW && self.singular == 0
+    }
+}
+
+impl Display for SampledEnds {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { paths, regular, .. } = self;
+        write!(
+            f,
+            "{regular} of {SAMPLE} that were tried end at regular solutions of the {paths} paths"
+        )
+    }
+}

@@ -1,0 +1,200 @@
+//! Exact point: whether an endpoint is next to a solution with small rational coordinates, which exact arithmetic
+//! proves.
+//!
+//! Textbooks' multiple points mostly are. There the dual space is that of one point, not of several that are
+//! nearer together than the digits of an endpoint, and nothing but rounding stands between values and noise.
+
+use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_systems::expression::differentiate::below;
+use cognate_systems::expression::{Node, NodeId, exact};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::collections::HashMap;
+
+/// Denominators are at most this.
+const LARGEST_DENOMINATOR: u64 = 1000;
+/// A rational number as near to a coordinate as this, relative to its size or 1, is tried, however exact that is.
+const NEAR: f64 = 1e-11;
+/// Numbers that may have more bits than this are not computed, nor
+const MOST_BITS: u64 = 100_000;
+/// more than this in all of them together.
+const MOST_BITS_IN_ALL: u64 = 20_000_000;
+
+/// The solution with small rational coordinates within this relative error of a point of affine groups, exactly;
+/// `None` where there is none, or the equations are not rational.
+pub(super) fn exact_point(
+    system: &System,
+    parameters: &[Complex64],
+    point: &[Complex64],
+    error: f64,
+) -> Option<Vec<ComplexRational>> {
+    let rational = |z: &Complex64| -> Option<ComplexRational> {
+        Some(ComplexRational::new(
+            Rational::from_f64(z.re)?,
+            Rational::from_f64(z.im)?,
+        ))
+    };
+    if system.groups.iter().any(|group| group.homogeneous) {
+        return None;
+    }
+    let near = |z: &Complex64| -> Option<ComplexRational> {
+        let error = error.max(NEAR) * z.norm_sqr().sqrt().max(1.0);
+        Some(ComplexRational::new(
+            simplest_within(z.re, error)?,
+            simplest_within(z.im, error)?,
+        ))
+    };
+    let parameters: Option<Vec<_>> = parameters.iter().map(rational).collect();
+    let point: Option<Vec<_>> = point.iter().map(near).collect();
+    let (parameters, point) = (parameters?, point?);
+    if !is_small(system, &point, &parameters) {
+        return None;
+    }
+    let values = exact::values(&system.expressions, &system.equations, &point, &parameters);
+    let solved =
+        |value: &Option<ComplexRational>| value.as_ref().is_some_and(ComplexRational::is_zero);
+    values.iter().all(solved).then_some(point)
+}
+
+/// Bits of a numerator and of a denominator that is not 1.
+type Bits = (u64, u64);
+
+fn bits(value: &ComplexRational) -> Bits {
+    let of = |part: &Rational| -> Bits {
+        let denominator = match *part.denom() == 1 {
+            true => 0,
+            false => u64::from(part.denom().significant_bits()),
+        };
+        (u64::from(part.numer().significant_bits()), denominator)
+    };
+    sum(of(&value.re), of(&value.im))
+}
+
+/// A bound for a sum of two numbers.
+fn sum(a: Bits, b: Bits) -> Bits {
+    let numerator = a.0.saturating_add(b.1).max(b.0.saturating_add(a.1));
+    (numerator.saturating_add(1), a.1.saturating_add(b.1))
+}
+
+/// ... for a product.
+fn product(a: Bits, b: Bits) -> Bits {
+    let numerator = a.0.saturating_add(b.0).saturating_add(1);
+    (numerator, a.1.saturating_add(b.1))
+}
+
+/// Whether the equations' values can be computed exactly in little time and memory, by bounds for the numbers at all
+/// their nodes.
+fn is_small(system: &System, point: &[ComplexRational], parameters: &[ComplexRational]) -> bool {
+    let mut bounds: HashMap<NodeId, Bits> = HashMap::new();
+    let mut in_all = 0u64;
+    for id in below(&system.expressions, &system.equations) {
+        let given = |values: &[ComplexRational], k: &u32| values.get(*k as usize).map(bits);
+        let bound = match system.expressions.node(id) {
+            Node::Constant(c) => Some(bits(c)),
+            Node::Variable(v) => given(point, v),
+            Node::Parameter(p) => given(parameters, p),
+            Node::Add(a, b) | Node::Subtract(a, b) => Some(sum(bounds[a], bounds[b])),
+            Node::Multiply(a, b) => Some(product(bounds[a], bounds[b])),
+            // By the conjugate, over the square of the modulus.
+            Node::Divide(a, b) => {
+                let (numerator, denominator) = product(bounds[b], bounds[b]);
+                let all = numerator.saturating_add(denominator).saturating_mul(2);
+                Some(product(product(bounds[a], bounds[b]), (all, all)))
+            }
+            Node::Negate(a) => Some(bounds[a]),
+            Node::Power(a, exponent) => {
+                let (numerator, denominator) = bounds[a];
+                let times = |bits: u64| bits.saturating_mul(u64::from(*exponent));
+                Some((times(numerator.saturating_add(1)), times(denominator)))
+            }
+            Node::Root(..) | Node::Function(..) => None,
+        };
+        let Some(bound) = bound else {
+            return false;
+        };
+        let bits = bound.0.saturating_add(bound.1);
+        in_all = in_all.saturating_add(bits);
+        if bits > MOST_BITS || in_all > MOST_BITS_IN_ALL {
+            return false;
+        }
+        bounds.insert(id, bound);
+    }
+    true
+}
+
+/// The fraction with the least denominator that is within `error` of a number, by its continued fraction.
+fn simplest_within(value: f64, error: f64) -> Option<Rational> {
+    if !(value.is_finite() && value.abs() < 1e15) {
+        return None;
+    }
+    let (mut before, mut last) = ((0i128, 1i128), (1i128, 0i128));
+    let mut rest = value;
+    loop {
+        let whole = rest.round();
+        let convergent = |k: fn((i128, i128)) -> i128| whole as i128 * k(last) + k(before);
+        let (numerator, denominator) = (convergent(|p| p.0), convergent(|p| p.1));
+        if denominator.unsigned_abs() > u128::from(LARGEST_DENOMINATOR) || denominator == 0 {
+            return None;
+        }
+        if (value - numerator as f64 / denominator as f64).abs() <= error {
+            return Some(Rational::from((numerator, denominator)));
+        }
+        (before, last) = (last, (numerator, denominator));
+        let fraction = rest - whole;
+        if fraction == 0.0 {
+            return None;
+        }
+        rest = 1.0 / fraction;
+        if rest.abs() > 1e15 {
+            return None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn simple_fractions_are_found() {
+        for (numerator, denominator) in [(0, 1), (1, 3), (-22, 7), (355, 113), (5, 1), (-499, 1000)]
+        {
+            let value = f64::from(numerator) / f64::from(denominator);
+            let found = simplest_within(value + 1e-13, 1e-11);
+            assert_eq!(found, Some(Rational::from((numerator, denominator))));
+        }
+        for value in [
+            std::f64::consts::PI,
+            f64::NAN,
+            f64::INFINITY,
+            1e300,
+            1.0 / 1009.0,
+        ] {
+            assert_eq!(simplest_within(value, 1e-11), None, "{value}");
+        }
+    }
+
+    #[test]
+    fn only_solutions_are_taken() {
+        let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f, g;\nf = (3*x - 1)^4; g = x*y - 2/3;\nEND;\n";
+        let system = cognate_systems::formats::read("test", text.as_bytes())
+            .unwrap()
+            .system;
+        let near = |x: f64, y: f64| {
+            let point = [Complex64::new(x, 1e-12), Complex64::new(y, 0.0)];
+            exact_point(&system, &[], &point, 1e-11)
+        };
+        let third = ComplexRational::real(Rational::from((1, 3)));
+        let two = ComplexRational::real(Rational::from(2));
+        assert_eq!(near(1.0 / 3.0 + 3e-12, 2.0), Some(vec![third, two]));
+        assert_eq!(near(1.0 / 3.0, 2.001), None);
+        assert_eq!(near(0.4, 2.0), None);
+        // Solved at (2, 1/3), which is not computed.
+        let tower = text.replace("(3*x - 1)^4", "(x - 2)^90000");
+        let system = cognate_systems::formats::read("test", tower.as_bytes())
+            .unwrap()
+            .system;
+        let point = [Complex64::new(2.0, 0.0), Complex64::new(1.0 / 3.0, 0.0)];
+        assert_eq!(exact_point(&system, &[], &point, 1e-11), None);
+    }
+}

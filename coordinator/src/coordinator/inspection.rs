@@ -1,0 +1,260 @@
+//! Inspection: whether all that the ledger names is there and whole, and what is there that it does not name.
+//!
+//! What `cognate fsck` asks, of the ledger and the folder of a service that runs or not. Rows are read after the
+//! folder was listed, and what a coordinator writes or removes meanwhile is looked at again before it is said to
+//! be missing.
+
+use super::{Coordinator, CoordinatorError};
+use crate::jobs::large_stage::object_of;
+use crate::jobs::planning::Planned;
+use crate::ledger::LedgerError;
+use crate::ledger::identity::JobId;
+use crate::ledger::rows::{JobRow, ResultObject, StageRow};
+use crate::results::store::StoreError;
+use crate::results::trash::Amount;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::Stage;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// A file that a writer has not finished after this time was left by one that was killed.
+const UNFINISHED: Duration = Duration::from_secs(3600);
+/// Chunks in one answer of the ledger.
+const CHUNKS: u32 = 1000;
+
+/// An object that a row names and that cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The job whose row names it; another one may, too.
+    pub job: JobId,
+    /// What the object is: a summary, for instance.
+    pub is: &'static str,
+    /// What the store says: missing or damaged, with the address.
+    pub what: String,
+    /// There is none; otherwise it is another than was written.
+    pub missing: bool,
+    /// A coordinator has the paths tracked again by itself, while the job goes on.
+    pub tracked_again: bool,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Inspection {
+    /// Number of jobs in the ledger.
+    pub jobs: u64,
+    /// Number of objects that rows name, each once, good ones and others.
+    pub checked: u64,
+    /// Objects that cannot be read.
+    pub faults: Vec<Fault>,
+    /// Objects that nothing names, and late results of jobs that have ended; `None` where an object is lost
+    /// that would say what a job names.
+    pub unnamed: Option<Amount>,
+    /// Objects in the trash.
+    pub trash: Amount,
+    /// Jobs that are deleted, and whose results are still there.
+    pub deleted_jobs: Vec<JobId>,
+    /// Jobs of which there are results, and which the ledger neither knows nor has deleted.
+    pub unknown_jobs: Vec<JobId>,
+    /// Files of writers that were killed, with their sizes in bytes.
+    pub unfinished: Vec<(PathBuf, u64)>,
+}
+
+impl Inspection {
+    /// Whether all that the rows name is there and whole.
+    pub fn is_sound(&self) -> bool {
+        self.faults.is_empty()
+    }
+}
+
+/// What was looked at so far.
+#[derive(Default)]
+struct Seen {
+    digests: BTreeSet<Digest>,
+    found: Inspection,
+}
+
+impl Coordinator {
+    /// Looks at everything; changes nothing.
+    pub async fn inspect(&self) -> Result<Inspection, CoordinatorError> {
+        let with_results = self.store.jobs_with_results().await?;
+        let listed: BTreeMap<Digest, u64> = self.store.objects().await?.into_iter().collect();
+        let mut seen = Seen::default();
+        for trashed in self.store.in_trash().await? {
+            seen.found.trash += Amount::one(trashed.bytes);
+        }
+        for row in self.ledger.jobs(u32::MAX).await? {
+            match self.inspect_job(&row, &mut seen).await {
+                // Somebody has deleted it meanwhile.
+                Err(CoordinatorError::Ledger(LedgerError::UnknownJob(_))) => {}
+                done => done?,
+            }
+            seen.found.jobs += 1;
+        }
+        let mut found = seen.found;
+        let mut unnamed = Amount::default();
+        let objects = match self.unnamed(listed.keys().copied().collect()).await {
+            Err(CoordinatorError::Plan(_)) => None,
+            Err(CoordinatorError::Store(error)) if error.is_loss() => None,
+            objects => Some(objects?),
+        };
+        for digest in objects.iter().flatten() {
+            unnamed += Amount::one(listed[digest]);
+        }
+        for job in with_results {
+            match self.ledger.job(job).await? {
+                Some(row) if row.state.has_ended() => {
+                    for (_, bytes) in self.late_results(job).await? {
+                        unnamed += Amount::one(bytes);
+                    }
+                }
+                Some(_) => {}
+                None if self.ledger.is_deleted(job).await? => found.deleted_jobs.push(job),
+                None => found.unknown_jobs.push(job),
+            }
+        }
+        found.unnamed = objects.map(|_| unnamed);
+        found.unfinished = self.store.unfinished_files(UNFINISHED);
+        Ok(found)
+    }
+
+    async fn inspect_job(&self, row: &JobRow, seen: &mut Seen) -> Result<(), CoordinatorError> {
+        let planned = Planned::from_bytes(&row.asked.options);
+        if let Err(error) = &planned {
+            seen.found.faults.push(Fault {
+                job: row.job,
+                is: "the plan",
+                what: error.to_string(),
+                missing: false,
+                tracked_again: false,
+            });
+        }
+        let planned = planned.ok();
+        let objects = [
+            ("the submitted problem", planned.as_ref().map(|p| p.problem)),
+            ("the problem", Some(row.asked.problem)),
+            ("the first state", planned.as_ref().map(|p| p.first_state)),
+            ("the state", row.snapshot),
+            ("the solutions", row.solutions),
+            ("the summary", row.summary),
+        ];
+        for (is, digest) in objects {
+            if let Some(digest) = digest {
+                self.inspect_object(row, is, digest, seen).await?;
+            }
+        }
+        for stage in self.ledger.stages(row.job).await? {
+            let definition = stage.definition;
+            self.inspect_object(row, "a stage", definition, seen)
+                .await?;
+            let Ok(read) = self.store.stage(definition).await else {
+                continue;
+            };
+            for (is, digest) in [
+                ("the system of a stage", read.system),
+                ("start points", read.start_points.object()),
+            ] {
+                if let Some(digest) = digest {
+                    self.inspect_object(row, is, digest, seen).await?;
+                }
+            }
+            self.inspect_results(row, &stage, &read, seen).await?;
+        }
+        Ok(())
+    }
+
+    async fn inspect_object(
+        &self,
+        row: &JobRow,
+        is: &'static str,
+        digest: Digest,
+        seen: &mut Seen,
+    ) -> Result<(), CoordinatorError> {
+        if !seen.digests.insert(digest) {
+            return Ok(());
+        }
+        seen.found.checked += 1;
+        let read = self.store.get(digest).await.map(|_| ());
+        self.judge(row, is, read, false, seen).await
+    }
+
+    async fn inspect_results(
+        &self,
+        row: &JobRow,
+        stage: &StageRow,
+        read: &Stage,
+        seen: &mut Seen,
+    ) -> Result<(), CoordinatorError> {
+        let mut from = 0;
+        loop {
+            let (job, number) = (row.job, stage.stage);
+            let chunks = self.ledger.finished_chunks(job, number, from, CHUNKS);
+            let chunks = chunks.await?;
+            let Some(last) = chunks.last() else {
+                return Ok(());
+            };
+            from = last.items.last;
+            let objects: Vec<ResultObject> = chunks.into_iter().filter_map(object_of).collect();
+            for object in objects {
+                seen.found.checked += 1;
+                let results = self.store.results(&object, read.work).await.map(|_| ());
+                let again = !row.state.has_ended() && !stage.closed;
+                self.judge(row, "results of a chunk", results, again, seen)
+                    .await?;
+            }
+        }
+    }
+
+    /// Takes down what the store says of an object, unless the job is gone by now.
+    async fn judge(
+        &self,
+        row: &JobRow,
+        is: &'static str,
+        read: Result<(), StoreError>,
+        tracked_again: bool,
+        seen: &mut Seen,
+    ) -> Result<(), CoordinatorError> {
+        match read {
+            Ok(()) => Ok(()),
+            Err(error) if error.is_loss() => {
+                if self.ledger.job(row.job).await?.is_some() {
+                    seen.found.faults.push(Fault {
+                        job: row.job,
+                        is,
+                        what: error.to_string(),
+                        missing: matches!(error, StoreError::Missing(_)),
+                        tracked_again,
+                    });
+                }
+                Ok(())
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Removes what an inspection found that no row names; what a running service may be about to name only goes
+    /// into the trash. Gives how much went, or nothing where no job of the folder is this ledger's.
+    pub async fn repair(&self, found: &Inspection) -> Result<Amount, CoordinatorError> {
+        let unknown = match found.jobs {
+            0 => found.unknown_jobs.len() as u64,
+            _ => 0,
+        };
+        self.claim_results(unknown).await?;
+        let mut removed = Amount::default();
+        for job in found.unknown_jobs.iter().chain(&found.deleted_jobs) {
+            if self.ledger.job(*job).await?.is_none() {
+                removed += self.store.remove_results_of(*job).await?;
+            }
+        }
+        for (file, bytes) in &found.unfinished {
+            // Its writer may have finished it after all.
+            if std::fs::remove_file(file).is_ok() {
+                removed += Amount::one(*bytes);
+            }
+        }
+        let collected = self.collect().await?;
+        removed += collected.results;
+        removed += collected.removed;
+        Ok(removed)
+    }
+}
