@@ -175,7 +175,7 @@ fn plan_start_system(
     }
     let mut starts = Starts::of(system, options.seed)?;
     if *method == SolveMethod::Regeneration {
-        return plan_regeneration(system, starts, parameters, None, options);
+        return plan_regeneration(starts, parameters, None, options);
     }
     let named = |error: PlanError, starts: &Starts| match error {
         PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
@@ -256,7 +256,7 @@ fn plan_start_system(
         && let Some(wasted) = SampledEnds::of_wasted(&tracked, &first, &options.tracking.tolerances)
     {
         let why = format!("{wasted} by the {kind} start");
-        return plan_regeneration(system, starts, parameters, Some(why), options);
+        return plan_regeneration(starts, parameters, Some(why), options);
     }
     Ok(finish(tracked, first, kind, why, options))
 }
@@ -308,7 +308,6 @@ fn plan_polyhedral(
 
 /// Equation by equation, the lower degrees first. `chosen`: why, where it was not asked for.
 fn plan_regeneration(
-    system: &System,
     starts: Starts,
     parameters: Vec<Complex64>,
     chosen: Option<String>,
