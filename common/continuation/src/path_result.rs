@@ -126,9 +126,8 @@ impl MovedSlice {
         // Far away Newton's method may find nothing; but a residual that is small there and falls with
         // the distance is that of a point of high multiplicity.
         let clear = |slice: &Self| met(slice) || slice.residual > missed;
-        let (far, near): (Vec<&Self>, Vec<&Self>) = slices
-            .iter()
-            .partition(|slice| slice.distance >= FAR_SLICE);
+        let (far, near): (Vec<&Self>, Vec<&Self>) =
+            slices.iter().partition(|slice| slice.distance >= FAR_SLICE);
         near.iter().any(|slice| slice.distance >= TELLING_SLICE)
             && near.into_iter().all(met)
             && far.into_iter().all(clear)

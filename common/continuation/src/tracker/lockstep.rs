@@ -691,6 +691,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .collect();
         let path = &mut self.lanes[lane];
         path.evaluations += TERMS as u32;
+        path.effort += effort(self.tracking.bits);
         let Estimate {
             radius,
             separation,
@@ -735,8 +736,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         winding_number: Option<u32>,
         infinity_turns: Vec<i32>,
     ) {
-        let (outcome, report, endpoint) =
-            self.endpoint(self.lanes[lane].target, outcome, report);
+        let (outcome, report, endpoint) = self.endpoint(self.lanes[lane].target, outcome, report);
         let end = End {
             outcome,
             t: Complex64::default(),
@@ -750,10 +750,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// A path that cannot go on in this tracking context is handed to another one, or fails.
     pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
+        // Steps that looking around makes too short do not become longer with still more digits.
+        let robust = self.probe.is_some();
         let handoff = if self.tracking.projective {
             Handoff::Projective
         } else if self.tracking.up
-            && (why != Failure::EndgameUnsettled || self.tracking.bits < ENDGAME_BITS)
+            && (self.tracking.bits < ENDGAME_BITS || why != Failure::EndgameUnsettled && !robust)
         {
             Handoff::Up
         } else {
@@ -780,7 +782,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     /// ones before it that it will not get there: it is their noise that it follows. In robust mode very many steps
     /// anywhere say so.
     fn labours(&self, lane: usize) -> bool {
-        if self.tracking.bits > DOUBLE || !self.tracking.up {
+        if self.tracking.bits > DOUBLE || !(self.tracking.up || self.tracking.projective) {
             return false;
         }
         let path = &self.lanes[lane];
@@ -918,7 +920,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// Whether a homogenising coordinate of `self.point` is so small that digits of its own are wanted.
-    pub(super) fn is_far_out(&self) -> bool {
+    fn is_far_out(&self) -> bool {
         let homotopy = self.tracking.homotopy;
         homotopy.smallest_homogenizing(&homotopy.endpoint(&self.point)) < FAR_OUT
     }

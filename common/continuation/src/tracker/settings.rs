@@ -24,7 +24,7 @@ pub struct Settings {
     /// Smallest step, relative to the distance that is left to the next target in t.
     pub min_step: f64,
     /// Accepted and rejected steps of one path; one with 212 bits counts eight times, one with 424 bits sixteen times,
-    /// and so on.
+    /// and so on; twice as often in robust mode.
     pub max_steps: u32,
     /// Where the endgame begins, in |t|.
     pub endgame_boundary: f64,

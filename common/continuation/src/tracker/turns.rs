@@ -151,8 +151,7 @@ impl<R: Real> Lockstep<'_, R> {
                 let regular = settled.winding_number == 1
                     && report.converged
                     && report.condition <= 100.0 * near
-                    && moved <= 1e3 * settled.accuracy.max(1e-12)
-                    && (self.is_determined(&report) || self.is_far_out());
+                    && moved <= 1e3 * settled.accuracy.max(1e-12);
                 // In doubles a multiple point and points that are only close are the same (a
                 // perturbation by the unit roundoff takes a double point apart by its square root). Deflated
                 // equations tell; where they did not the path is tracked again, and the next rung tells.
@@ -203,12 +202,6 @@ impl<R: Real> Lockstep<'_, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
-    }
-
-    /// Whether coefficients within their accuracy have one solution beside `self.point`: roots that their rounding took
-    /// apart are a multiple one.
-    fn is_determined(&self, report: &Report) -> bool {
-        self.settings.exact_data || report.condition * self.settings.data_accuracy < 1.0
     }
 
     /// Turns have taken a path for one to infinity: it is, unless it ends far out.
