@@ -173,10 +173,10 @@ fn plan_start_system(
     if *method == SolveMethod::Polyhedral {
         return plan_polyhedral(system, parameters, "asked for".to_string(), options);
     }
-    if *method == SolveMethod::Regeneration {
-        return plan_regeneration(system, parameters, None, options);
-    }
     let mut starts = Starts::of(system, options.seed)?;
+    if *method == SolveMethod::Regeneration {
+        return plan_regeneration(starts, parameters, None, options);
+    }
     let named = |error: PlanError, starts: &Starts| match error {
         PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
             start,
@@ -226,7 +226,7 @@ fn plan_start_system(
             (tracked, start)
         }
         StartKind::LinearProduct => {
-            let start = starts.linear_product;
+            let start = starts.linear_product.take();
             let none = || Err("it was not asked for".to_string());
             let (tracked, start, count) = start
                 .unwrap_or_else(none)
@@ -256,7 +256,7 @@ fn plan_start_system(
         && let Some(wasted) = SampledEnds::of_wasted(&tracked, &first, &options.tracking.tolerances)
     {
         let why = format!("{wasted} by the {kind} start");
-        return plan_regeneration(system, parameters, Some(why), options);
+        return plan_regeneration(starts, parameters, Some(why), options);
     }
     Ok(finish(tracked, first, kind, why, options))
 }
@@ -308,12 +308,11 @@ fn plan_polyhedral(
 
 /// Equation by equation, the lower degrees first. `chosen`: why, where it was not asked for.
 fn plan_regeneration(
-    system: &System,
+    starts: Starts,
     parameters: Vec<Complex64>,
     chosen: Option<String>,
     options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
-    let starts = Starts::of(system, options.seed)?;
     // A bound of the paths on every level.
     let (tracked, _, bound) = starts.total_degree?;
     let degrees = starts.degrees.total;

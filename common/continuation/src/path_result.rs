@@ -110,14 +110,32 @@ pub struct MovedSlice {
     pub reached: f64,
 }
 
-/// Slices farther away than this leave a residual in proportion to their distance.
-const FAR_SLICE: f64 = 0.01;
+/// A slice at least this far away that is met tells a set from an isolated point of multiplicity below 10; farther
+/// away what Newton's method leaves on a set is a part of the distance.
+const TELLING_SLICE: f64 = 0.01;
+/// A slice at least this far away need not meet a set through the point.
+const FAR_SLICE: f64 = 0.05;
 
 impl MovedSlice {
-    /// The residual of a slice that is far away as it would be nearer: what Newton's method leaves there on a set is a
-    /// part of the distance.
-    pub fn near_residual(&self) -> f64 {
-        self.residual / (self.distance / FAR_SLICE).max(1.0)
+    /// Whether solutions are met on slices at all small distances, one of which is far enough away to mean something.
+    ///
+    /// A slice is met where the residual on it, as it would be nearer, is at most `residual`, and misses everything
+    /// where it is above `missed`.
+    pub fn are_met(slices: &[Self], residual: f64, missed: f64) -> bool {
+        let met = |slice: &Self| slice.near_residual() <= residual;
+        // Far away Newton's method may find nothing; but a residual that is small there and falls with
+        // the distance is that of a point of high multiplicity.
+        let clear = |slice: &Self| met(slice) || slice.residual > missed;
+        let (far, near): (Vec<&Self>, Vec<&Self>) =
+            slices.iter().partition(|slice| slice.distance >= FAR_SLICE);
+        near.iter().any(|slice| slice.distance >= TELLING_SLICE)
+            && near.into_iter().all(met)
+            && far.into_iter().all(clear)
+    }
+
+    /// The residual of a slice that is far away as it would be nearer.
+    pub(crate) fn near_residual(&self) -> f64 {
+        self.residual / (self.distance / TELLING_SLICE).max(1.0)
     }
 
     /// False where a number is none or negative.

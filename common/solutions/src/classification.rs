@@ -52,8 +52,8 @@ pub struct Tolerances {
     /// larger or smaller than the border between values and noise.
     pub rank_margin: f64,
     /// A moved slice meets a solution where the equations, scaled to 1, are at most this in
-    /// double-doubles (see [`MovedSlice::near_residual`]). Near a point of multiplicity m they are up to the distance to the power m; near a
-    /// set of multiplicity 3 and more Newton's method in doubles comes to about 1e-22.
+    /// double-doubles (see [`MovedSlice::are_met`]). Near a point of multiplicity m they are up to the distance to
+    /// the power m; near a set of multiplicity 3 and more Newton's method in doubles comes to about 1e-22.
     pub slice_residual: f64,
     /// Above this residual nothing was found on a slice at all.
     pub slice_missed: f64,
@@ -201,11 +201,6 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
     }
 }
 
-/// Slices farther away than this, relative to the endpoint's size, need not meet a set through it.
-const FAR_SLICE: f64 = 0.05;
-/// Slices nearer than this do not tell a set from a point of multiplicity 7 and more.
-const NEAR_SLICE: f64 = 0.01;
-
 /// Whether the points are those of one affine or projective line.
 fn one_unknown(shape: &PointShape) -> bool {
     let mut spans = shape.spans();
@@ -269,15 +264,11 @@ fn multiplicity(found: &LocalDimension, tolerances: &Tolerances) -> Option<u32> 
 
 /// Whether solutions were met on all slices that pass the endpoint at small distances.
 fn is_met(found: &LocalDimension, tolerances: &Tolerances) -> bool {
-    let met = |slice: &MovedSlice| slice.near_residual() <= tolerances.slice_residual;
-    let slices = &found.moved_slices;
-    let (far, near): (Vec<_>, Vec<_>) = slices.iter().partition(|s| s.distance > FAR_SLICE);
-    // Far away Newton's method may find nothing; but a residual that is small there and falls with
-    // the distance is that of a point of high multiplicity.
-    let clear = |slice: &MovedSlice| met(slice) || slice.residual > tolerances.slice_missed;
-    near.iter().all(met)
-        && near.iter().any(|slice| slice.distance > NEAR_SLICE)
-        && far.iter().all(clear)
+    MovedSlice::are_met(
+        &found.moved_slices,
+        tolerances.slice_residual,
+        tolerances.slice_missed,
+    )
 }
 
 /// Whether the endpoint solves the system as well as its estimated error says.

@@ -558,7 +558,7 @@ impl Cauchy {
             let samples: Vec<&Homogenizing> =
                 self.homogenizing.iter().skip(k).step_by(groups).collect();
             let turns = winding.turns() > 0;
-            let zero = Zero::of(settings);
+            let zero = Zero::of(settings, self.may_be_finer);
             let here = vanishes(&samples, self.turns, turns, self.noise, size, zero);
             match here {
                 Infinity::Shown => return Infinity::Shown,

@@ -61,7 +61,9 @@ pub(super) enum Infinity {
 /// Below what values and power sums at t = 0 count as 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zero {
-    /// Values.
+    /// Values on one sheet.
+    pub alone: f64,
+    /// Values on several.
     pub value: f64,
     /// Power sums.
     pub power_sum: f64,
@@ -70,19 +72,27 @@ pub(super) struct Zero {
 impl Zero {
     /// Coefficients that are exact to many digits, or differ by many orders of magnitude, have smaller values and
     /// power sums that are not 0: products of several small coefficients, or of what rounding makes.
-    pub(super) fn of(settings: &Settings) -> Self {
-        let accuracy = match settings.exact_data {
-            true => settings.data_accuracy,
-            false => 0.0,
-        };
-        match accuracy > 0.0 {
-            true => Self {
-                value: Self::value(accuracy),
-                power_sum: LEAST_POWER_SUM
-                    .min(accuracy * accuracy * accuracy)
-                    .max(1e-60),
+    ///
+    /// Exact coefficients of many digits take several sheets together far out without such a range: where turns can be
+    /// made with more digits, what those of doubles show is too little.
+    pub(super) fn of(settings: &Settings, may_be_finer: bool) -> Self {
+        let accuracy = settings.data_accuracy;
+        match (settings.exact_data, accuracy > 0.0) {
+            (true, true) => {
+                let value = Self::value(accuracy);
+                Self {
+                    alone: FARTHEST_ALONE.min(value),
+                    value,
+                    power_sum: LEAST_POWER_SUM
+                        .min(accuracy * accuracy * accuracy)
+                        .max(1e-60),
+                }
+            }
+            (false, false) if may_be_finer => Self {
+                value: LEAST_POWER_SUM,
+                ..Self::EXACT
             },
-            false => Self::EXACT,
+            _ => Self::EXACT,
         }
     }
 
@@ -95,6 +105,7 @@ impl Zero {
 
     /// With integers, fractions and short decimals.
     const EXACT: Self = Self {
+        alone: FARTHEST_ALONE,
         value: FARTHEST,
         power_sum: LEAST_POWER_SUM,
     };
@@ -135,7 +146,7 @@ pub(super) fn vanishes(
         let noise = f64::from(k) * noise * scale;
         scale *= largest;
         limit = match sheets {
-            1 => FARTHEST_ALONE.min(zero.value),
+            1 => zero.alone,
             _ => (limit * zero.value).max(zero.power_sum),
         };
         let bound = noise + aliasing;

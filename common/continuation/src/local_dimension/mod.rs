@@ -33,7 +33,7 @@ use split::{FARTHEST, Split};
 
 /// Smallest relative error that is assumed of an endpoint: estimates of singular ones are no
 /// better than this.
-pub(super) const LEAST_ERROR: f64 = 1e-11;
+const LEAST_ERROR: f64 = 1e-11;
 /// More monomials than this are not handled: their matrix would take seconds.
 const MOST_MONOMIALS: usize = 3000;
 /// Below this margin nothing is asked any more.

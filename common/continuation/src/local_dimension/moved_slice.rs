@@ -40,11 +40,6 @@ const LEAST_VALUE: f64 = 1e-14;
 /// Residuals below this are as good as 0: towards a set of multiplicity 3 Newton's method comes to about
 /// 1e-21, where the Jacobian in doubles has no more digits.
 const MET: f64 = 1e-20;
-/// A slice at least this far away that is met decides that the endpoint is no isolated point of
-/// multiplicity below 10.
-const TELLING: f64 = 0.01;
-/// A slice farther away than this need not meet a set through the point.
-const FAR: f64 = 0.05;
 /// A residual above this, on a slice that is far, is one of a place where there is nothing.
 const MISSED: f64 = 1e-8;
 /// Residuals of a double-double evaluation, equations and coordinates scaled to 1, that are rounding.
@@ -101,15 +96,7 @@ pub(super) fn meets(slices: &[MovedSlice]) -> bool {
 
 /// The same where residuals up to this, and rounding, are as good as 0.
 pub(super) fn meets_within(slices: &[MovedSlice], residual: f64) -> bool {
-    let met = |slice: &MovedSlice| slice.near_residual() <= residual.max(MET);
-    // Far away Newton's method may find nothing; but a residual that is small there and falls with
-    // the distance is that of a point of high multiplicity.
-    let clear = |slice: &MovedSlice| met(slice) || slice.residual > MISSED;
-    let (far, near): (Vec<&MovedSlice>, Vec<&MovedSlice>) =
-        slices.iter().partition(|slice| slice.distance >= FAR);
-    near.iter().any(|slice| slice.distance >= TELLING)
-        && near.into_iter().all(met)
-        && far.into_iter().all(clear)
+    MovedSlice::are_met(slices, residual.max(MET), MISSED)
 }
 
 /// Whether the first slices came nearer to a solution than the others did.

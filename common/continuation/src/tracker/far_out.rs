@@ -28,14 +28,24 @@ const SAME: f64 = 1e-10;
 /// Errors are at most so many times the last Newton correction.
 const MARGIN: f64 = 1e3;
 
-/// Normalised homogeneous coordinates of a regular end near a point of the chart, the homogenising ones with digits of
-/// their own: 0 where they vanish. `None` where no rung's digits tell.
+/// Where a regular end far out is.
+pub(super) enum Place {
+    /// At these normalised homogeneous coordinates, the homogenising ones with digits of their own: 0 where they vanish.
+    Resolved(Vec<Complex64>),
+    /// The smallest homogenising coordinate is this part of the largest, which coefficients within their accuracy make
+    /// 0.
+    WithinDataAccuracy(f64),
+    /// No rung's digits tell.
+    Unresolved,
+}
+
+/// Where a regular end near a point of the chart is.
 pub(super) fn resolve(
     homotopy: &Homotopy,
     settings: &Settings,
     point: &[Complex64],
     target: u64,
-) -> Option<Vec<Complex64>> {
+) -> Place {
     let accuracy = settings.data_accuracy;
     let (zero, least) = match (settings.exact_data, accuracy > 0.0) {
         (true, true) => (0.0, EXACT.min(accuracy * accuracy)),
@@ -43,26 +53,36 @@ pub(super) fn resolve(
         (false, _) => (WITHIN_DATA, WITHIN_DATA),
     };
     if least < LEAST {
-        return None;
+        return Place::Unresolved;
     }
-    let mut bits = rungs(DOUBLE_DOUBLE, settings.max_precision_bits);
-    bits.find_map(|bits| {
-        let (mut coordinates, accuracy) = match bits {
+    for bits in rungs(DOUBLE_DOUBLE, settings.max_precision_bits) {
+        let found = match bits {
             DOUBLE_DOUBLE => at::<DoubleDouble<f64>>(homotopy, (), bits, point, target),
             _ => at::<MultiplePrecision>(homotopy, bits, bits, point, target),
-        }?;
+        };
+        let Some((mut coordinates, accuracy)) = found else {
+            continue;
+        };
         let error = MARGIN * accuracy;
         let vanishing = error.max(zero);
         let smallest = homotopy.smallest_homogenizing(&coordinates);
         if smallest > zero / BAND && smallest < zero * BAND {
-            return None;
+            // With digits of its own, and so known not to be 0 for these coefficients.
+            let is_known = settings.data_accuracy > 0.0 && smallest > error;
+            if is_known {
+                return Place::WithinDataAccuracy(smallest);
+            }
+            continue;
         }
         let finite = smallest > vanishing;
         if !finite {
             homotopy.set_homogenizing(&mut coordinates, vanishing, 0.0);
         }
-        (finite || error <= least).then_some(coordinates)
-    })
+        if finite || error <= least {
+            return Place::Resolved(coordinates);
+        }
+    }
+    Place::Unresolved
 }
 
 /// Where turns have led to infinity as far as the digits of doubles tell, on one sheet: an isolated solution there, so

@@ -65,8 +65,7 @@ pub(crate) struct Lane {
     pub steps: u32,
     pub rejections: u32,
     pub evaluations: u32,
-    /// Steps of any kind; those with more digits than double-doubles count as often as they take
-    /// the digits of these.
+    /// Steps of any kind, as so many in doubles (see `Settings::max_steps`).
     pub effort: u64,
     /// Highest precision so far.
     pub highest_bits: u32,

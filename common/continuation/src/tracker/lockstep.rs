@@ -9,7 +9,7 @@
 
 use super::batch::Batch;
 use super::digits::Digits;
-use super::far_out;
+use super::far_out::{self, Place};
 use super::lane::{Lane, Phase};
 use super::limits::{Limits, MOST_ROUNDS, rounds};
 use super::observer::{Observer, StepEvent};
@@ -70,9 +70,10 @@ const APART: f64 = 0.05;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
 /// is not for want of digits.
 pub(super) const ENDGAME_BITS: u32 = 212;
-/// This part of all steps that a path may take is enough for its turns in doubles.
+/// This part of all steps that a path may take is enough for its turns in doubles, and in robust mode for its way.
 const LABOUR: u32 = 8;
-
+/// A step in multiple precision counts as so many in doubles for each two doubles' digits.
+const MULTIPLE_PRECISION: u32 = 4;
 /// After so many steps in doubles,
 const MANY_STEPS: u32 = 500;
 /// those shorter than this part of the way left are too short: the rest would take ten times as many.
@@ -485,7 +486,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             }
             let path = &mut self.lanes[lane];
             path.evaluations += rounds as u32;
-            path.effort += u64::from((self.tracking.bits / DOUBLE_DOUBLE).max(1));
+            path.effort += effort(self.tracking.bits);
             let step = Step {
                 accepted: accepted.lane(lane),
                 arrived: accepted.lane(lane) && reaches.lane(lane),
@@ -690,6 +691,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             .collect();
         let path = &mut self.lanes[lane];
         path.evaluations += TERMS as u32;
+        path.effort += effort(self.tracking.bits);
         let Estimate {
             radius,
             separation,
@@ -734,7 +736,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         winding_number: Option<u32>,
         infinity_turns: Vec<i32>,
     ) {
-        let endpoint = self.endpoint(self.lanes[lane].target, outcome);
+        let (outcome, report, endpoint) = self.endpoint(self.lanes[lane].target, outcome, report);
         let end = End {
             outcome,
             t: Complex64::default(),
@@ -748,10 +750,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// A path that cannot go on in this tracking context is handed to another one, or fails.
     pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
+        // Steps that looking around makes too short do not become longer with still more digits.
+        let robust = self.probe.is_some();
         let handoff = if self.tracking.projective {
             Handoff::Projective
         } else if self.tracking.up
-            && (why != Failure::EndgameUnsettled || self.tracking.bits < ENDGAME_BITS)
+            && (self.tracking.bits < ENDGAME_BITS || why != Failure::EndgameUnsettled && !robust)
         {
             Handoff::Up
         } else {
@@ -775,9 +779,10 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     /// Whether a path takes very many steps in doubles around 0, or past the endgame's boundary, or so short
-    /// ones before it that it will not get there: it is their noise that it follows.
+    /// ones before it that it will not get there: it is their noise that it follows. In robust mode very many steps
+    /// anywhere say so.
     fn labours(&self, lane: usize) -> bool {
-        if self.tracking.bits > DOUBLE || !self.tracking.up {
+        if self.tracking.bits > DOUBLE || !(self.tracking.up || self.tracking.projective) {
             return false;
         }
         let path = &self.lanes[lane];
@@ -787,7 +792,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
             Phase::Approaching => {
                 let (t, h) = (self.batch.t(lane).re, self.batch.h.lane(lane));
                 let too_short = path.steps_here >= MANY_STEPS && h < SHORT * t;
-                too_short || many && t <= self.settings.endgame_boundary
+                let robust = self.probe.is_some();
+                too_short || many && (robust || t <= self.settings.endgame_boundary)
             }
             _ => false,
         }
@@ -913,21 +919,46 @@ impl<'a, R: Real> Lockstep<'a, R> {
         self.ended.results.push((path.item, result));
     }
 
-    /// Normalised homogeneous coordinates of where a path ends. A regular point far out is given with digits of its
-    /// own: those that doubles have there are digits of its largest coordinate.
-    fn endpoint(&self, target: u64, outcome: PathOutcome) -> Vec<Complex64> {
+    /// Whether a homogenising coordinate of `self.point` is so small that digits of its own are wanted.
+    fn is_far_out(&self) -> bool {
         let homotopy = self.tracking.homotopy;
-        if outcome != PathOutcome::Regular {
-            return homotopy.endpoint(&self.point);
-        }
+        homotopy.smallest_homogenizing(&homotopy.endpoint(&self.point)) < FAR_OUT
+    }
+
+    /// How a path ends, and the normalised homogeneous coordinates of where. A regular point far out is given with
+    /// digits of its own: those that doubles have there are digits of its largest coordinate.
+    fn endpoint(
+        &self,
+        target: u64,
+        outcome: PathOutcome,
+        report: Report,
+    ) -> (PathOutcome, Report, Vec<Complex64>) {
+        let homotopy = self.tracking.homotopy;
         let coordinates = homotopy.endpoint(&self.point);
-        if homotopy.smallest_homogenizing(&coordinates) >= FAR_OUT {
-            return coordinates;
+        if outcome != PathOutcome::Regular || !self.is_far_out() {
+            return (outcome, report, coordinates);
         }
         match far_out::resolve(homotopy, &self.settings, &self.point, target) {
-            Some(coordinates) => coordinates,
-            None => far_out::unresolved(homotopy, coordinates),
+            Place::Resolved(coordinates) => (outcome, report, coordinates),
+            Place::WithinDataAccuracy(coordinate) => {
+                let accuracy = coordinate;
+                let report = Report { accuracy, ..report };
+                (PathOutcome::Diverging, report, coordinates)
+            }
+            Place::Unresolved => {
+                let coordinates = far_out::unresolved(homotopy, coordinates);
+                (outcome, report, coordinates)
+            }
         }
+    }
+}
+
+/// A step of this precision, as so many in doubles: numbers of more digits than two doubles are tracked one at a time,
+/// by functions of a library.
+fn effort(bits: u32) -> u64 {
+    match bits {
+        ..=DOUBLE_DOUBLE => 1,
+        _ => u64::from(MULTIPLE_PRECISION * (bits / DOUBLE_DOUBLE)),
     }
 }
 

@@ -23,7 +23,8 @@ pub struct Settings {
     pub reach: f64,
     /// Smallest step, relative to the distance that is left to the next target in t.
     pub min_step: f64,
-    /// Accepted and rejected steps of one path; one with 212 bits counts twice, and so on.
+    /// Accepted and rejected steps of one path; one with 212 bits counts eight times, one with 424 bits sixteen times,
+    /// and so on; twice as often in robust mode.
     pub max_steps: u32,
     /// Where the endgame begins, in |t|.
     pub endgame_boundary: f64,
@@ -125,7 +126,6 @@ impl Settings {
         for _ in 0..attempt {
             tighter.predictor_tolerance *= 0.01;
             tighter.max_step *= 0.5;
-            tighter.max_steps = tighter.max_steps.saturating_mul(4);
         }
         if attempt >= 2 {
             let rung = rungs(self.precision_bits, self.max_precision_bits).nth(1);
