@@ -20,7 +20,7 @@ mod rescale;
 mod slice;
 
 pub use affine_chart::affine_chart;
-pub use bent::bent;
+pub use bent::{along_line, bent};
 pub use combine::{combine, combine_all, combine_few, equilibrate};
 pub use critical::{MOST_CRITICAL_VARIABLES, critical, fibre};
 pub use deflate::deflate;
