@@ -312,10 +312,17 @@ fn what_is_no_component_is_refused() {
     refused(&|known| known.components[0].deflation = vec![0]);
 }
 
-/// A path that is lost between two slices is a doubt, where no other way follows.
+/// A path that is lost between two slices, or where a multiple set is cut, is a doubt, where no other way follows.
 #[test]
 fn a_lost_witness_point_is_a_doubt() {
-    let (variables, first, added, _) = CASES[0];
+    // The second is a multiple set: its slice slides to five in the second stage, and is cut in the third.
+    for (case, stage) in [(0, 1), (16, 1), (16, 2), (16, 3)] {
+        lose_the_first_path(CASES[case], stage);
+    }
+}
+
+/// Loses the first path of this stage, from 1.
+fn lose_the_first_path((variables, first, added, _): Case, stage: usize) {
     let options = DecompositionOptions {
         max_retries: 0,
         method: Some(Method::Equations),
@@ -333,7 +340,7 @@ fn a_lost_witness_point_is_a_doubt() {
         let prepared = PreparedWork::new(system, &opening.stage, &find)?;
         let mut results = prepared.run(0..prepared.items(), 8);
         stages += 1;
-        if let (1, Some(ItemResult::Track(path))) = (stages, results.first_mut()) {
+        if let (true, Some(ItemResult::Track(path))) = (stages == stage, results.first_mut()) {
             path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
         Ok(results)

@@ -548,9 +548,7 @@ impl SlicedEquations {
         });
         let (first, second) = values.split_at(rows);
         let pairs = first.iter().zip(second);
-        pairs
-            .map(|(first, second)| [first.clone(), second.clone()])
-            .collect()
+        pairs.map(|(first, second)| [*first, *second]).collect()
     }
 
     /// How a witness point moves when the parameters, all of them, move in this direction.
