@@ -43,6 +43,9 @@ impl Prefixes {
     }
 }
 
+/// Points that are cut together: their dimension, the deflations of their set, and for how many paths each stands.
+type Kind<'a> = (usize, &'a [u32], u64);
+
 /// Points of one dimension on their way to the next equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Cut {
@@ -220,8 +223,7 @@ impl Equations {
     /// Tells the points at which the next equation holds from those where it cuts.
     fn begin(&mut self, problem: &Problem) {
         let own = problem.variables();
-        // By dimension, deflations and multiplicity: points with their multipliers.
-        let mut cuts: BTreeMap<(usize, &[u32], u64), Vec<Vec<Complex64>>> = BTreeMap::new();
+        let mut cuts: BTreeMap<Kind<'_>, Vec<Vec<Complex64>>> = BTreeMap::new();
         for set in &self.sets {
             let m = set.dimension;
             for point in &set.points {
