@@ -484,19 +484,20 @@ fn sets_that_are_made_to_be_hard() {
     }
 }
 
-/// A multiple surface that a further equation cuts is not followed by the equations, and it is said.
+/// A double surface that a further equation cuts is followed through its deflated equations.
 #[test]
-fn what_the_equations_cannot_cut_is_said() {
+fn a_multiple_surface_is_cut_by_the_next_equation() {
     let system = written(
         "variable_group x, y, z; function f, g; f = x^2 + y^4 - 2*x*y^2; g = z^5 - x*y - 1;",
     );
-    let found = decompose_by(&system, 1, Some(Method::Equations));
-    assert!(!found.settled(), "{}", doubts(&found));
-    assert!(doubts(&found).contains("NotCut"), "{}", doubts(&found));
-    // The cascade, to which the choice falls then, has no such limit.
-    let found = decompose_by(&system, 1, None);
-    assert_eq!(found.method, Method::Cascade);
-    assert!(found.settled(), "{}", doubts(&found));
+    for seed in 1..=3 {
+        for method in [Method::Equations, Method::Cascade] {
+            let found = decompose_by(&system, seed, Some(method));
+            let doubts = doubts(&found);
+            assert!(found.settled(), "{method:?}, {seed}: {doubts}");
+            assert_eq!(counted(&found), [(1, 10, 2, 1)], "{method:?}, {seed}");
+        }
+    }
 }
 
 #[test]

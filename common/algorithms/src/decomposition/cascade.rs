@@ -4,15 +4,20 @@
 //! slides to as many forms as the next combination has degrees, and their product becomes that combination.
 //! An end that solves all given equations belongs to the witness superset of dimension n - k - 1 and goes no
 //! further; one that does not is regular with probability 1 and begins the next level.
+//!
+//! Where it begins on a multiple set, that set's deflated equations stand for the combinations that hold on it.
 
 use super::job::{Job, StageSystem};
+use super::multiple_cut::{self, DeflatedSet, Made};
 use super::problem::Problem;
 use super::superset::Superset;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
 use cognate_solutions::classification::Verdict;
+use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Level by level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +29,8 @@ pub(crate) struct Cascade {
     failed: u64,
     supersets: Vec<Superset>,
     started: bool,
+    /// The multiple set on which it began; points have its multipliers, too.
+    multiple: Option<DeflatedSet>,
 }
 
 impl Cascade {
@@ -36,6 +43,7 @@ impl Cascade {
             failed: 0,
             supersets: Vec::new(),
             started: false,
+            multiple: None,
         }
     }
 
@@ -48,6 +56,15 @@ impl Cascade {
             failed: 0,
             supersets: Vec::new(),
             started: false,
+            multiple: None,
+        }
+    }
+
+    /// From these points of a multiple set, whose dimension the first combinations have; on the slices that are left.
+    pub fn on_multiple(problem: &Problem, set: DeflatedSet, points: Vec<Vec<Complex64>>) -> Self {
+        Self {
+            multiple: Some(set.clone()),
+            ..Self::from_level(problem.variables() - set.dimension, points)
         }
     }
 
@@ -77,19 +94,41 @@ impl Cascade {
         supersets
     }
 
-    /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(&mut self, problem: &Problem, done: Option<&Job>) -> Option<Job> {
+    /// Learns from the stage that is done, and says which comes next. `of`: the problem of the multiple set on which it
+    /// began.
+    pub fn advance(
+        &mut self,
+        problem: &Problem,
+        of: Option<Made<'_>>,
+        done: Option<&Job>,
+    ) -> Option<Job> {
+        let mut of = of;
         match done {
             None if self.started => return None,
             None => self.started = true,
             Some(job) if self.sliding => self.slid(job),
-            Some(job) => self.intersected(problem, job),
+            Some(job) => {
+                let of = of.as_mut().map(|(of, deflations)| (*of, &mut **deflations));
+                self.intersected(problem, of, job);
+            }
         }
         if self.points.is_empty() || self.level >= problem.asked_levels {
             return None;
         }
         let degree = problem.row_degrees[self.level];
         self.sliding = !self.sliding && degree > 1;
+        if let (Some(set), Some(of)) = (&self.multiple, of) {
+            let forms = multiple_cut::forms(self.sliding, degree);
+            let stage = set.stage([self.before(problem, set) as u32, 0], forms);
+            let system = self.system_of(problem, of, &stage);
+            let how = (problem.variables() - self.level, degree, forms);
+            return Some(multiple_cut::job(
+                problem,
+                (stage, &system),
+                how,
+                &self.points,
+            ));
+        }
         let (parameters, level) = (Vec::new(), self.level as u32);
         let order = (0..problem.variables() as u32).collect();
         let homotopy = match self.sliding {
@@ -108,6 +147,29 @@ impl Cascade {
         let system = (StageSystem::Staircase, &*problem.staircase);
         let with = &problem.tracking;
         Some(Job::track(system, homotopy, &self.points, with))
+    }
+
+    /// The system of a stage on a multiple set.
+    pub fn system_of(&self, problem: &Problem, of: Made<'_>, wanted: &StageSystem) -> Arc<System> {
+        let by = || match &self.multiple {
+            Some(set) => self.further(problem, set, self.before(problem, set) + 1),
+            None => unreachable!("it began on a set that is not multiple"),
+        };
+        multiple_cut::system_of(of, wanted, by)
+    }
+
+    /// How many further combinations hold already.
+    fn before(&self, problem: &Problem, set: &DeflatedSet) -> usize {
+        self.level + set.dimension - problem.variables()
+    }
+
+    /// The first so many combinations that cut the multiple set.
+    fn further(&self, problem: &Problem, set: &DeflatedSet, count: usize) -> System {
+        let mut by = (*problem.staircase).clone();
+        let first = problem.variables() - set.dimension;
+        by.equations = by.equations[first..first + count].to_vec();
+        by.equation_names = by.equation_names[first..first + count].to_vec();
+        by
     }
 
     /// What the level is for, in a few words.
@@ -130,14 +192,21 @@ impl Cascade {
         self.failed += job.crossings_left();
     }
 
-    fn intersected(&mut self, problem: &Problem, job: &Job) {
+    fn intersected(&mut self, problem: &Problem, of: Option<Made<'_>>, job: &Job) {
         let dimension = problem.variables() - self.level - 1;
         let mut superset = Superset {
             dimension,
             failed: self.failed,
             ..Superset::default()
         };
-        self.points = superset.sort(problem, &problem.level_equations(dimension), job);
+        let combinations = match (&self.multiple, of) {
+            (Some(set), Some(of)) => {
+                let by = self.further(problem, set, self.before(problem, set) + 1);
+                set.sliced(of, &by)
+            }
+            _ => problem.level_equations(dimension),
+        };
+        self.points = superset.sort(problem, &combinations, job);
         self.level += 1;
         if self.level == problem.levels {
             superset.excess = std::mem::take(&mut self.points).len() as u64;

@@ -251,8 +251,8 @@ impl Deflations {
                 let values = values.map(f64::from_bits);
                 Arc::new(fibre(&problem.curve_equations(), form, values))
             }
-            StageSystem::Pair { .. } => {
-                unreachable!("pairs are of two problems: who asks makes them")
+            StageSystem::Pair { .. } | StageSystem::MultipleCut { .. } => {
+                unreachable!("these are of two problems: who asks makes them")
             }
             StageSystem::Sliced { dimension } => {
                 Arc::new(slice(&problem.given, *dimension, problem.variables()))
@@ -279,6 +279,18 @@ impl Deflations {
                 Arc::new(bent(&self.of_stage(problem, &tracked)))
             }
         };
+        self.of_stages.insert(wanted.clone(), Arc::clone(&made));
+        made
+    }
+
+    /// The system of a stage, where it has been made.
+    pub fn known_stage(&self, wanted: &StageSystem) -> Option<Arc<System>> {
+        self.of_stages.get(wanted).cloned()
+    }
+
+    /// Keeps the system of a stage that somebody else made.
+    pub fn remember_stage(&mut self, wanted: &StageSystem, made: System) -> Arc<System> {
+        let made = Arc::new(made);
         self.of_stages.insert(wanted.clone(), Arc::clone(&made));
         made
     }

@@ -4,22 +4,24 @@
 //! From a set of dimension m its slice m moves to as many forms as the next equation has degrees, and their
 //! product becomes that equation: a set of dimension m - 1. What comes out is sifted before the next equation
 //! cuts it, so that paths begin at regular points of sets that are there. Systems that are products stay in pieces.
-//! A multiple set that is to be cut ends this way: its points are counted as not cut.
+//! A multiple set is cut through the deflated equations of what it was cut out by ([`super::multiple_cut`]).
 //! (Hauenstein, Wampler: Unification and extension of intersection algorithms, Appl. Math. Comput. 293, 2017.)
 
 use super::deflated::{Deflations, PureSet, doubles};
 use super::job::{Job, StageSystem};
 use super::junk::JunkFilter;
+use super::multiple_cut::{self, DeflatedSet, Made};
 use super::problem::{Problem, REFINED};
-use super::superset::Superset;
+use super::superset::{SingularEnd, Superset};
 use cognate_continuation::bend::RefinedPoint;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::{Dimension, Doubt};
+use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The first equations in the order in which they cut, and what is made of them; each made once.
@@ -41,15 +43,22 @@ impl Prefixes {
     }
 }
 
+/// Points that are cut together: their dimension, the deflations of their set, and for how many paths each stands.
+type Kind<'a> = (usize, &'a [u32], u64);
+
 /// Points of one dimension on their way to the next equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Cut {
     dimension: usize,
+    /// Deflations of the multiple set that they are of, with whose multipliers they are; none: they are regular.
+    ranks: Vec<u32>,
+    /// For how many paths each of them stands.
+    tracked: u64,
     /// The factor that cuts, its degree and its exponent.
     factor: u32,
     degree: u32,
     exponent: u32,
-    /// The equation has no other factor.
+    /// The equation has no other factor, and cuts no multiple set of this dimension.
     alone: bool,
     /// Where the paths began; with slid ones once the slice moved.
     points: Vec<Vec<Complex64>>,
@@ -119,6 +128,23 @@ impl Equations {
         }
     }
 
+    /// The system of the open stage.
+    pub fn system_of(
+        &self,
+        whole: &Problem,
+        prefixes: &mut Prefixes,
+        wanted: &StageSystem,
+    ) -> Arc<System> {
+        let (problem, deflations) = prefixes.of(whole, self.prefix());
+        match wanted {
+            StageSystem::MultipleCut { cut, .. } => {
+                let (of, deflations) = prefixes.of(whole, self.taken);
+                multiple_system((&of, deflations), &problem, wanted, cut[1])
+            }
+            _ => deflations.of_stage(&problem, wanted),
+        }
+    }
+
     /// How many equations the open stage knows.
     pub fn prefix(&self) -> usize {
         self.taken + 1
@@ -147,7 +173,7 @@ impl Equations {
             if self.taken == last {
                 return None;
             }
-            let (problem, deflations) = prefixes.of(whole, self.taken + 1);
+            let (problem, _) = prefixes.of(whole, self.taken + 1);
             match &mut self.phase {
                 Phase::Begin => self.begin(&problem),
                 Phase::Cutting { left, open } => {
@@ -162,7 +188,12 @@ impl Equations {
                     }
                     if let Some(cut) = left.last_mut() {
                         *open = true;
-                        return Some(next_job(&problem, deflations, cut));
+                        let before = match cut.ranks.is_empty() {
+                            true => self.taken + 1,
+                            false => self.taken,
+                        };
+                        let (of, deflations) = prefixes.of(whole, before);
+                        return Some(next_job(&problem, (&of, deflations), cut));
                     }
                     if self.taken + 1 == last {
                         self.taken = last;
@@ -173,6 +204,7 @@ impl Equations {
                     self.phase = Phase::Sifting(Box::new(filter));
                 }
                 Phase::Sifting(filter) => {
+                    let (_, deflations) = prefixes.of(whole, self.taken + 1);
                     let made = (&*problem, deflations);
                     if let Some(job) = filter.advance(made, done.take(), &mut self.sets) {
                         return Some(job);
@@ -191,7 +223,7 @@ impl Equations {
     /// Tells the points at which the next equation holds from those where it cuts.
     fn begin(&mut self, problem: &Problem) {
         let own = problem.variables();
-        let mut cuts: BTreeMap<usize, Vec<Vec<Complex64>>> = BTreeMap::new();
+        let mut cuts: BTreeMap<Kind<'_>, Vec<Vec<Complex64>>> = BTreeMap::new();
         for set in &self.sets {
             let m = set.dimension;
             for point in &set.points {
@@ -201,27 +233,36 @@ impl Equations {
                     }
                     // A point that lies on no further hypersurface is gone.
                     Some(false) if m == 0 => {}
-                    Some(false) if set.ranks.is_empty() => {
-                        cuts.entry(m).or_default().push(doubles(point, own));
+                    Some(false) => {
+                        let tracked = match set.ranks.is_empty() {
+                            true => 1,
+                            false => set.multiplicity.tracked,
+                        };
+                        let kind = (m, set.ranks.as_slice(), tracked);
+                        let unknowns = doubles(point, point.point.len());
+                        cuts.entry(kind).or_default().push(unknowns);
                     }
-                    Some(false) => add(&mut self.lost, m - 1, [0, 1]),
                     None => add(&mut self.lost, m, [0, 1]),
                 }
             }
         }
         let lowest = *problem.asked.start() as usize;
-        let cuts = cuts.into_iter().filter(|(m, _)| *m > lowest);
+        cuts.retain(|(m, ..), _| *m > lowest);
+        let kinds = cuts.keys().filter(|(_, ranks, _)| !ranks.is_empty());
+        let multiple: BTreeSet<usize> = kinds.map(|(m, ..)| *m).collect();
         let factors = problem.last_factors();
         let factors = factors.expect("factors of equations with degrees have degrees");
         let mut left = Vec::new();
-        for (dimension, points) in cuts {
+        for ((dimension, ranks, tracked), points) in cuts {
             for (factor, [degree, exponent]) in (0..).zip(factors.iter().copied()) {
                 left.push(Cut {
                     dimension,
+                    ranks: ranks.to_vec(),
+                    tracked,
                     factor,
                     degree,
                     exponent,
-                    alone: factors.len() == 1 && exponent == 1,
+                    alone: factors.len() == 1 && exponent == 1 && !multiple.contains(&dimension),
                     points: points.clone(),
                     sliding: false,
                 });
@@ -277,12 +318,34 @@ fn unclear(dimension: &Dimension) -> u64 {
     dimension.doubts.iter().map(points).sum()
 }
 
-/// The stage that moves the slice of a set, or that cuts it.
-fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut) -> Job {
+/// The system in which the last equation of a problem cuts a multiple set of those before.
+fn multiple_system(
+    of: Made<'_>,
+    problem: &Problem,
+    wanted: &StageSystem,
+    factor: u32,
+) -> Arc<System> {
+    multiple_cut::system_of(of, wanted, || problem.last_factor(factor as usize))
+}
+
+/// The stage that moves the slice of a set, or that cuts it. `of`: the problem of the set where that is multiple, else
+/// the one that the equation belongs to.
+fn next_job(problem: &Problem, of: Made<'_>, cut: &mut Cut) -> Job {
     let n = problem.variables();
+    cut.sliding = !cut.sliding && cut.degree > 1;
+    if !cut.ranks.is_empty() {
+        let set = DeflatedSet {
+            ranks: cut.ranks.clone(),
+            dimension: cut.dimension,
+        };
+        let forms = multiple_cut::forms(cut.sliding, cut.degree);
+        let stage = set.stage([0, cut.factor], forms);
+        let system = multiple_system(of, problem, &stage, cut.factor);
+        let how = (cut.dimension, cut.degree, forms);
+        return multiple_cut::job(problem, (stage, &system), how, &cut.points);
+    }
     let level = (n - cut.dimension) as u32;
     let (parameters, order) = (Vec::new(), (0..n as u32).collect());
-    cut.sliding = !cut.sliding && cut.degree > 1;
     let homotopy = match cut.sliding {
         true => HomotopyKind::MoveSlice {
             parameters,
@@ -300,7 +363,7 @@ fn next_job(problem: &Problem, deflations: &mut Deflations, cut: &mut Cut) -> Jo
         dimension: cut.dimension,
         factor: cut.factor,
     };
-    let system = deflations.of_stage(problem, &wanted);
+    let system = of.1.of_stage(problem, &wanted);
     let job = Job::track((wanted, &*system), homotopy, &cut.points, &problem.tracking);
     job.ends_only()
 }
@@ -325,9 +388,19 @@ fn learn(
     }
     let mut found = Superset::empty(cut.dimension - 1);
     let mut singular = Vec::new();
-    for (place, (_, decision, values)) in job.ends().into_iter().enumerate() {
+    let multiple = !cut.ranks.is_empty();
+    for (place, (result, decision, mut values)) in job.ends().into_iter().enumerate() {
         match decision.verdict {
             Verdict::AtInfinity => {}
+            // Regular with the multipliers; the point itself is not, unless the equation makes it so.
+            Verdict::Finite if multiple => {
+                values.truncate(problem.variables());
+                found.singular.push(SingularEnd {
+                    values,
+                    accuracy: result.accuracy.max(f64::EPSILON),
+                    paths: 1,
+                });
+            }
             Verdict::Finite if cut.exponent == 1 => found.regular.push(values),
             Verdict::Finite
             | Verdict::Singular
@@ -339,6 +412,9 @@ fn learn(
         }
     }
     found.gather(problem, job, &singular);
+    for end in &mut found.singular {
+        end.paths *= cut.tracked;
+    }
     let superset = superset(supersets, cut.dimension - 1);
     match cut.alone {
         true => {

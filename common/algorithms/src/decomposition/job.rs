@@ -110,6 +110,18 @@ pub(crate) enum StageSystem {
         /// Which components: of the first set, of the second.
         places: [usize; 2],
     },
+    /// Combinations of the equations of a multiple set after its deflations, and further equations that cut it, with the
+    /// slices that are left.
+    MultipleCut {
+        /// Rank of the Jacobian before each deflation.
+        ranks: Vec<u32>,
+        /// Dimension of the set.
+        dimension: usize,
+        /// How many further equations hold already, and which factor of the next one cuts.
+        cut: [u32; 2],
+        /// Linear forms whose product becomes that equation; none: a slice is in its place.
+        forms: u32,
+    },
     /// The same combinations, with fibres of the form.
     Fibre {
         /// Coefficients of the form: real and imaginary parts.

@@ -17,6 +17,7 @@ mod equations;
 pub(crate) mod job;
 pub(crate) mod junk;
 pub(crate) mod moved;
+pub(crate) mod multiple_cut;
 pub(crate) mod operand;
 mod options;
 pub(crate) mod problem;
@@ -215,7 +216,7 @@ impl DecompositionSolve {
             }
             Step::Cascade(cascade) => {
                 state.paths.add(&paths);
-                cascade.advance(problem, done.as_ref())
+                cascade.advance(problem, None, done.as_ref())
             }
             Step::Equations(equations) => {
                 state.paths.add(&paths);
@@ -378,9 +379,7 @@ impl DecompositionSolve {
                 resumed.system_of(known.expect("they are known while they move"), wanted)
             }
             Step::Equations(equations) => {
-                let count = equations.prefix();
-                let (problem, deflations) = self.prefixes.of(&self.problem, count);
-                deflations.of_stage(&problem, wanted)
+                equations.system_of(&self.problem, &mut self.prefixes, wanted)
             }
             _ => self.deflations.of_stage(&self.problem, wanted),
         }

@@ -378,6 +378,11 @@ impl Problem {
         factors.unwrap_or_default()
     }
 
+    /// A factor of the last equation alone.
+    pub fn last_factor(&self, factor: usize) -> System {
+        with_factors(&self.given, vec![self.factors_of_last()[factor].0])
+    }
+
     /// As many combinations of all equations but the last as cut out a set of this dimension, a factor of the last,
     /// and others that are never reached.
     pub fn cut(&self, dimension: usize, factor: usize) -> Result<System, ProblemError> {

@@ -59,8 +59,9 @@ impl Superset {
         self.failed + self.unclear
     }
 
-    /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations; gives
-    /// back regular ones that solve the combinations only.
+    /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations, which may
+    /// have more unknowns after the problem's; gives back regular ones that solve the combinations only, with all
+    /// unknowns.
     pub fn sort(
         &mut self,
         problem: &Problem,
@@ -68,7 +69,8 @@ impl Superset {
         job: &Job,
     ) -> Vec<Vec<Complex64>> {
         let (mut singular, mut others) = (Vec::new(), Vec::new());
-        for (place, (_, decision, values)) in job.ends().into_iter().enumerate() {
+        let own = problem.variables();
+        for (place, (_, decision, mut values)) in job.ends().into_iter().enumerate() {
             let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
             match decision.verdict {
                 // Another beginning may tell.
@@ -81,14 +83,18 @@ impl Superset {
                 }
                 Verdict::Finite => {
                     let refined = combinations.refine(&exact);
-                    match refined.and_then(|refined| problem.solves(&refined.point, &REFINED)) {
-                        Some(true) => self.regular.push(values),
+                    let solves = |point: &[_]| problem.solves(&point[..own], &REFINED);
+                    match refined.and_then(|refined| solves(&refined.point)) {
+                        Some(true) => {
+                            values.truncate(own);
+                            self.regular.push(values);
+                        }
                         Some(false) => others.push(values),
                         None => self.unclear += 1,
                     }
                 }
                 Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional => {
-                    match problem.solves(&exact, &SINGULAR) {
+                    match problem.solves(&exact[..own], &SINGULAR) {
                         Some(true) => singular.push(place),
                         _ => self.unclear += 1,
                     }
@@ -147,7 +153,7 @@ impl Superset {
         }
     }
 
-    /// Takes singular ends of a job by their places: those that are one point together.
+    /// Takes singular ends of a job by their places: those that are one point together, in the problem's unknowns.
     pub fn gather(&mut self, problem: &Problem, job: &Job, singular: &[usize]) {
         let Some(shape) = job.shape() else {
             return;
@@ -160,8 +166,10 @@ impl Superset {
             let best = members.iter().copied();
             let best = best.min_by(|a, b| accuracy(a).total_cmp(&accuracy(b)));
             let best = best.expect("a cluster has members");
+            let mut values = shape.to_variables(results[best].endpoint.to_double());
+            values.truncate(problem.variables());
             self.singular.push(SingularEnd {
-                values: shape.to_variables(results[best].endpoint.to_double()),
+                values,
                 accuracy: accuracy(&best),
                 paths: members.len() as u64,
             });

@@ -65,7 +65,7 @@ type Case<'a> = (&'a str, &'a str, &'a str, &'a [(u32, u64, Option<u64>)]);
 const PLANE: &str = "variable_group x, y";
 const SPACE: &str = "variable_group x, y, z";
 
-const CASES: [Case; 15] = [
+const CASES: [Case; 23] = [
     (
         SPACE,
         "x^2 + y^2 + z^2 - 1",
@@ -154,6 +154,48 @@ const CASES: [Case; 15] = [
         "a*f - c*d, b*f - c*e",
         &[(4, 3, Some(1))],
     ),
+    // Written out, so that nothing tells that it is a square: a conic, a curve of degree 10, none.
+    (SPACE, "z^2", "x^2 + y^2 + z^2 - 1", &[(1, 2, Some(2))]),
+    (
+        SPACE,
+        "x^2 - 2*x*y^2 + y^4",
+        "z^5 - x*y - 1",
+        &[(1, 10, Some(2))],
+    ),
+    (SPACE, "z^2", "z - 1", &[]),
+    // A parabola with its first neighbourhood, cut by a plane; by its own plane.
+    (
+        SPACE,
+        "(y - x^2)^2, (y - x^2)*(z - 1), (z - 1)^2",
+        "y + z - 2",
+        &[(0, 1, Some(3)), (0, 1, Some(3))],
+    ),
+    (
+        SPACE,
+        "(y - x^2)^2, (y - x^2)*(z - 1), (z - 1)^2",
+        "z - 1",
+        &[(1, 2, Some(2))],
+    ),
+    // A double plane and a sphere that leave the same circle, and two double lines.
+    (
+        SPACE,
+        "(z^2 - 2*z + 1)*(x^2 + y^2 + z^2 - 2)",
+        "z - 1",
+        &[(2, 1, Some(1))],
+    ),
+    // Two equations after the multiple set, and one whose factors cut it apart.
+    (
+        SPACE,
+        "x^2 - 2*x*y^2 + y^4",
+        "z^2 - x - 1, y*z - 1",
+        &[(0, 1, Some(2)); 4],
+    ),
+    (
+        SPACE,
+        "x^3 + 3*x^2 + 3*x + 1",
+        "(y - z)^2*(y + z - 3)",
+        &[(1, 1, Some(6)), (1, 1, Some(3))],
+    ),
 ];
 
 #[test]
@@ -179,7 +221,7 @@ fn the_answer_is_that_of_all_equations() {
 
 #[test]
 fn another_way_agrees() {
-    for (variables, first, added, expected) in [CASES[2], CASES[3], CASES[9]] {
+    for (variables, first, added, expected) in [CASES[2], CASES[3], CASES[9], CASES[16]] {
         let options = DecompositionOptions {
             verify: true,
             certify: true,
@@ -215,16 +257,35 @@ fn one_equation_after_the_other() {
 
 #[test]
 fn a_state_that_was_read_back_goes_on() {
-    let (variables, first, added, _) = CASES[3];
-    let options = resuming(variables, first, 5);
-    let whole = equations(variables, &[first, added]);
-    let lived = decomposed(&whole, &options);
-    let solve = DecompositionSolve::new(&whole, &options).unwrap();
-    let solve = with_restarts(AnySolve::Decomposition(Box::new(solve)), &mut |_| {});
-    let Some(Answer::Decomposition(restarted)) = solve.answer(&whole) else {
-        panic!("a decomposition ends with one");
-    };
-    assert_eq!(*restarted, lived);
+    // The second is a multiple set that is cut.
+    for (variables, first, added, _) in [CASES[3], CASES[16]] {
+        let options = resuming(variables, first, 5);
+        let whole = equations(variables, &[first, added]);
+        let lived = decomposed(&whole, &options);
+        let solve = DecompositionSolve::new(&whole, &options).unwrap();
+        let solve = with_restarts(AnySolve::Decomposition(Box::new(solve)), &mut |_| {});
+        let Some(Answer::Decomposition(restarted)) = solve.answer(&whole) else {
+            panic!("a decomposition ends with one");
+        };
+        assert_eq!(*restarted, lived);
+    }
+}
+
+/// A double plane with a surface that touches it: a line of multiplicity 4, or a multiplicity that is not known.
+#[test]
+fn a_multiplicity_that_is_not_known_is_said() {
+    for seed in 1..=3 {
+        let options = resuming(SPACE, "z^2", seed);
+        let found = decomposed(&equations(SPACE, &["z^2", "x^2 + z"]), &options);
+        let [line] = found.components.as_slice() else {
+            panic!("one line, not {found:#?}")
+        };
+        assert_eq!((line.dimension(), line.degree), (1, 1));
+        match line.multiplicity.scheme {
+            Some(multiplicity) => assert_eq!(multiplicity, 4),
+            None => assert!(!found.settled(), "{found:#?}"),
+        }
+    }
 }
 
 #[test]
@@ -251,10 +312,17 @@ fn what_is_no_component_is_refused() {
     refused(&|known| known.components[0].deflation = vec![0]);
 }
 
-/// A path that is lost between two slices is a doubt, where no other way follows.
+/// A path that is lost between two slices, or where a multiple set is cut, is a doubt, where no other way follows.
 #[test]
 fn a_lost_witness_point_is_a_doubt() {
-    let (variables, first, added, _) = CASES[0];
+    // The second is a multiple set: its slice slides to five in the second stage, and is cut in the third.
+    for (case, stage) in [(0, 1), (16, 1), (16, 2), (16, 3)] {
+        lose_the_first_path(CASES[case], stage);
+    }
+}
+
+/// Loses the first path of this stage, from 1.
+fn lose_the_first_path((variables, first, added, _): Case, stage: usize) {
     let options = DecompositionOptions {
         max_retries: 0,
         method: Some(Method::Equations),
@@ -272,7 +340,7 @@ fn a_lost_witness_point_is_a_doubt() {
         let prepared = PreparedWork::new(system, &opening.stage, &find)?;
         let mut results = prepared.run(0..prepared.items(), 8);
         stages += 1;
-        if let (1, Some(ItemResult::Track(path))) = (stages, results.first_mut()) {
+        if let (true, Some(ItemResult::Track(path))) = (stages == stage, results.first_mut()) {
             path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
         Ok(results)

@@ -38,7 +38,7 @@ fn singular(text: &str, seed: u64) -> Decomposition {
 
 #[test]
 fn singular_loci() {
-    let cases: [(&str, &[(u32, u64)]); 7] = [
+    let cases: [(&str, &[(u32, u64)]); 9] = [
         // Whitney's umbrella: its handle is the z axis.
         (
             "variable_group x, y, z; function f; f = x^2 - y^2*z;",
@@ -68,6 +68,15 @@ fn singular_loci() {
         (
             "variable_group x, y, z; function f; f = (x + y - 1)*(x - z + 2);",
             &[(1, 1)],
+        ),
+        // A multiple component is singular everywhere, and holds the points where it meets another.
+        (
+            "variable_group x, y, z; function f; f = z^2*(x + y - 1);",
+            &[(2, 1)],
+        ),
+        (
+            "variable_group x, y, z; function f, g; f = (y - x^2)^2; g = (z - 1)*(x^2 + z^2 - 5);",
+            &[(1, 4), (1, 2)],
         ),
     ];
     for (number, (text, expected)) in cases.into_iter().enumerate() {
@@ -192,6 +201,56 @@ fn intersections_by_equations_and_by_pairs() {
                 (expected.to_vec(), true),
                 "{text}: {found:#?}"
             );
+        }
+    }
+}
+
+/// Multiple components with others, by the equations and by the pairs of components: no multiplicity is said of what
+/// is not regular.
+#[test]
+fn multiple_components_are_cut() {
+    const FAT: &str = "(y - x^2)^2, (y - x^2)*(z - 1), (z - 1)^2";
+    const CONICS: &str = "(x^2 + y^2 - z)^2*(x - 2*y + 1), (z - 1)*(x - 2*y + 1)*(z + x - 3)";
+    let cases: [Case; 9] = [
+        ("z^2", "x - 1, y - 2", &[(0, 1)]),
+        ("z^2", "x^2 + y^2 + z^2 - 1", &[(1, 2)]),
+        // A sphere that touches.
+        ("z^2", "x^2 + y^2 + z^2 - 2*z", &[(1, 1), (1, 1)]),
+        ("z^2", "z - 1", &[]),
+        // The fat parabola and a line of its plane.
+        (FAT, "z - 1, y - 4", &[(0, 1), (0, 1)]),
+        // Two double conics and a plane, with a plane: two points of each conic; they have none in common here.
+        (
+            CONICS,
+            "x + 3*y - z + 7",
+            &[(1, 1), (0, 1), (0, 1), (0, 1), (0, 1)],
+        ),
+        // Two multiple sets with one another.
+        (
+            "z^2",
+            "x^4 + 2*x^2*y^2 + y^4 - 2*x^2 - 2*y^2 + 1",
+            &[(1, 2)],
+        ),
+        (FAT, "x^2 - 2*x + 1", &[(0, 1)]),
+        // A double surface holds the other side.
+        ("x^2 - 2*x*y^2 + y^4", "x - y^2, z - y", &[(1, 2)]),
+    ];
+    for (number, (first, second, expected)) in cases.into_iter().enumerate() {
+        let seed = 30 + number as u64;
+        for (way, found) in both_ways(first, second, "x, y, z", seed)
+            .into_iter()
+            .enumerate()
+        {
+            let text = format!("{first} and {second}, way {way}");
+            assert_eq!(
+                listed(&found),
+                (expected.to_vec(), true),
+                "{text}: {found:#?}"
+            );
+            for set in &found.components {
+                let known = set.deflation.is_empty().then_some(1);
+                assert_eq!(set.multiplicity.scheme, known, "{text}");
+            }
         }
     }
 }
@@ -400,4 +459,18 @@ fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
         let (lived, _) = run_locally(solve.clone(), 8).unwrap();
         assert_eq!(with_restarts(&umbrella, solve), lived, "{question:?}");
     }
+    // A double surface, cut by the equations.
+    let double = system("variable_group x, y, z; function f; f = x^2 - 2*x*y^2 + y^4;");
+    let found = components(&double, 6);
+    let whole =
+        system("variable_group x, y, z; function f, g; f = x^2 - 2*x*y^2 + y^4; g = x*z - y - 1;");
+    let question = Question::Intersect(SecondSet {
+        own: 1,
+        from: 1,
+        components: Vec::new(),
+    });
+    let options = DecompositionOptions::default();
+    let solve = QuestionSolve::new(&whole, &options, &found.components, &question).unwrap();
+    let (lived, _) = run_locally(solve.clone(), 8).unwrap();
+    assert_eq!(with_restarts(&whole, solve), lived);
 }

@@ -8,6 +8,7 @@ pub mod inverse;
 pub mod least_squares;
 pub mod lu;
 pub mod matrix;
+pub mod orthogonal;
 pub mod sparse;
 pub mod svd;
 pub mod vector;

@@ -59,8 +59,8 @@ pub enum Doubt {
         /// What it found.
         found: String,
     },
-    /// Points of multiple sets, or that could not be sifted, which a further equation should have cut: what
-    /// it has in common with their sets is not known.
+    /// Points that could not be sifted, or of multiple sets that could not be followed, which a further equation
+    /// should have cut: what it has in common with their sets is not known.
     NotCut {
         /// How many.
         points: u64,
@@ -179,7 +179,7 @@ impl fmt::Display for Doubt {
             }
             Self::NotCut { points } => write!(
                 f,
-                "a further equation could not cut the sets of {}, which are multiple or not told from junk",
+                "a further equation could not cut the sets of {}, which are not told from junk, or multiple",
                 counted(points, "point")
             ),
             Self::Asked { points } => write!(

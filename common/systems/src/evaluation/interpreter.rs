@@ -6,7 +6,7 @@
 
 use super::{Evaluate, Shape};
 use crate::expression::{Expressions, NodeId};
-use crate::straight_line_program::assignments::Assignments;
+use crate::straight_line_program::assignments::{Assignments, WAYS};
 use crate::straight_line_program::instruction::{Assignment, FREQUENT, Operand, Operation, Terms};
 use crate::straight_line_program::schedule::{Scheduling, schedule};
 use crate::straight_line_program::{Index, Layout, StraightLineProgram, Target};
@@ -171,7 +171,17 @@ impl Interpreter {
         parameters: usize,
         scheduling: Scheduling,
     ) -> Self {
-        let mut assignments = Assignments::compile(expressions, equations, variables, parameters);
+        let assignments = Assignments::compile(expressions, equations, variables, parameters);
+        Self::of_assignments(assignments, scheduling)
+    }
+
+    /// The values of equations in parameters only: no derivatives, for which compiling takes most of its time.
+    pub fn of_values(expressions: &Expressions, equations: &[NodeId], parameters: usize) -> Self {
+        let assignments = Assignments::of_values(expressions, equations, [0, parameters], &WAYS);
+        Self::of_assignments(assignments, Scheduling::default())
+    }
+
+    fn of_assignments(mut assignments: Assignments, scheduling: Scheduling) -> Self {
         let constants = assignments.number_constants();
         let singles = assignments.number_singles();
         Self(Arc::new(Compiled::new(

@@ -77,6 +77,20 @@ fn total_cost(assignments: &[Assignment]) -> usize {
     assignments.iter().map(cost).sum()
 }
 
+/// What computes these nodes, with the constants that are used.
+fn lower(
+    (arena, wanted): (&Expressions, &[NodeId]),
+    parameters: usize,
+    way: &Way,
+    pool: &ConstantPool,
+) -> (Vec<Assignment>, ConstantPool) {
+    let first_direction = u32::try_from(parameters).expect("fewer than 2^32 parameters");
+    let mut pool = pool.for_another_arena();
+    let association = way.association;
+    let graph = FlowGraph::lower(arena, wanted, first_direction, association, &mut pool);
+    (fuse(&graph, &mut pool), pool)
+}
+
 impl Assignments {
     /// Differentiates, lowers and fuses, in the cheapest way.
     pub(crate) fn compile(
@@ -99,19 +113,8 @@ impl Assignments {
         parameters: usize,
         ways: &[Way],
     ) -> Self {
-        let first_direction = u32::try_from(parameters).expect("fewer than 2^32 parameters");
-        let lower = |arena: &Expressions, wanted: &[NodeId], way: &Way, pool: &ConstantPool| {
-            let mut pool = pool.for_another_arena();
-            let association = way.association;
-            let graph = FlowGraph::lower(arena, wanted, first_direction, association, &mut pool);
-            (fuse(&graph, &mut pool), pool)
-        };
-        let (value, pool) = ways
-            .iter()
-            .take(2)
-            .map(|way| lower(expressions, equations, way, &ConstantPool::default()))
-            .min_by_key(|(assignments, _)| total_cost(assignments))
-            .expect("at least one way is tried");
+        let values = Self::of_values(expressions, equations, [variables, parameters], ways);
+        let pool = &values.pool;
         let (linearize, pool) = ways
             .iter()
             .map(|way| {
@@ -123,8 +126,29 @@ impl Assignments {
                     way.jacobian,
                     way.along_path,
                 );
-                lower(&all.arena, &all.entries, way, &pool)
+                lower((&all.arena, &all.entries), parameters, way, pool)
             })
+            .min_by_key(|(assignments, _)| total_cost(assignments))
+            .expect("at least one way is tried");
+        Self {
+            pool,
+            linearize,
+            ..values
+        }
+    }
+
+    /// The values alone, without derivatives, in the cheapest of some ways, at least one.
+    pub(crate) fn of_values(
+        expressions: &Expressions,
+        equations: &[NodeId],
+        [variables, parameters]: [usize; 2],
+        ways: &[Way],
+    ) -> Self {
+        let none = ConstantPool::default();
+        let (value, pool) = ways
+            .iter()
+            .take(2)
+            .map(|way| lower((expressions, equations), parameters, way, &none))
             .min_by_key(|(assignments, _)| total_cost(assignments))
             .expect("at least one way is tried");
         Self {
@@ -134,7 +158,7 @@ impl Assignments {
                 equations: equations.len(),
             },
             pool,
-            linearize,
+            linearize: Vec::new(),
             value,
         }
     }

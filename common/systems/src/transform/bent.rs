@@ -7,6 +7,7 @@ use crate::expression::differentiate::directional;
 use crate::expression::{Expressions, Node, NodeId};
 use crate::scaling::Scaling;
 use crate::system::{System, VariableGroup};
+use std::collections::HashMap;
 
 /// The equations F(x, p) = 0, F' = 0 and F'' = 0 along x(s), p + s q, at s = 0: in the variables x, x' and x'', as many
 /// of each as the system has, with the parameters p and then q. All variables are one affine group.
@@ -60,6 +61,43 @@ pub fn bent(system: &System) -> System {
     }
 }
 
+/// The first and the second derivative in s of the equations F(x + s u, p + s q), at s = 0: those of all equations, then
+/// the others. x, u, p and q are all parameters, in this order, so that nothing has to be differentiated by them.
+pub fn along_line(system: &System) -> (Expressions, Vec<NodeId>) {
+    let index = |k: usize| u32::try_from(k).expect("variables are counted in 32 bits");
+    let (n, parameters) = (
+        index(system.variables.len()),
+        index(system.parameters.len()),
+    );
+    let mut e = Expressions::new();
+    let mut memory = HashMap::new();
+    let mut copies = Vec::with_capacity(system.equations.len());
+    for &equation in &system.equations {
+        let leaf = &mut |e: &mut Expressions, leaf: &Node| match leaf {
+            Node::Variable(v) => e.parameter(*v),
+            Node::Parameter(p) => e.parameter(2 * n + *p),
+            _ => unreachable!("a system has no other leaves"),
+        };
+        copies.push(e.import(&system.expressions, equation, &mut memory, leaf));
+    }
+    let mut along = |equations: &[NodeId]| -> Vec<NodeId> {
+        let leaf = &mut |e: &mut Expressions, leaf: &Node| match leaf {
+            Node::Parameter(k) if *k < n => Some(e.parameter(*k + n)),
+            Node::Parameter(k) if (2 * n..2 * n + parameters).contains(k) => {
+                Some(e.parameter(*k + parameters))
+            }
+            _ => None,
+        };
+        let slopes = directional(&mut e, equations, leaf);
+        let zero = e.integer(0);
+        let slopes = slopes.into_iter();
+        slopes.map(|slope| slope.unwrap_or(zero)).collect()
+    };
+    let first = along(&copies);
+    let second = along(&first);
+    (e, [first, second].concat())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,5 +126,27 @@ mod tests {
         for value in values {
             assert!(value.norm_sqr() < 1e-28, "{value:?}");
         }
+    }
+
+    #[test]
+    fn derivatives_along_a_line_are_those_of_calculus() {
+        // f = x^2 y and c + a x + b y at (x, y) + s (u, v), with c, a and b that move.
+        let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y; function f;\nf = x^2*y;\nEND;\n";
+        let system = crate::formats::read("test", text).unwrap().system;
+        let (e, derivatives) = along_line(&crate::transform::slice(&system, 1, 2));
+        let program = Interpreter::of_values(&e, &derivatives, 10);
+        let values = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0];
+        let values = values.map(|re| Complex { re, im: 0.0 });
+        let mut out = vec![Complex { re: 0.0, im: 0.0 }; 4];
+        let mut scratch = Evaluate::<f64>::scratch(&program, ());
+        program.value(&[], &values, &mut out, &mut scratch);
+        let expected = [
+            2.0 * 6.0 * 5.0 + 4.0 * 7.0,
+            19.0 + 23.0 * 2.0 + 29.0 * 3.0 + 13.0 * 5.0 + 17.0 * 7.0,
+            2.0 * 3.0 * 25.0 + 4.0 * 2.0 * 35.0,
+            2.0 * (23.0 * 5.0 + 29.0 * 7.0),
+        ];
+        let found: Vec<f64> = out.iter().map(|z| z.re).collect();
+        assert_eq!(found, expected);
     }
 }

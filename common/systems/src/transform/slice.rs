@@ -39,7 +39,8 @@ pub fn slice(system: &System, count: usize, own: usize) -> System {
     sliced
 }
 
-fn form(e: &mut Expressions, first: usize, own: usize) -> crate::expression::NodeId {
+/// The linear equation in the first variables whose coefficients are the parameters from this one on, the constant first.
+pub(super) fn form(e: &mut Expressions, first: usize, own: usize) -> crate::expression::NodeId {
     let index = |k: usize| u32::try_from(k).expect("parameters are counted in 32 bits");
     let mut sum = e.parameter(index(first));
     for v in 0..own {

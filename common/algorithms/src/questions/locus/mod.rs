@@ -17,6 +17,7 @@ use crate::decomposition::cascade::Cascade;
 use crate::decomposition::deflated::{Deflations, PureSet, doubles};
 use crate::decomposition::job::{Job, StageSystem};
 use crate::decomposition::junk::JunkFilter;
+use crate::decomposition::multiple_cut::DeflatedSet;
 use crate::decomposition::ordered;
 use crate::decomposition::problem::{Problem, REFINED};
 use crate::decomposition::split::Split;
@@ -192,6 +193,13 @@ impl Locus {
             (_, StageSystem::Pair { places }) => self.pair_system(with, *places),
             (Phase::Cut(_), _) => {
                 self.make_cut(with);
+                if let StageSystem::MultipleCut { .. } = wanted
+                    && let (Phase::Cut(cascade), Some((_, Some(problem), _))) =
+                        (&self.phase, &self.made.cut)
+                {
+                    let of = (with.problem, &mut *with.deflations);
+                    return cascade.system_of(problem, of, wanted);
+                }
                 let Some((_, Some(problem), deflations)) = &mut self.made.cut else {
                     unreachable!("nothing is cut where no problem can be made")
                 };
@@ -262,12 +270,15 @@ impl Locus {
             self.next();
             return None;
         }
-        if !operand.set.ranks.is_empty() {
+        let multiple = !operand.set.ranks.is_empty();
+        if multiple && self.wanted == Wanted::Critical {
             self.superset(dimension - 1).not_cut += operand.degree() as u64;
             self.next();
             return None;
         }
-        if self.cut_problem(with).is_none() {
+        // A multiple component is singular everywhere: nothing cuts it.
+        let singular = multiple && self.wanted == Wanted::Singular;
+        if !singular && self.cut_problem(with).is_none() {
             self.next();
             return None;
         }
@@ -307,21 +318,40 @@ impl Locus {
         if lost > 0 {
             self.lose(dimension, lost);
         }
-        let problem = self.cut_problem(with)?;
+        let ranks = with.operands[self.place[0]].set.ranks.clone();
+        let own = with.problem.variables();
+        let singular = self.wanted == Wanted::Singular && !ranks.is_empty();
+        let problem = match singular {
+            true => None,
+            false => Some(self.cut_problem(with)?),
+        };
         let holds = |values: &Vec<Complex64>| {
-            let rows = vec![values.clone()];
-            let on = (problem.slices(dimension), Vec::<u32>::new());
+            // Where nothing cuts, all of the component is wanted.
+            let Some(problem) = &problem else {
+                return Some(true);
+            };
+            let rows = vec![values[..own].to_vec()];
+            let on = (problem.slices(dimension), ranks.as_slice());
             let refined = with
                 .deflations
-                .points_on(with.problem, (&on.0, &on.1), &rows);
+                .points_on(with.problem, (&on.0, on.1), &rows);
             let refined = refined.into_iter().next().flatten()?;
-            problem.solves(&refined.point, &REFINED)
+            problem.solves(&refined.point[..own], &REFINED)
         };
         let holding: Vec<Option<bool>> = points.iter().map(holds).collect();
-        if holding.iter().all(|&holds| holds == Some(false)) {
-            let level = problem.variables() - dimension;
-            self.phase = Phase::Cut(Box::new(Cascade::from_level(level, points)));
+        if let Some(problem) = &problem
+            && holding.iter().all(|&holds| holds == Some(false))
+        {
+            let level = own - dimension;
+            let cascade = match ranks.is_empty() {
+                true => Cascade::from_level(level, points),
+                false => Cascade::on_multiple(problem, DeflatedSet { ranks, dimension }, points),
+            };
+            self.phase = Phase::Cut(Box::new(cascade));
             return None;
+        }
+        for point in &mut points {
+            point.truncate(own);
         }
         // All of the component belongs to the locus.
         let whole = holding.iter().all(|&holds| holds == Some(true));
@@ -340,7 +370,8 @@ impl Locus {
             unreachable!("a cascade is under way")
         };
         let problem = problem.expect("what begins to cut has a problem");
-        let next = cascade.advance(&problem, job);
+        let of = (with.problem, &mut *with.deflations);
+        let next = cascade.advance(&problem, Some(of), job);
         if next.is_some() {
             return next;
         }
