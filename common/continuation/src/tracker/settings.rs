@@ -49,6 +49,9 @@ pub struct Settings {
     pub max_precision_bits: u32,
 }
 
+/// A path that takes more steps follows noise, or is too near to another one.
+const ENOUGH_STEPS: u32 = 20_000;
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -57,7 +60,7 @@ impl Default for Settings {
             max_step: 0.1,
             reach: 0.0,
             min_step: 1e-13,
-            max_steps: 20_000,
+            max_steps: ENOUGH_STEPS,
             endgame_boundary: 0.1,
             endgame_radius: 1e-3,
             endgame_min_radius: 1e-14,
@@ -119,13 +122,16 @@ impl Settings {
         Self { reach, ..self }
     }
 
-    /// Settings for a path that is tracked again, `attempt` counted from 1: tighter each time, from the second time on with twice the digits from the beginning.
+    /// Settings for a path that is tracked again, `attempt` counted from 1: tighter each time, with four times as many
+    /// steps up to what is enough, and from the second time on with twice the digits from the beginning.
     #[must_use]
     pub fn tightened(&self, attempt: u16) -> Self {
         let mut tighter = self.clone();
         for _ in 0..attempt {
             tighter.predictor_tolerance *= 0.01;
             tighter.max_step *= 0.5;
+            let more = tighter.max_steps.saturating_mul(4).min(ENOUGH_STEPS);
+            tighter.max_steps = tighter.max_steps.max(more);
         }
         if attempt >= 2 {
             let rung = rungs(self.precision_bits, self.max_precision_bits).nth(1);
