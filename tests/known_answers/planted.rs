@@ -8,20 +8,25 @@ use std::time::Duration;
 /// Systems of each kind in the sample.
 const SAMPLE: u64 = 4;
 
+/// Systems of seed 21 that were: of two roots nearer than 1e-12 one was a solution with small rational coordinates,
+/// and both were one double point.
+const ONCE_WRONG: [u64; 6] = [58, 75, 81, 115, 194, 225];
+
 /// No system of the sample is answered wrongly by an answer that is called settled.
 #[test]
 fn no_silent_error_among_planted_systems() {
     let mut wrong = Vec::new();
-    for number in 0..SAMPLE * KINDS.len() as u64 {
-        let system = planted(1, number);
-        let mut dice = Dice(1 ^ number.rotate_left(20));
+    let sample = (0..SAMPLE * KINDS.len() as u64).map(|number| (1, number));
+    for (of, number) in sample.chain(ONCE_WRONG.map(|number| (21, number))) {
+        let system = planted(of, number);
+        let mut dice = Dice(of ^ number.rotate_left(20));
         let start = start(&mut dice);
         let seed = dice.below(1 << 32);
         let verdict = solve(&system, start.clone(), seed, Duration::from_secs(10));
         if let Verdict::Silent(what) = verdict {
             let answer = system.file("");
             wrong.push(format!(
-                "{number}, {}, {}, {seed}:{what}\n{answer}",
+                "{number} of {of}, {}, {}, {seed}:{what}\n{answer}",
                 system.kind,
                 start.name()
             ));

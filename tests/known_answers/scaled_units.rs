@@ -7,13 +7,12 @@ use cognate_algorithms::plan::ClosingOptions;
 use cognate_algorithms::plan::SolveMethod;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_systems::expression::Node;
+use cognate_systems::expression::{Imported, Node};
 use cognate_systems::named;
 use cognate_systems::scaling::{Scaling, exact_times, times_power_of_two};
 use cognate_systems::system::System;
 use cognate_tests::systems::written;
 use num_complex::Complex64;
-use std::collections::HashMap;
 
 fn options(seed: u64, start: SolveMethod) -> SolveOptions {
     SolveOptions {
@@ -152,7 +151,7 @@ fn coefficients_of_hundreds_of_digits_are_numbers() {
 /// one, and equation i is multiplied by 2^(factors[i]); as a file would have it.
 fn in_other_units(system: &System, units: &[i32], factors: &[i32]) -> System {
     let mut out = cognate_systems::expression::Expressions::new();
-    let mut memory = HashMap::new();
+    let mut memory = Imported::default();
     let one = cognate_numeric::rational::ComplexRational::real(1);
     let mut equations = Vec::new();
     for (&equation, &factor) in system.equations.iter().zip(factors) {

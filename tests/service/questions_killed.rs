@@ -72,6 +72,16 @@ fn answer(cluster: &Cluster, job: &str, files: &[&str]) -> (Value, Vec<String>) 
 
 /// Asks undisturbed, then with a worker killed where these many items are done, and the coordinator where those are.
 pub fn check(submission: &Submission, kills: [u64; 2], files: &[&str]) -> Value {
+    check_and_look(submission, kills, files, &|_, _| ())
+}
+
+/// The same; `look` is given the service that was disturbed, and the job, when that is solved.
+pub fn check_and_look(
+    submission: &Submission,
+    kills: [u64; 2],
+    files: &[&str],
+    look: &dyn Fn(&Cluster, &str),
+) -> Value {
     let quiet = Cluster::with_workers(1);
     let job = quiet.client().submit(submission);
     quiet.client().wait_until_solved(&job);
@@ -104,6 +114,7 @@ pub fn check(submission: &Submission, kills: [u64; 2], files: &[&str]) -> Value 
     cluster.client().wait_until_solved(&job);
     let found = answer(&cluster, &job, files);
     assert!(found == expected, "the same, byte for byte");
+    look(&cluster, &job);
     cluster.workers.remove(0);
     cluster.stop();
     expected.0

@@ -6,6 +6,7 @@ use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
+use crate::overdetermined_solve::OverdeterminedSolve;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::progress::Progress;
@@ -24,7 +25,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 20;
+const VERSION: u8 = 21;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +40,8 @@ pub enum AnySolve {
     Polyhedral(Box<PolyhedralSolve>),
     /// All regular solutions of one system, equation by equation.
     Regeneration(Box<RegenerationSolve>),
+    /// All isolated solutions of more equations than unknowns, equation by equation.
+    Overdetermined(Box<OverdeterminedSolve>),
     /// All components of one system.
     Decomposition(Box<DecompositionSolve>),
     /// A question to components that are known.
@@ -86,6 +89,9 @@ impl AnySolve {
             Self::Monodromy(solve) => Self::Monodromy(Box::new(solve.with_max_retries(most))),
             Self::Polyhedral(solve) => Self::Polyhedral(Box::new(solve.with_max_retries(most))),
             Self::Regeneration(solve) => Self::Regeneration(Box::new(solve.with_max_retries(most))),
+            Self::Overdetermined(solve) => {
+                Self::Overdetermined(Box::new(solve.with_max_retries(most)))
+            }
             Self::Decomposition(solve) => {
                 Self::Decomposition(Box::new(solve.with_max_retries(most)))
             }
@@ -100,6 +106,7 @@ impl AnySolve {
             Self::Monodromy(solve) => &**solve,
             Self::Polyhedral(solve) => &**solve,
             Self::Regeneration(solve) => &**solve,
+            Self::Overdetermined(solve) => &**solve,
             Self::Decomposition(solve) => &**solve,
             Self::Question(solve) => &**solve,
         }
@@ -112,6 +119,7 @@ impl AnySolve {
             Self::Monodromy(solve) => &mut **solve,
             Self::Polyhedral(solve) => &mut **solve,
             Self::Regeneration(solve) => &mut **solve,
+            Self::Overdetermined(solve) => &mut **solve,
             Self::Decomposition(solve) => &mut **solve,
             Self::Question(solve) => &mut **solve,
         }
@@ -161,6 +169,7 @@ impl AnyAlgorithm {
             | AnySolve::Parameter(_)
             | AnySolve::Polyhedral(_)
             | AnySolve::Regeneration(_)
+            | AnySolve::Overdetermined(_)
             | AnySolve::Decomposition(_)
             | AnySolve::Question(_) => None,
         }
@@ -210,6 +219,7 @@ impl AnyAlgorithm {
             AnySolve::Polyhedral(_)
             | AnySolve::Regeneration(_)
             | AnySolve::Monodromy(_)
+            | AnySolve::Overdetermined(_)
             | AnySolve::Decomposition(_)
             | AnySolve::Question(_) => Vec::new(),
         }
@@ -225,6 +235,7 @@ impl AnyAlgorithm {
                 AnySolve::Polyhedral(_)
                 | AnySolve::Regeneration(_)
                 | AnySolve::Monodromy(_)
+                | AnySolve::Overdetermined(_)
                 | AnySolve::Decomposition(_)
                 | AnySolve::Question(_) => false,
             }

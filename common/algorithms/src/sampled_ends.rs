@@ -34,16 +34,12 @@ pub(crate) struct SampledEnds {
 }
 
 impl SampledEnds {
-    /// Of a stage whose start points it makes itself, where it has very many paths and most are wasted; `None` where
-    /// they are not.
-    pub(crate) fn of_wasted(
-        system: &System,
-        stage: &Stage,
-        tolerances: &Tolerances,
-    ) -> Option<Self> {
+    /// Of a stage whose start points it makes itself, where it has very many paths and few end at regular solutions;
+    /// `None` where many do.
+    pub(crate) fn of_few(system: &System, stage: &Stage, tolerances: &Tolerances) -> Option<Self> {
         let paths = stage.items().filter(|paths| *paths > MANY_PATHS)?;
         let ends = Self::of(system, stage, paths, tolerances)?;
-        ends.most_are_wasted().then_some(ends)
+        (ends.regular <= FEW).then_some(ends)
     }
 
     /// In doubles; `None` where the stage cannot be prepared. The paths lie one in each equal part of all, where in
@@ -73,10 +69,9 @@ impl SampledEnds {
         Some(ends)
     }
 
-    /// Whether few paths end at regular solutions, and none is known to end where equation by equation solutions may
-    /// be missed.
-    fn most_are_wasted(self) -> bool {
-        self.regular <= FEW && self.singular == 0
+    /// Whether some are known to end where solutions may be missed by a method that leaves singular points behind.
+    pub(crate) fn are_singular(self) -> bool {
+        self.singular > 0
     }
 }
 

@@ -5,11 +5,10 @@
 //! be missing.
 
 use super::{Coordinator, CoordinatorError};
-use crate::jobs::large_stage::object_of;
 use crate::jobs::planning::Planned;
 use crate::ledger::LedgerError;
 use crate::ledger::identity::JobId;
-use crate::ledger::rows::{JobRow, ResultObject, StageRow};
+use crate::ledger::rows::{JobRow, StageRow};
 use crate::results::store::StoreError;
 use crate::results::trash::Amount;
 use cognate_continuation::start_points::Digest;
@@ -20,8 +19,6 @@ use std::time::Duration;
 
 /// A file that a writer has not finished after this time was left by one that was killed.
 const UNFINISHED: Duration = Duration::from_secs(3600);
-/// Chunks in one answer of the ledger.
-const CHUNKS: u32 = 1000;
 
 /// An object that a row names and that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -186,15 +183,8 @@ impl Coordinator {
         seen: &mut Seen,
     ) -> Result<(), CoordinatorError> {
         let mut from = 0;
-        loop {
-            let (job, number) = (row.job, stage.stage);
-            let chunks = self.ledger.finished_chunks(job, number, from, CHUNKS);
-            let chunks = chunks.await?;
-            let Some(last) = chunks.last() else {
-                return Ok(());
-            };
-            from = last.items.last;
-            let objects: Vec<ResultObject> = chunks.into_iter().filter_map(object_of).collect();
+        while let Some((next, objects)) = self.named_page(row.job, stage.stage, from).await? {
+            from = next;
             for object in objects {
                 seen.found.checked += 1;
                 let results = self.store.results(&object, read.work).await.map(|_| ());
@@ -203,6 +193,7 @@ impl Coordinator {
                     .await?;
             }
         }
+        Ok(())
     }
 
     /// Takes down what the store says of an object, unless the job is gone by now.

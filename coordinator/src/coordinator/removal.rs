@@ -9,11 +9,12 @@ use crate::jobs::planning::{Planned, STATE};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::JobId;
-use crate::ledger::rows::{Deleted, JobRow};
+use crate::ledger::rows::{Deleted, JobRow, ResultObject};
 use crate::results::references::Wanted;
 use crate::results::store::StoreError;
 use crate::results::trash::Amount;
 use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::StageId;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
@@ -225,16 +226,26 @@ impl Coordinator {
         let mut named = BTreeSet::new();
         for stage in self.ledger.stages(job).await? {
             let mut from = 0;
-            loop {
-                let chunks = self.ledger.finished_chunks(job, stage.stage, from, CHUNKS);
-                let chunks = chunks.await?;
-                let Some(last) = chunks.last() else { break };
-                from = last.items.last;
-                let objects = chunks.into_iter().filter_map(object_of);
-                named.extend(objects.map(|object| object.address));
+            while let Some((next, objects)) = self.named_page(job, stage.stage, from).await? {
+                from = next;
+                named.extend(objects.into_iter().map(|object| object.address));
             }
         }
         Ok(named)
+    }
+
+    /// The next results that the rows of a stage name, of items after this one, and the last of their items; `None`
+    /// where there are no more rows.
+    pub(super) async fn named_page(
+        &self,
+        job: JobId,
+        stage: StageId,
+        from: u64,
+    ) -> Result<Option<(u64, Vec<ResultObject>)>, LedgerError> {
+        let chunks = self.ledger.finished_chunks(job, stage, from, CHUNKS);
+        let chunks = chunks.await?;
+        let last = chunks.last().map(|chunk| chunk.items.last);
+        Ok(last.map(|last| (last, chunks.into_iter().filter_map(object_of).collect())))
     }
 
     async fn empty_trash(

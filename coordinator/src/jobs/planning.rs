@@ -162,6 +162,7 @@ fn method(options: &Options, points: Option<GivenStart>) -> Result<SolveMethod, 
                     count: options.expected_solutions,
                     trace_test: options.trace_test,
                     confidence: options.confidence,
+                    ..default
                 },
             })
         }

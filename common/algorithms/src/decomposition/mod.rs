@@ -701,7 +701,7 @@ mod tests {
         let solve = DecompositionSolve::new(system, options).unwrap();
         let solve = AnySolve::Decomposition(Box::new(solve));
         let mut kinds = String::new();
-        let solve = restarts::with_restarts(solve, &mut |opening| {
+        let solve = restarts::with_restarts(solve, system, &mut |opening| {
             let stage = &opening.stage;
             kinds.push_str(&format!("{:?} {:?}; ", stage.work, stage.homotopy));
         });

@@ -263,7 +263,11 @@ fn a_state_that_was_read_back_goes_on() {
         let whole = equations(variables, &[first, added]);
         let lived = decomposed(&whole, &options);
         let solve = DecompositionSolve::new(&whole, &options).unwrap();
-        let solve = with_restarts(AnySolve::Decomposition(Box::new(solve)), &mut |_| {});
+        let solve = with_restarts(
+            AnySolve::Decomposition(Box::new(solve)),
+            &whole,
+            &mut |_| {},
+        );
         let Some(Answer::Decomposition(restarted)) = solve.answer(&whole) else {
             panic!("a decomposition ends with one");
         };

@@ -64,6 +64,9 @@ pub struct LoopLimits {
     /// With what probability, below 1, none should be missing if loops permute at random
     /// ([`estimate`]); then it is not idle loops that end the search, unless they are very many.
     pub confidence: Option<f64>,
+    /// Whether loops that end without a trace test that passes have no answer: they were not asked for, and an answer
+    /// that may miss solutions would look settled.
+    pub only_complete: bool,
 }
 
 impl LoopLimits {
@@ -73,6 +76,7 @@ impl LoopLimits {
         count: None,
         trace_test: false,
         confidence: None,
+        only_complete: false,
     };
 }
 
@@ -698,7 +702,7 @@ impl MonodromySolve {
 
     /// From everything that is known at the base to the wanted parameters.
     fn arrive(&mut self) {
-        if self.targets.is_empty() {
+        if self.targets.is_empty() || self.falls_short() {
             self.phase = Phase::Stuck;
             return;
         }
@@ -723,6 +727,12 @@ impl MonodromySolve {
             .with_group(self.group.clone());
         self.warn_of_the_end();
         self.phase = Phase::Arrive(Box::new(solve.with_max_retries(self.max_retries)));
+    }
+
+    /// Whether loops have ended that may have missed solutions where that is no answer.
+    fn falls_short(&self) -> bool {
+        let stop = self.counts.stop;
+        self.limits.only_complete && stop.is_some_and(|stop| stop != Stop::TraceTest)
     }
 
     /// All that is known at the base, orbit by orbit.
@@ -833,6 +843,16 @@ impl Solve for MonodromySolve {
                 unreachable!("no stage is open then")
             }
         }
+    }
+
+    fn failure(&self) -> Option<String> {
+        let found = self.counts.solutions;
+        self.falls_short().then(|| {
+            format!(
+                "loops through the family of the system found {found} solutions of a member, and no trace test \
+                 says that these are all; another seed may do, or another start"
+            )
+        })
     }
 
     fn progress(&self) -> Progress {

@@ -3,7 +3,8 @@
 //! The points of a curve on slices that move in parallel have a sum that moves on a line, and a
 //! part of an irreducible curve's points has not (Sommese, Verschelde, Wampler: Symmetric functions
 //! applied to decomposing solution sets of polynomial systems, 2002). Where the parameters are the
-//! coefficients of linear equations, they are such slices themselves; where they are not, the curve
+//! coefficients of linear equations, or of combinations of polynomials that embed the space, they are such
+//! slices themselves; where they are not, the curve
 //! is the one of [`sections`], whose sections by generic coefficients begin at the solutions that
 //! are known and are completed by loops of their own.
 
@@ -11,10 +12,12 @@ use super::counts::TraceForm;
 use cognate_continuation::homotopies::sections::{section_variables, sections};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::point_shape::PointShape;
+use cognate_systems::expression::NodeId;
 use cognate_systems::polynomial::{Polynomial, degrees};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// How far the middle of three sums may be off the line, in parts of the sum of moduli. Endpoints
 /// are accurate to about 1e-14; what a missing point does is as large as the bend of its own way,
@@ -88,7 +91,7 @@ impl Test {
         seed: u64,
     ) -> Result<Self, NoTraceTest> {
         let mut random = RandomStream::new(seed, Purpose::Loop, 3 << 32);
-        if let Some(constants) = slices(system) {
+        if let Some(constants) = moving_constants(system) {
             let mut direction = vec![Complex64::default(); base.len()];
             for p in constants {
                 direction[p] = random.unit();
@@ -135,40 +138,59 @@ impl Test {
     }
 }
 
+/// Whether a trace test moves parameters of a system themselves.
+pub(crate) fn has_pencil(system: &System) -> bool {
+    moving_constants(system).is_some()
+}
+
+/// The parameters whose moves are those of parallel slices.
+fn moving_constants(system: &System) -> Option<Vec<usize>> {
+    if system.groups.iter().any(|group| group.homogeneous) {
+        return None;
+    }
+    slices(system).or_else(|| hyperplane(system))
+}
+
+/// The terms of an equation by the exponents of its variables and the parameter in each, if there is one:
+/// where the equation is linear in its parameters.
+fn linear_terms(system: &System, equation: NodeId) -> Option<Vec<(Vec<u32>, Option<usize>)>> {
+    let (n, count) = (system.variables.len(), system.parameters.len());
+    let f = Polynomial::expand(&system.expressions, equation, n, count)?;
+    let terms = f.terms.keys().map(|exponents| {
+        let (of_variables, of_parameters) = exponents.split_at(n);
+        let parameter = of_parameters.iter().position(|&k| k > 0);
+        let linear = of_parameters.iter().sum::<u32>() <= 1;
+        linear.then(|| (of_variables.to_vec(), parameter))
+    });
+    terms.collect()
+}
+
 /// The parameters that are the constants of slices, where all parameters of a system are
 /// coefficients of linear equations, each of one only, and there are enough of them for a slice to
 /// lie anywhere.
 fn slices(system: &System) -> Option<Vec<usize>> {
-    let (n, count) = (system.variables.len(), system.parameters.len());
-    if system.groups.iter().any(|group| group.homogeneous) {
-        return None;
-    }
+    let n = system.variables.len();
     let (mut constants, mut own, mut number) = (Vec::new(), Vec::new(), 0);
-    let mut seen = vec![0usize; count];
+    let mut seen = vec![0usize; system.parameters.len()];
     for &equation in &system.equations {
-        let f = Polynomial::expand(&system.expressions, equation, n, count)?;
-        let has_parameter = |e: &&Vec<u32>| e[n..].iter().any(|&k| k > 0);
-        if !f.terms.keys().any(|e| has_parameter(&e)) {
+        let terms = linear_terms(system, equation)?;
+        if terms.iter().all(|(_, parameter)| parameter.is_none()) {
             continue;
         }
         number += 1;
         let mut coefficients = 0;
         let mut constant = None;
-        for exponents in f.terms.keys() {
-            let (of_variables, of_parameters) = exponents.split_at(n);
-            if of_variables.iter().sum::<u32>() > 1 {
+        for (exponents, parameter) in terms {
+            let degree = exponents.iter().sum::<u32>();
+            if degree > 1 {
                 return None;
             }
-            if of_parameters.iter().all(|&k| k == 0) {
+            let Some(parameter) = parameter else {
                 continue;
-            }
-            let parameter = of_parameters.iter().position(|&k| k == 1)?;
-            if of_parameters.iter().sum::<u32>() > 1 {
-                return None;
-            }
+            };
             seen[parameter] += 1;
             coefficients += 1;
-            if of_variables.iter().all(|&k| k == 0) {
+            if degree == 0 {
                 constant = Some(parameter);
             }
         }
@@ -178,6 +200,45 @@ fn slices(system: &System) -> Option<Vec<usize>> {
     // Linear combinations of d slices may have d coefficients that are as they please.
     let enough = own.iter().all(|&k| k + number > n);
     (number > 0 && enough && seen.iter().all(|&k| k <= 1)).then_some(constants)
+}
+
+/// The constant of the first equation, where each equation is a linear combination of polynomials with
+/// parameters of its own for coefficients, 1 and every variable among these polynomials.
+///
+/// They embed the space, so that an equation is a hyperplane that may lie anywhere, the other equations cut
+/// out an irreducible curve (Bertini's theorem), and parallel hyperplanes cut that curve in points whose
+/// coordinates have sums that move on a line.
+fn hyperplane(system: &System) -> Option<Vec<usize>> {
+    let n = system.variables.len();
+    let mut owners = vec![None; system.parameters.len()];
+    let mut first = None;
+    for (i, &equation) in system.equations.iter().enumerate() {
+        let terms = linear_terms(system, equation)?;
+        let mut stand_in = BTreeMap::<usize, Vec<&Vec<u32>>>::new();
+        for (exponents, parameter) in &terms {
+            if let Some(parameter) = *parameter {
+                if *owners[parameter].get_or_insert(i) != i {
+                    return None;
+                }
+                stand_in.entry(parameter).or_default().push(exponents);
+            }
+        }
+        let alone = |parameter: usize| match stand_in[&parameter].as_slice() {
+            [exponents] if exponents.iter().sum::<u32>() <= 1 => {
+                Some(exponents.iter().position(|&e| e == 1).unwrap_or(n))
+            }
+            _ => None,
+        };
+        let free: BTreeMap<usize, usize> = stand_in
+            .keys()
+            .filter_map(|&parameter| Some((alone(parameter)?, parameter)))
+            .collect();
+        if free.len() <= n {
+            return None;
+        }
+        first = first.or(free.get(&n).copied());
+    }
+    first.map(|constant| vec![constant])
 }
 
 /// How far the sum at the middle of three parallel slices is from the mean of the other two, in
@@ -237,6 +298,24 @@ mod tests {
         assert_eq!(of("a*x^2 + b*y + c"), None);
         assert_eq!(of("a*x + a*y + c"), None, "one parameter twice");
         assert_eq!(of("a*b*x + b*y + c"), None);
+    }
+
+    #[test]
+    fn combinations_that_embed_the_space_are_seen() {
+        let of = |text: &str| hyperplane(&read(&format!("variable_group x, y; {text}")));
+        let eight = "parameter a, b, c, d, e, f, g, h; function p, q;";
+        let circles = format!(
+            "{eight} p = a*(x^2 + y^2) + b*x + c*y + d; q = e*(x^2 + y^2) + f*x + g*y + h;"
+        );
+        assert_eq!(of(&circles), Some(vec![3]));
+        let shared = circles.replace("e*(", "a*(");
+        assert_eq!(of(&shared), None, "one parameter in two equations");
+        let bound = circles.replace("+ g*y", "+ f*y");
+        assert_eq!(of(&bound), None, "x and y have one parameter");
+        let fixed = circles.replace("+ h;", "+ 1;");
+        assert_eq!(of(&fixed), None, "a constant does not move");
+        let square = circles.replace("a*(", "a^2*(");
+        assert_eq!(of(&square), None, "not linear in a");
     }
 
     /// x y = 1 on parallel lines has a sum that moves on a line; one of its two points has not.

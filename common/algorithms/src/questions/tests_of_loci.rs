@@ -168,6 +168,22 @@ fn both_ways(first: &str, second: &str, variables: &str, seed: u64) -> [Decompos
 /// Equations of both sides, and dimension and degree of what they have in common.
 type Case<'a> = (&'a str, &'a str, &'a [(u32, u64)]);
 
+/// Both ways find what is expected of each case, the first with this seed, and settle it; `more` is asked of what is found.
+fn check_both_ways(cases: &[Case], seed: u64, more: impl Fn(&Decomposition, &str)) {
+    for ((first, second, expected), seed) in cases.iter().zip(seed..) {
+        let ways = both_ways(first, second, "x, y, z", seed);
+        for (way, found) in ways.into_iter().enumerate() {
+            let text = format!("{first} and {second}, way {way}");
+            assert_eq!(
+                listed(&found),
+                (expected.to_vec(), true),
+                "{text}: {found:#?}"
+            );
+            more(&found, &text);
+        }
+    }
+}
+
 #[test]
 fn intersections_by_equations_and_by_pairs() {
     let cases: [Case; 6] = [
@@ -190,19 +206,7 @@ fn intersections_by_equations_and_by_pairs() {
         ("x, y - 1", "x*z + y^2 - 1", &[(1, 1)]),
         ("x^2 + y^2 - 1, z", "x^2 + y^2 - 1, z - 1", &[]),
     ];
-    for (number, (first, second, expected)) in cases.into_iter().enumerate() {
-        for (way, found) in both_ways(first, second, "x, y, z", 3 + number as u64)
-            .into_iter()
-            .enumerate()
-        {
-            let text = format!("{first} and {second}, way {way}");
-            assert_eq!(
-                listed(&found),
-                (expected.to_vec(), true),
-                "{text}: {found:#?}"
-            );
-        }
-    }
+    check_both_ways(&cases, 3, |_, _| ());
 }
 
 /// Multiple components with others, by the equations and by the pairs of components: no multiplicity is said of what
@@ -235,24 +239,12 @@ fn multiple_components_are_cut() {
         // A double surface holds the other side.
         ("x^2 - 2*x*y^2 + y^4", "x - y^2, z - y", &[(1, 2)]),
     ];
-    for (number, (first, second, expected)) in cases.into_iter().enumerate() {
-        let seed = 30 + number as u64;
-        for (way, found) in both_ways(first, second, "x, y, z", seed)
-            .into_iter()
-            .enumerate()
-        {
-            let text = format!("{first} and {second}, way {way}");
-            assert_eq!(
-                listed(&found),
-                (expected.to_vec(), true),
-                "{text}: {found:#?}"
-            );
-            for set in &found.components {
-                let known = set.deflation.is_empty().then_some(1);
-                assert_eq!(set.multiplicity.scheme, known, "{text}");
-            }
+    check_both_ways(&cases, 30, |found, text| {
+        for set in &found.components {
+            let known = set.deflation.is_empty().then_some(1);
+            assert_eq!(set.multiplicity.scheme, known, "{text}");
         }
-    }
+    });
 }
 
 #[test]
@@ -428,7 +420,7 @@ fn real_points_that_are_not_searched_are_named() {
 fn with_restarts(system: &System, solve: QuestionSolve) -> Answer {
     use crate::PathAlgorithm;
     let solve = crate::AnySolve::Question(Box::new(solve));
-    let solve = crate::restarts::with_restarts(solve, &mut |_| {});
+    let solve = crate::restarts::with_restarts(solve, system, &mut |_| {});
     match solve.answer(system) {
         Some(crate::Answer::Question(asked)) => asked.answer,
         Some(crate::Answer::Decomposition(found)) => Answer::Components(Box::new((*found).clone())),

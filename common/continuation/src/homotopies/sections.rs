@@ -8,11 +8,10 @@
 
 use crate::chart::exact;
 use cognate_numeric::rational::ComplexRational;
-use cognate_systems::expression::{Expressions, Node, NodeId};
+use cognate_systems::expression::{Expressions, Imported, Node, NodeId};
 use cognate_systems::scaling::exact_times;
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
-use std::collections::HashMap;
 
 /// Variables of a section's linear forms; after them stands 1 where this says so. `None` where
 /// the variables are not in affine groups or in one homogeneous group.
@@ -58,7 +57,7 @@ pub fn sections(
             out.add(p, way)
         })
         .collect();
-    let mut memory = HashMap::new();
+    let mut memory = Imported::default();
     let mut equations: Vec<NodeId> = Vec::new();
     for &equation in &system.equations {
         let leaf = &mut |to: &mut Expressions, leaf: &Node| match leaf {

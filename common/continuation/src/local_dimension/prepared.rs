@@ -13,9 +13,9 @@ use crate::sharpening::search::sharpen;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::work::Stage;
-use cognate_numeric::rational::ComplexRational;
+use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::Complex;
-use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees};
+use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees, dual_dimensions};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::ops::Range;
@@ -136,9 +136,8 @@ impl PreparedLocalDimension {
         parameters.map_or(&[][..], Vec::as_slice)
     }
 
-    /// The values of the unknowns of an endpoint, or of the exact solution that it is next to; whether it is
-    /// exact.
-    fn point_of(&self, candidate: &Candidate) -> (Vec<Complex64>, bool) {
+    /// The values of the unknowns of an endpoint, or of the exact solution that it is next to, and that.
+    fn point_of(&self, candidate: &Candidate) -> (Vec<Complex64>, Option<Vec<ComplexRational>>) {
         let error = (NEXT * candidate.question.accuracy).min(FARTHEST_EXACT);
         let parameters = self.parameters_of(candidate);
         let exact = exact_point(&self.given, parameters, &candidate.values, error);
@@ -150,9 +149,41 @@ impl PreparedLocalDimension {
             point.iter().map(round).collect::<Vec<_>>()
         });
         let scaling = &self.given.scaling;
-        match rounded {
-            Some(values) => (scaling.to_unknowns(&values), true),
-            None => (scaling.to_unknowns(&candidate.values), false),
+        let values = rounded.as_ref().unwrap_or(&candidate.values);
+        (scaling.to_unknowns(values), exact)
+    }
+
+    /// At an exact solution, too, doubles take others that are nearer than 1e-13 of its size for parts of one. Where
+    /// the multiplicity is not that of the exact equations, the margin says that it is not clear; where that takes too
+    /// much to tell, deflated equations are asked.
+    fn confirmed_exactly(
+        &self,
+        candidate: &Candidate,
+        (unknowns, exact): (&[Complex64], &[ComplexRational]),
+        found: LocalDimension,
+    ) -> LocalDimension {
+        let [.., before, last] = *found.dual_dimensions else {
+            return found;
+        };
+        if last != before || last == 1 || found.margin <= UNCONFIRMED {
+            return found;
+        }
+        let order = found.dual_dimensions.len() as u32 - 1;
+        let rational = |z: &Complex64| -> Option<ComplexRational> {
+            let part = Rational::from_f64;
+            Some(ComplexRational::new(part(z.re)?, part(z.im)?))
+        };
+        let parameters = self.parameters_of(candidate).iter().map(rational);
+        let parameters: Option<Vec<_>> = parameters.collect();
+        let known = parameters
+            .and_then(|parameters| dual_dimensions(&self.given, exact, &parameters, order));
+        match known {
+            Some(known) if known == [last, last] => found,
+            Some(_) => LocalDimension {
+                margin: UNCONFIRMED,
+                ..found
+            },
+            None => self.confirmed(candidate, unknowns, found),
         }
     }
 
@@ -190,8 +221,8 @@ impl PreparedLocalDimension {
         let found = point.as_ref().map(|point| {
             let question = Question {
                 accuracy: match exact {
-                    true => ROUNDED,
-                    false => candidate.question.accuracy.max(LEAST_ERROR),
+                    Some(_) => ROUNDED,
+                    None => candidate.question.accuracy.max(LEAST_ERROR),
                 },
                 ..candidate.question
             };
@@ -202,9 +233,9 @@ impl PreparedLocalDimension {
                 question,
                 self.data_accuracy,
             );
-            match exact {
-                true => found,
-                false => self.confirmed(candidate, &unknowns, found),
+            match &exact {
+                Some(exact) => self.confirmed_exactly(candidate, (&unknowns, exact), found),
+                None => self.confirmed(candidate, &unknowns, found),
             }
         });
         // A patch that misses the point, with probability 0, leaves it undecided.

@@ -750,13 +750,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// A path that cannot go on in this tracking context is handed to another one, or fails.
     pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
-        // Steps that looking around makes too short do not become longer with still more digits.
-        let robust = self.probe.is_some();
+        let helps = match self.probe {
+            // Steps that looking around makes too short do not become longer with still more digits.
+            Some(_) => self.tracking.bits < DOUBLE_DOUBLE,
+            None => self.tracking.bits < ENDGAME_BITS || why != Failure::EndgameUnsettled,
+        };
         let handoff = if self.tracking.projective {
             Handoff::Projective
-        } else if self.tracking.up
-            && (self.tracking.bits < ENDGAME_BITS || why != Failure::EndgameUnsettled && !robust)
-        {
+        } else if self.tracking.up && helps {
             Handoff::Up
         } else {
             return self.fail_and_refill(lane, t, why);
@@ -919,12 +920,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
         self.ended.results.push((path.item, result));
     }
 
-    /// Whether a homogenising coordinate of `self.point` is so small that digits of its own are wanted.
-    fn is_far_out(&self) -> bool {
-        let homotopy = self.tracking.homotopy;
-        homotopy.smallest_homogenizing(&homotopy.endpoint(&self.point)) < FAR_OUT
-    }
-
     /// How a path ends, and the normalised homogeneous coordinates of where. A regular point far out is given with
     /// digits of its own: those that doubles have there are digits of its largest coordinate.
     fn endpoint(
@@ -935,7 +930,8 @@ impl<'a, R: Real> Lockstep<'a, R> {
     ) -> (PathOutcome, Report, Vec<Complex64>) {
         let homotopy = self.tracking.homotopy;
         let coordinates = homotopy.endpoint(&self.point);
-        if outcome != PathOutcome::Regular || !self.is_far_out() {
+        let is_far_out = || homotopy.smallest_homogenizing(&coordinates) < FAR_OUT;
+        if outcome != PathOutcome::Regular || !is_far_out() {
             return (outcome, report, coordinates);
         }
         match far_out::resolve(homotopy, &self.settings, &self.point, target) {

@@ -3,8 +3,8 @@
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::straight_line_program::constant::ConstantPool;
+use foldhash::{HashMap, HashMapExt};
 use num_complex::Complex64;
-use std::collections::HashMap;
 
 /// The values of some nodes at the point `x`, with these parameters, in plain doubles: good
 /// enough to see how large they are. Infinite or not a number where they do not exist.

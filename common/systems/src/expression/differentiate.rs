@@ -5,7 +5,8 @@
 //! subexpression with what is there, since the arena holds no node twice.
 
 use super::{Dependence, Expressions, Node, NodeId};
-use std::collections::{BTreeMap, BinaryHeap, HashMap};
+use foldhash::{HashMap, HashMapExt};
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// All partial derivatives of `root` with respect to leaves that it contains,
 /// by leaf (a variable's or a parameter's node), by one reverse sweep.

@@ -14,8 +14,8 @@ pub mod parse;
 pub mod token;
 
 use cognate_numeric::rational::{ComplexRational, Rational};
+use foldhash::HashMap;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 
 /// One node of an [`Expressions`] arena. Children always have smaller numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -77,6 +77,9 @@ pub enum Dependence {
     /// At least one variable.
     Variables,
 }
+
+/// Where nodes of another arena stand in one that takes them in.
+pub type Imported = HashMap<NodeId, NodeId>;
 
 /// The arena. Nodes are only added; two equal nodes have one number.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -359,7 +362,7 @@ impl Expressions {
         &mut self,
         other: &Expressions,
         root: NodeId,
-        memory: &mut HashMap<NodeId, NodeId>,
+        memory: &mut Imported,
         leaf: &mut dyn FnMut(&mut Expressions, &Node) -> NodeId,
     ) -> NodeId {
         // Children have smaller numbers, so an ascending sweep over what is

@@ -3,8 +3,9 @@
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
 use cognate_numeric::rational::ComplexRational;
+use foldhash::{HashMap, HashMapExt};
 use num_complex::Complex64;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// Most products of terms that one expansion may take, and most terms that it
 /// may hold at a time: some milliseconds and megabytes.

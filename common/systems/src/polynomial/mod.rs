@@ -4,17 +4,19 @@
 //! infinity that nobody asked for, and one from degrees that are too small
 //! would miss solutions; so [`degrees`] are exact even where terms cancel.
 
+mod dual_dimensions;
 mod expansion;
 mod modular;
 
+pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::system::System;
 use cognate_numeric::random::{Purpose, RandomStream};
+use foldhash::{HashMap, HashMapExt};
 use modular::Residues;
-use std::collections::HashMap;
 
 /// Past this degree the bound that the form of an expression gives is taken as it is.
 const MOST_DEGREE: u32 = 4096;

@@ -8,7 +8,7 @@ use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 /// The largest two primes below 2^61 that are 1 modulo 4, each with a square root of -1.
 const FIELDS: [Field; 2] = [
@@ -22,10 +22,11 @@ const FIELDS: [Field; 2] = [
     },
 ];
 
+/// Residues modulo a prime that is 1 modulo 4, and a square root of -1.
 #[derive(Clone, Copy)]
-struct Field {
-    prime: u64,
-    i: u64,
+pub(super) struct Field {
+    pub prime: u64,
+    pub i: u64,
 }
 
 impl Field {
@@ -37,7 +38,7 @@ impl Field {
         (a + self.prime - b) % self.prime
     }
 
-    fn mul(self, a: u64, b: u64) -> u64 {
+    pub(super) fn mul(self, a: u64, b: u64) -> u64 {
         (u128::from(a) * u128::from(b) % u128::from(self.prime)) as u64
     }
 
@@ -53,7 +54,7 @@ impl Field {
         result
     }
 
-    fn inverse(self, a: u64) -> Option<u64> {
+    pub(super) fn inverse(self, a: u64) -> Option<u64> {
         (a != 0).then(|| self.power(a, self.prime - 2))
     }
 
@@ -69,7 +70,7 @@ impl Field {
         Some(self.mul(residue(q.numer()), self.inverse(residue(q.denom()))?))
     }
 
-    fn complex(self, c: &ComplexRational) -> Option<u64> {
+    pub(super) fn complex(self, c: &ComplexRational) -> Option<u64> {
         let im = self.mul(self.i, self.rational(&c.im)?);
         Some(self.add(self.rational(&c.re)?, im))
     }

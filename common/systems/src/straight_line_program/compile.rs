@@ -10,7 +10,8 @@ use super::instruction::Operand;
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use cognate_numeric::rational::ComplexRational;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use foldhash::{HashMap, HashMapExt};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A value of the flow graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

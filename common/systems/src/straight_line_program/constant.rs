@@ -8,8 +8,8 @@ use crate::expression::{Expressions, Function, Node, NodeId};
 use cognate_numeric::rational::ComplexRational;
 use cognate_numeric::scalar::directed::Directed;
 use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision, Real};
+use foldhash::{HashMap, HashMapExt};
 use rug::Float;
-use std::collections::HashMap;
 
 /// A number that the program knows.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -6,9 +6,9 @@
 use crate::expression::{Expressions, Function, Node, NodeId, differentiate::below};
 use cognate_numeric::scalar::directed::{Directed, Toward};
 use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision, Real};
+use foldhash::{HashMap, HashMapExt};
 use rug::Float;
 use rug::float::{Constant, Round};
-use std::collections::HashMap;
 
 type Bounds = Interval<MultiplePrecision>;
 

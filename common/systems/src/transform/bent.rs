@@ -7,7 +7,7 @@ use crate::expression::differentiate::directional;
 use crate::expression::{Expressions, Node, NodeId};
 use crate::scaling::Scaling;
 use crate::system::{System, VariableGroup};
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 /// The equations F(x, p) = 0, F' = 0 and F'' = 0 along x(s), p + s q, at s = 0: in the variables x, x' and x'', as many
 /// of each as the system has, with the parameters p and then q. All variables are one affine group.

@@ -8,7 +8,8 @@ use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::polynomial::Polynomial;
 use crate::system::{DegenerateSet, System};
-use std::collections::{BTreeMap, HashMap};
+use foldhash::HashMap;
+use std::collections::BTreeMap;
 
 /// The name of the set of points where a denominator of the given equations is 0.
 pub const ZERO_DENOMINATOR: &str = "a denominator is 0";

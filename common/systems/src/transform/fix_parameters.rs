@@ -4,7 +4,7 @@ use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId, exact};
 use crate::system::{DegenerateSet, SymmetryGenerator, System};
 use cognate_numeric::rational::ComplexRational;
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 /// Why parameters cannot have these values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

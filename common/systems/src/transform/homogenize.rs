@@ -11,7 +11,8 @@ use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
 use crate::polynomial::Degrees;
 use crate::system::System;
-use std::collections::{BTreeMap, HashMap};
+use foldhash::{HashMap, HashMapExt};
+use std::collections::BTreeMap;
 
 /// Writes the homogenised equations into `out` and gives their nodes.
 ///

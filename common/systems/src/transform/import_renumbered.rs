@@ -2,7 +2,7 @@
 
 use crate::expression::{Expressions, Node, NodeId};
 use crate::system::System;
-use std::collections::HashMap;
+use foldhash::HashMap;
 
 /// The copy of an equation of a system without parameters; variable v becomes the one at `place(v)`. `memory` is kept
 /// between equations of one system.

@@ -3,7 +3,7 @@
 use super::import_renumbered::import_renumbered;
 use crate::expression::NodeId;
 use crate::system::System;
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 /// Why two systems cannot be joined.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -3,7 +3,7 @@
 use super::import_renumbered::import_renumbered;
 use crate::expression::{Expressions, NodeId};
 use crate::system::{System, VariableGroup};
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 /// The equations of both systems, which have no parameters, as one affine group: first `own` variables of each, then
 /// what more the first has, then what more the second has. Its solutions are pairs of theirs.

@@ -7,7 +7,7 @@ use super::import_renumbered::import_renumbered;
 use super::slice::{form, slice};
 use crate::expression::NodeId;
 use crate::system::System;
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 /// The equations of `rows`, then those of another system in the first of its variables.
 ///

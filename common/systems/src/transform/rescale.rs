@@ -6,8 +6,8 @@ use crate::expression::{Expressions, Node, NodeId};
 use crate::scaling::{Scaling, exact_times};
 use crate::system::{DegenerateSet, System};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use foldhash::{HashMap, HashMapExt};
 use std::borrow::Cow;
-use std::collections::HashMap;
 
 /// The system with variable i replaced by 2^(e_i) times variable i.
 ///

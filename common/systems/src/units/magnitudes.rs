@@ -8,9 +8,10 @@ use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Node, NodeId};
 use crate::system::System;
 use cognate_numeric::rational::{ComplexRational, Rational};
+use foldhash::{HashMap, HashMapExt};
 use num_complex::Complex64;
 use rug::Integer;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// Most products of terms that the sizes of one system's coefficients may take: some 100 ms.
 const MOST_PRODUCTS: usize = 400_000;
