@@ -40,11 +40,15 @@ pub struct CoefficientFamily {
 /// written in minors, the family has as many solutions as the conditions in general, far fewer than its
 /// monomials admit. Each of these sums, mostly one monomial, has the coefficient r + s p with a parameter p in
 /// an equation: s is the size of the given coefficient,
-/// p at the target is the nearest double to it, in units of s, and r is what is left of it. So the
-/// system at these parameters is the given one without rounding. Equations that all have the same monomials are
-/// combined, so that none is nearly a combination of the others: such a system is far from those that
-/// have fewer solutions, and few steps lead there (a pole placement problem in 12 unknowns whose equations are
-/// dependent but for 1/600 took 20 times as many). Where solutions may have zeros, equations get a constant term, as a start by mixed cells gives them one: `supports` are that start's.
+/// p at the target is the nearest double to it, in units of s, and r is what is left of it. So the system at these
+/// parameters is the given one without rounding.
+///
+/// Equations that all have the same monomials are combined, so that none is nearly a combination of the others: such
+/// a system is far from those that have fewer solutions, and fewer steps lead there (two pole placement problems,
+/// whose equations are dependent but for 1/600, take 2/3 and 1/3 of the time).
+///
+/// Where solutions may have zeros, equations get a constant term, as a start by mixed cells gives them one:
+/// `supports` are that start's.
 ///
 /// # Errors
 /// Why its coefficients are not known, in words.
@@ -86,11 +90,11 @@ pub fn coefficient_family(
         for (given, node) in own.collect::<Vec<_>>() {
             let scale = size(&given);
             let [re, im] = [&given.re, &given.im].map(|x| Rational::from(x / &scale).to_f64());
-            let near = [re, im].map(|x| Rational::from_f64(x).unwrap_or_default() * &scale);
-            let [near_re, near_im] = near;
-            let left = given.subtract(&ComplexRational::new(near_re, near_im));
+            let value = Complex64::new(re, im);
+            let near = ComplexRational::from_doubles(value).unwrap_or_default();
+            let left = given.subtract(&near.multiply(&ComplexRational::real(scale.clone())));
             let mut coefficient = out.parameter(values.len() as u32);
-            values.push(Complex64::new(re, im));
+            values.push(value);
             if scale != 1 {
                 let scale = out.constant(ComplexRational::real(scale));
                 coefficient = out.multiply(scale, coefficient);
@@ -143,12 +147,9 @@ fn orthogonal(polynomials: &[Polynomial]) -> Option<Vec<Polynomial>> {
         rows.push(row);
         factors.push(own);
     }
-    let exact = |z: &Complex64| {
-        let [re, im] = [z.re, z.im].map(|x| Rational::from_f64(x).unwrap_or_default());
-        ComplexRational::new(re, im)
-    };
+    let exact = |&z: &Complex64| ComplexRational::from_doubles(z);
     let combined = factors.iter().map(|factors| {
-        let factors: Vec<_> = factors.iter().map(exact).collect();
+        let factors: Vec<_> = factors.iter().map(exact).collect::<Option<_>>()?;
         let terms = first.terms.keys().map(|exponents| {
             let parts = polynomials.iter().zip(&factors);
             let sum = parts.fold(ComplexRational::default(), |sum, (polynomial, factor)| {
@@ -156,12 +157,12 @@ fn orthogonal(polynomials: &[Polynomial]) -> Option<Vec<Polynomial>> {
             });
             (exponents.clone(), sum)
         });
-        Polynomial {
+        Some(Polynomial {
             terms: terms.filter(|(_, sum)| !sum.is_zero()).collect(),
             variables: first.variables,
-        }
+        })
     });
-    Some(combined.collect())
+    combined.collect()
 }
 
 /// Least part of an equation that is no combination of those before.
@@ -238,6 +239,9 @@ mod tests {
     use crate::synthetic::declared;
     use cognate_solutions::completeness::Completeness;
 
+    const CIRCLES: &str = "variable_group x, y; function f, g; \
+        f = 2*x^2 + 2*y^2 - 3*x + y - 7; g = x^2 + y^2 + x - 4*y - 5;";
+
     #[test]
     fn sizes_are_powers_of_two() {
         let of = |re: Rational| size(&ComplexRational::real(re));
@@ -270,10 +274,7 @@ mod tests {
     /// Two circles: their squares keep their ratio, and of four points two are left.
     #[test]
     fn squares_of_circles_stay_tied() {
-        let circles = declared(
-            "variable_group x, y; function f, g; \
-             f = 2*x^2 + 2*y^2 - 3*x + y - 7; g = x^2 + y^2 + x - 4*y - 5;",
-        );
+        let circles = declared(CIRCLES);
         let supports = cell_supports(&circles).unwrap();
         let family = coefficient_family(&circles, &supports).unwrap();
         assert_eq!((family.values.len(), family.tied), (8, 2));
@@ -302,10 +303,7 @@ mod tests {
     /// Loops that were not asked for and end without a trace test that passes have no answer.
     #[test]
     fn loops_that_fall_short_are_no_answer() {
-        let circles = declared(
-            "variable_group x, y; function f, g; \
-             f = 2*x^2 + 2*y^2 - 3*x + y - 7; g = x^2 + y^2 + x - 4*y - 5;",
-        );
+        let circles = declared(CIRCLES);
         let mut loops = SolveMethod::MONODROMY;
         if let SolveMethod::Monodromy(options) = &mut loops {
             options.limits.only_complete = true;

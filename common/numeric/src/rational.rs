@@ -3,6 +3,7 @@
 //! Input keeps decimals and fractions exactly in this form; every rung of the
 //! precision ladder rounds them afresh (`Real::from_rational`).
 
+use num_complex::Complex64;
 pub use rug::Rational;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +28,14 @@ impl ComplexRational {
     /// A real number.
     pub fn real(re: impl Into<Rational>) -> Self {
         Self::new(re, 0)
+    }
+
+    /// Exactly what two doubles say; `None` for an infinity or what is no number.
+    pub fn from_doubles(z: Complex64) -> Option<Self> {
+        Some(Self {
+            re: Rational::from_f64(z.re)?,
+            im: Rational::from_f64(z.im)?,
+        })
     }
 
     /// The imaginary unit.

@@ -24,16 +24,10 @@ const MOST_BITS_IN_ALL: u64 = 20_000_000;
 /// `None` where there is none, or the equations are not rational.
 pub(super) fn exact_point(
     system: &System,
-    parameters: &[Complex64],
+    parameters: &[ComplexRational],
     point: &[Complex64],
     error: f64,
 ) -> Option<Vec<ComplexRational>> {
-    let rational = |z: &Complex64| -> Option<ComplexRational> {
-        Some(ComplexRational::new(
-            Rational::from_f64(z.re)?,
-            Rational::from_f64(z.im)?,
-        ))
-    };
     if system.groups.iter().any(|group| group.homogeneous) {
         return None;
     }
@@ -44,13 +38,12 @@ pub(super) fn exact_point(
             simplest_within(z.im, error)?,
         ))
     };
-    let parameters: Option<Vec<_>> = parameters.iter().map(rational).collect();
     let point: Option<Vec<_>> = point.iter().map(near).collect();
-    let (parameters, point) = (parameters?, point?);
-    if !is_small(system, &point, &parameters) {
+    let point = point?;
+    if !is_small(system, &point, parameters) {
         return None;
     }
-    let values = exact::values(&system.expressions, &system.equations, &point, &parameters);
+    let values = exact::values(&system.expressions, &system.equations, &point, parameters);
     let solved =
         |value: &Option<ComplexRational>| value.as_ref().is_some_and(ComplexRational::is_zero);
     values.iter().all(solved).then_some(point)

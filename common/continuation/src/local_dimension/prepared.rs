@@ -13,7 +13,7 @@ use crate::sharpening::search::sharpen;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::work::Stage;
-use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::rational::ComplexRational;
 use cognate_numeric::scalar::Complex;
 use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees, dual_dimensions};
 use cognate_systems::system::System;
@@ -48,6 +48,19 @@ pub struct PreparedLocalDimension {
     /// Relative accuracy to which coefficients are known.
     data_accuracy: f64,
     candidates: Vec<Candidate>,
+}
+
+/// A solution with small rational coordinates, and the parameters that it belongs to.
+struct ExactPoint {
+    values: Vec<ComplexRational>,
+    parameters: Vec<ComplexRational>,
+}
+
+impl ExactPoint {
+    /// Dimensions of the dual space up to an order less one and that order; `None` where that takes too much to tell.
+    fn dual_dimensions(&self, system: &System, order: u32) -> Option<[u32; 2]> {
+        dual_dimensions(system, &self.values, &self.parameters, order)
+    }
 }
 
 impl PreparedLocalDimension {
@@ -137,29 +150,35 @@ impl PreparedLocalDimension {
     }
 
     /// The values of the unknowns of an endpoint, or of the exact solution that it is next to, and that.
-    fn point_of(&self, candidate: &Candidate) -> (Vec<Complex64>, Option<Vec<ComplexRational>>) {
+    fn point_of(&self, candidate: &Candidate) -> (Vec<Complex64>, Option<ExactPoint>) {
         let error = (NEXT * candidate.question.accuracy).min(FARTHEST_EXACT);
-        let parameters = self.parameters_of(candidate);
-        let exact = exact_point(&self.given, parameters, &candidate.values, error);
+        let exact = || {
+            let parameters = self.parameters_of(candidate).iter();
+            let parameters = parameters.map(|&z| ComplexRational::from_doubles(z));
+            let parameters = parameters.collect::<Option<Vec<_>>>()?;
+            let values = exact_point(&self.given, &parameters, &candidate.values, error)?;
+            Some(ExactPoint { values, parameters })
+        };
+        let exact = exact();
         let rounded = exact.as_ref().map(|point| {
             let round = |z: &ComplexRational| {
                 let z = Complex::<f64>::from_rational((), z);
                 Complex64::new(z.re, z.im)
             };
-            point.iter().map(round).collect::<Vec<_>>()
+            point.values.iter().map(round).collect::<Vec<_>>()
         });
         let scaling = &self.given.scaling;
         let values = rounded.as_ref().unwrap_or(&candidate.values);
         (scaling.to_unknowns(values), exact)
     }
 
-    /// At an exact solution, too, doubles take others that are nearer than 1e-13 of its size for parts of one. Where
-    /// the multiplicity is not that of the exact equations, the margin says that it is not clear; where that takes too
-    /// much to tell, deflated equations are asked.
-    fn confirmed_exactly(
+    /// Dual spaces know a multiple point to the accuracy of the endpoint, an exact solution to rounding: several
+    /// points nearer together than that look like one. The margin says whether that is ruled out.
+    fn confirmed(
         &self,
         candidate: &Candidate,
-        (unknowns, exact): (&[Complex64], &[ComplexRational]),
+        unknowns: &[Complex64],
+        exact: Option<&ExactPoint>,
         found: LocalDimension,
     ) -> LocalDimension {
         let [.., before, last] = *found.dual_dimensions else {
@@ -169,48 +188,25 @@ impl PreparedLocalDimension {
             return found;
         }
         let order = found.dual_dimensions.len() as u32 - 1;
-        let rational = |z: &Complex64| -> Option<ComplexRational> {
-            let part = Rational::from_f64;
-            Some(ComplexRational::new(part(z.re)?, part(z.im)?))
+        let known = exact.and_then(|exact| exact.dual_dimensions(&self.given, order));
+        let confirmed = match known {
+            Some(known) => known == [last, last],
+            None => self.is_deflated(candidate, unknowns),
         };
-        let parameters = self.parameters_of(candidate).iter().map(rational);
-        let parameters: Option<Vec<_>> = parameters.collect();
-        let known = parameters
-            .and_then(|parameters| dual_dimensions(&self.given, exact, &parameters, order));
-        match known {
-            Some(known) if known == [last, last] => found,
-            Some(_) => LocalDimension {
+        match confirmed {
+            true => found,
+            false => LocalDimension {
                 margin: UNCONFIRMED,
                 ..found
             },
-            None => self.confirmed(candidate, unknowns, found),
         }
     }
 
-    /// Dual spaces know a multiple point to the accuracy of the endpoint; several points nearer
-    /// together than that look like one. A multiple point is one of which deflated equations have as many digits
-    /// as are asked for; where they have not, the margin says that the multiplicity is not clear.
-    fn confirmed(
-        &self,
-        candidate: &Candidate,
-        unknowns: &[Complex64],
-        found: LocalDimension,
-    ) -> LocalDimension {
-        let [.., before, last] = *found.dual_dimensions else {
-            return found;
-        };
-        if last != before || last == 1 || found.margin <= UNCONFIRMED {
-            return found;
-        }
+    /// Whether deflated equations have as many digits of a point as are asked for: then it is one multiple point.
+    fn is_deflated(&self, candidate: &Candidate, unknowns: &[Complex64]) -> bool {
         let (parameters, seed) = (self.parameters_of(candidate), self.seed);
         let sharpened = sharpen(&self.system, parameters, unknowns, CONFIRMING_DIGITS, seed);
-        match sharpened {
-            Ok(sharpened) if sharpened.deflations > 0 => found,
-            Ok(_) | Err(_) => LocalDimension {
-                margin: UNCONFIRMED,
-                ..found
-            },
-        }
+        sharpened.is_ok_and(|sharpened| sharpened.deflations > 0)
     }
 
     fn look(&self, item: u64) -> PointResult<LocalDimension> {
@@ -233,10 +229,7 @@ impl PreparedLocalDimension {
                 question,
                 self.data_accuracy,
             );
-            match &exact {
-                Some(exact) => self.confirmed_exactly(candidate, (&unknowns, exact), found),
-                None => self.confirmed(candidate, &unknowns, found),
-            }
+            self.confirmed(candidate, &unknowns, exact.as_ref(), found)
         });
         // A patch that misses the point, with probability 0, leaves it undecided.
         let mut endpoint = point.map_or_else(Vec::new, |point| chart.homogeneous(&point));
