@@ -14,7 +14,7 @@ use cognate_tests::planted::kinds::{KINDS, planted};
 use cognate_tests::planted::verdict::{Verdict, solve, start};
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
@@ -79,7 +79,8 @@ fn throw(series: u64, number: u64) -> (SolveMethod, u64) {
 fn solve_one(wanted: &Wanted, number: u64) -> ExitCode {
     let (start, seed) = throw(wanted.seed, number);
     let limit = Duration::from_secs(wanted.seconds);
-    let (word, wrong) = match solve(&planted(wanted.seed, number), start, seed, limit) {
+    let system = planted(wanted.seed, number);
+    let (word, wrong) = match solve(&system, start, seed, limit) {
         Verdict::Right => ("right", String::new()),
         Verdict::RightInDoubt => ("in-doubt", String::new()),
         Verdict::Doubt(wrong) => ("doubt", wrong),
@@ -88,7 +89,19 @@ fn solve_one(wanted: &Wanted, number: u64) -> ExitCode {
         Verdict::Refused(why) => ("refused", why),
     };
     println!("{word} {}", wrong.replace('\n', " "));
+    if let Some(folder) = &wanted.folder {
+        write(folder, wanted.seed, number, word, &wrong);
+    }
     ExitCode::SUCCESS
+}
+
+/// Leaves the text of a system and what was wrong with its answer in a folder.
+fn write(folder: &Path, series: u64, number: u64, word: &str, wrong: &str) {
+    let (start, seed) = throw(series, number);
+    let note = format!("; --start {} --seed {seed}: {word}{wrong}", start.name()).to_lowercase();
+    let name = format!("{word}_{series}_{number}.bertini");
+    let written = std::fs::write(folder.join(name), planted(series, number).file(&note));
+    or_exit(written.map_err(|e| format!("{}: {e}", folder.display())));
 }
 
 /// The verdict of a process of its own.
@@ -166,11 +179,7 @@ fn main() -> ExitCode {
         );
         eprintln!("{line}");
         if let Some(folder) = &wanted.folder {
-            let name = format!("{word}_{}_{number}.bertini", wanted.seed);
-            let note =
-                format!("; --start {} --seed {seed}: {word}{wrong}", start.name()).to_lowercase();
-            let written = std::fs::write(folder.join(name), system.file(&note));
-            or_exit(written.map_err(|e| format!("{}: {e}", folder.display())));
+            write(folder, wanted.seed, number, &word, &wrong);
         }
         if word == "silent" {
             named.push(line);
