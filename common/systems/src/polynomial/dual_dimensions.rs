@@ -15,11 +15,11 @@ use foldhash::{HashMap, HashMapExt};
 use std::collections::BTreeMap;
 
 /// The second largest prime below 2^31, which is 1 modulo 4: products of residues fit in 64 bits.
-const FIELD: Field = Field {
+pub(super) const FIELD: Field = Field {
     prime: PRIME,
     i: 629_208_553,
 };
-const PRIME: u64 = 2_147_483_629;
+pub(super) const PRIME: u64 = 2_147_483_629;
 /// Matrices with more columns than this are not made,
 const MOST_COLUMNS: usize = 1200;
 /// nor series for which more products of terms are taken.

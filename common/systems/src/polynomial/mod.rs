@@ -7,9 +7,11 @@
 mod dual_dimensions;
 mod expansion;
 mod modular;
+mod solution_count;
 
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;
+pub use solution_count::{SolutionCount, solution_count};
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
