@@ -4,6 +4,7 @@ use crate::answer::Answer;
 use crate::closings::Closing;
 use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
+use crate::exact_count::compare_with_exact_count;
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::overdetermined_solve::OverdeterminedSolve;
@@ -317,6 +318,9 @@ impl PathAlgorithm for AnyAlgorithm {
                 for set in &mut found.sets {
                     judge_loops(&loops.counts, known.as_ref(), set);
                 }
+            }
+            if let [set] = &mut found.sets[..] {
+                compare_with_exact_count(set, system);
             }
         }
         Some(answer)

@@ -36,6 +36,7 @@ mod coefficient_family;
 mod coefficients;
 pub mod completeness_claim;
 pub mod decomposition;
+mod exact_count;
 pub mod finite_endpoints;
 mod given_start;
 pub mod limits;

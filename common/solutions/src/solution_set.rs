@@ -104,7 +104,7 @@ pub struct SolutionSet {
 impl SolutionSet {
     /// True when no path failed, every crossing came apart, of every endpoint that is on no declared set it
     /// is known whether it is isolated, none is infinite but for digits beyond the accuracy of the data, none is finite or at infinity only by the limit of the precision, and
-    /// multiplicities are what the numbers of paths say.
+    /// multiplicities are what the numbers of paths say, and no exact count says otherwise.
     pub fn settled(&self) -> bool {
         self.paths.failed == 0
             && self.counts.undecided == 0
@@ -112,6 +112,11 @@ impl SolutionSet {
             && self.paths.decided_by_precision_limit == 0
             && self.counts.doubtful_multiplicity == 0
             && self.paths.crossings_found == self.paths.crossings_resolved
+            && self
+                .counts
+                .exact_count
+                .as_ref()
+                .is_none_or(|count| count.agrees)
     }
 
     /// The solutions, and after them the points of which it is not known whether they are isolated.

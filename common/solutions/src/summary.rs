@@ -103,6 +103,24 @@ pub struct SolutionCounts {
     /// Why that is known, or not.
     #[serde(default)]
     pub complete_reason: Option<String>,
+    /// What the equations say without a path; null where they were not asked, or it takes too much.
+    #[serde(default)]
+    pub exact_count: Option<ExactCount>,
+}
+
+/// How many solutions the equations have by elimination over a prime field.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ExactCount {
+    /// Dimension of the set of solutions; 0 also where there is none.
+    pub dimension: u32,
+    /// With multiplicities; null where there are infinitely many.
+    pub with_multiplicity: Option<u64>,
+    /// Each once; null where there are infinitely many, or it takes too much.
+    pub distinct: Option<u64>,
+    /// Nonsingular ones where there are infinitely many solutions; null where it was not asked.
+    pub nonsingular: Option<u64>,
+    /// Whether what paths found agrees with it.
+    pub agrees: bool,
 }
 
 /// Solutions with more digits than paths give.
@@ -155,7 +173,8 @@ mod tests {
             "{\"distinct\":0,\"nonsingular\":0,\"singular\":0,\"real\":null,\"real_reason\":null,\
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
              \"degenerate\":{},\"sharpened\":null,\"undecided\":0,\
-             \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null}"
+             \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null,\
+             \"exact_count\":null}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),

@@ -229,6 +229,8 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             doubtful_multiplicity,
             complete,
             complete_reason,
+            // Each target has its own.
+            exact_count: _,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;

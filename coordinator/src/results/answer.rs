@@ -9,10 +9,10 @@ use cognate_solutions::witness::{self, Decomposition};
 use serde::{Deserialize, Serialize};
 
 /// Solution sets as objects.
-const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL04");
+const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL05");
 
 /// Answers of large jobs as objects.
-const LARGE: RecordKind = RecordKind(b"CGNLRG03");
+const LARGE: RecordKind = RecordKind(b"CGNLRG04");
 
 /// Decompositions as objects.
 const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC05");

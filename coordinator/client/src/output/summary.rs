@@ -56,6 +56,10 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
             "{points} at which another number of paths ends than its multiplicity"
         ));
     }
+    let exact = &summary.solutions.exact_count;
+    if exact.as_ref().is_some_and(|count| !count.agrees) {
+        open.push("another number of solutions by an exact count".into());
+    }
     if open.is_empty() && !summary.settled {
         open.push("a count of one of the targets".into());
     }

@@ -2,6 +2,7 @@
 
 mod groebner;
 mod monomial;
+mod nonsingular;
 mod quotient;
 
 use super::Polynomial;
@@ -9,6 +10,7 @@ use super::dual_dimensions::FIELD;
 use crate::system::System;
 use groebner::{Budget, Terms, groebner_basis};
 use monomial::{MOST_VARIABLES, Monomial};
+use nonsingular::with_inverse_of_determinant;
 use quotient::Quotient;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +28,9 @@ pub enum SolutionCount {
     Infinite {
         /// The largest of any set.
         dimension: u32,
+        /// Where the Jacobian is square and has an inverse: points on none of the sets. Not known where that takes
+        /// too much to tell.
+        nonsingular: Option<u64>,
     },
 }
 
@@ -52,43 +57,46 @@ pub fn solution_count(system: &System, operations: u64) -> Option<SolutionCount>
         Some(terms)
     };
     let equations: Option<Vec<Terms>> = system.equations.iter().map(residues).collect();
-    count(variables, equations?, &mut Budget(operations))
+    count(variables, equations?, operations)
 }
 
-fn count(variables: usize, equations: Vec<Terms>, budget: &mut Budget) -> Option<SolutionCount> {
-    let basis = groebner_basis(equations, budget)?;
-    let leads: Vec<Monomial> = basis.iter().map(|terms| terms[0].0).collect();
-    if leads.contains(&Monomial::default()) {
-        return Some(SolutionCount::Finite {
-            with_multiplicity: 0,
-            distinct: Some(0),
+fn count(variables: usize, equations: Vec<Terms>, operations: u64) -> Option<SolutionCount> {
+    let budget = &mut Budget(operations);
+    let basis = groebner_basis(equations.clone(), budget)?;
+    let dimension = dimension(variables, &basis, budget)?;
+    if dimension > 0 {
+        let budget = &mut Budget(operations);
+        let nonsingular = nonsingular_points(variables, equations, budget);
+        return Some(SolutionCount::Infinite {
+            dimension,
+            nonsingular,
         });
     }
-    match dimension(variables, &leads, budget)? {
-        0 => {
-            let quotient = Quotient::new(variables, &basis, budget)?;
-            Some(SolutionCount::Finite {
-                with_multiplicity: quotient.dimension() as u64,
-                distinct: quotient.distinct_zeros(budget).map(|zeros| zeros as u64),
-            })
-        }
-        dimension => Some(SolutionCount::Infinite { dimension }),
-    }
+    let quotient = Quotient::new(variables, &basis, budget)?;
+    Some(SolutionCount::Finite {
+        with_multiplicity: quotient.dimension() as u64,
+        distinct: quotient.distinct_zeros(budget).map(|zeros| zeros as u64),
+    })
 }
 
-/// The most variables of which no leading monomial is a product.
-fn dimension(variables: usize, leads: &[Monomial], budget: &mut Budget) -> Option<u32> {
-    budget.take(leads.len() << variables)?;
+fn nonsingular_points(variables: usize, equations: Vec<Terms>, budget: &mut Budget) -> Option<u64> {
+    let equations = with_inverse_of_determinant(variables, equations, budget)?;
+    let basis = groebner_basis(equations, budget)?;
+    let quotient = Quotient::new(variables + 1, &basis, budget)?;
+    Some(quotient.dimension() as u64)
+}
+
+/// The most variables of which no leading monomial is a product; 0 also where one is 1.
+fn dimension(variables: usize, basis: &[Terms], budget: &mut Budget) -> Option<u32> {
+    budget.take(basis.len() << variables)?;
     let occurring = |lead: &Monomial| -> u32 {
-        let bits = (0..variables).map(|k| u32::from(lead.contains(variables, k)) << k);
+        let bits = (0..variables).map(|k| u32::from(lead.exponent(variables, k) > 0) << k);
         bits.sum()
     };
-    let leads: Vec<u32> = leads.iter().map(occurring).collect();
+    let leads: Vec<u32> = basis.iter().map(|terms| occurring(&terms[0].0)).collect();
     let free = |&chosen: &u32| leads.iter().all(|lead| lead & !chosen != 0);
-    (0..1u32 << variables)
-        .filter(free)
-        .map(u32::count_ones)
-        .max()
+    let sizes = (0..1u32 << variables).filter(free).map(u32::count_ones);
+    Some(sizes.max().unwrap_or(0))
 }
 
 #[cfg(test)]
@@ -105,6 +113,13 @@ mod tests {
         Some(SolutionCount::Finite {
             with_multiplicity,
             distinct: Some(distinct),
+        })
+    }
+
+    fn infinite(dimension: u32, nonsingular: Option<u64>) -> Option<SolutionCount> {
+        Some(SolutionCount::Infinite {
+            dimension,
+            nonsingular,
         })
     }
 
@@ -130,9 +145,20 @@ mod tests {
     fn sets_have_their_dimension() {
         let of = |text: &str| count_of(&format!("variable_group x, y, z; {text}"));
         let line = "function f, g, h; f = x*y; g = x*(y - 1); h = x*z;";
-        assert_eq!(of(line), Some(SolutionCount::Infinite { dimension: 2 }));
+        assert_eq!(of(line), infinite(2, Some(0)));
         let curve = "function f, g, h; f = y - x^2; g = z - x^3; h = x*z - y^2;";
-        assert_eq!(of(curve), Some(SolutionCount::Infinite { dimension: 1 }));
+        assert_eq!(of(curve), infinite(1, Some(0)));
+    }
+
+    #[test]
+    fn nonsingular_points_are_told_from_those_of_sets() {
+        let of = |text: &str| count_of(&format!("variable_group x, y; {text}"));
+        // A hyperbola, four points of which one is double, and one that is on the hyperbola.
+        let text =
+            "function f, g; f = (x*y - 1)*(x - 2)*(x + 3); g = (x*y - 1)*(y - 1/2)*(y + 5)^2;";
+        assert_eq!(of(text), infinite(1, Some(1)));
+        let more = "function f, g, h; f = x*y; g = x*(y - 1); h = x*(x - 1);";
+        assert_eq!(of(more), infinite(1, None), "not square");
     }
 
     /// G. Björck, 1985; J. Backelin, R. Fröberg, 1991; S. Katsura, 1986.
@@ -144,7 +170,7 @@ mod tests {
         assert_eq!(count_of(cyclic_5), finite(70, 70));
         let cyclic_4 = "variable_group a, b, c, d; function f1, f2, f3, f4; f1 = a + b + c + d; \
              f2 = a*b + b*c + c*d + d*a; f3 = a*b*c + b*c*d + c*d*a + d*a*b; f4 = a*b*c*d - 1;";
-        let curves = Some(SolutionCount::Infinite { dimension: 1 });
+        let curves = infinite(1, Some(0));
         assert_eq!(count_of(cyclic_4), curves);
         let katsura_3 = "variable_group x, y, z, w; function f1, f2, f3, f4; \
              f1 = x + 2*y + 2*z + 2*w - 1; f2 = x^2 + 2*y^2 + 2*z^2 + 2*w^2 - x; \

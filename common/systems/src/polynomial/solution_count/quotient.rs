@@ -87,7 +87,7 @@ impl<'a> Quotient<'a> {
                     form[*self.place.get(other)?] = PRIME - c;
                 }
             } else {
-                let contains = |&k: &usize| monomial.contains(self.variables, k);
+                let contains = |&k: &usize| monomial.exponent(self.variables, k) > 0;
                 let (x, smaller) = (0..self.variables).filter(contains).find_map(|k| {
                     let x = Monomial::variable(self.variables, k);
                     let smaller = monomial.over(x);
