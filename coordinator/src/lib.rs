@@ -38,3 +38,9 @@ pub mod config;
 pub mod server;
 
 pub mod metrics;
+
+pub mod measures;
+
+pub mod monitor;
+
+pub mod histogram;

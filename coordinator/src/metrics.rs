@@ -1,106 +1,37 @@
 //! Metrics: what the ledger says, as Prometheus reads it. Counts only, no names of problems.
 //!
-//! A listener of its own (`--metrics HOST:PORT`), plain HTTP: `GET /metrics`. Every answer is
-//! asked of the ledger, so that any coordinator over a database says the same.
+//! Every answer is asked of the ledger, so that any coordinator over a database says the same.
 
+use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobState;
 use crate::ledger::{Ledger, LedgerError};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
-use std::sync::Arc;
 use std::time::Duration;
-use tokio::io::{AsyncReadExt, AsyncWriteExt};
-use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::Mutex;
 use tokio::time::Instant;
-use tokio_util::sync::CancellationToken;
 
 /// The latest jobs and workers that are counted.
 const ROWS: u32 = 10_000;
 /// A worker that was silent for longer counts as gone. Default 60 s: six heartbeats.
 const PRESENT_MS: u64 = 60_000;
-/// Who asks has so long to say what, and to take the answer.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// Bytes of a request.
-const REQUEST_BYTES: usize = 8192;
+/// Since when jobs wait: how far each had got when it was last seen to get on, and when that was.
+#[derive(Debug, Default)]
+pub struct Waiting(HashMap<JobId, (u64, Instant)>);
 
-/// An answer is good for so long: however many ask, the ledger is asked once in this time.
-const FRESH: Duration = Duration::from_secs(5);
-
-/// The last answer, which is made by one asker at a time.
-#[derive(Default)]
-struct Latest(Mutex<Option<(Instant, String)>>);
-
-impl Latest {
-    async fn text(&self, ledger: &dyn Ledger) -> Result<String, LedgerError> {
-        let mut latest = self.0.lock().await;
-        if let Some((made, text)) = &*latest
-            && made.elapsed() < FRESH
-        {
-            return Ok(text.clone());
-        }
-        let text = metrics(ledger).await?;
-        *latest = Some((Instant::now(), text.clone()));
-        Ok(text)
-    }
-}
-
-/// Answers until the service stops.
-pub async fn serve(listener: TcpListener, ledger: Arc<dyn Ledger>, stopping: CancellationToken) {
-    let latest = Arc::new(Latest::default());
-    loop {
-        let accepted = tokio::select! {
-            accepted = listener.accept() => accepted,
-            () = stopping.cancelled() => return,
-        };
-        match accepted {
-            Ok((stream, _)) => {
-                let (ledger, latest) = (Arc::clone(&ledger), Arc::clone(&latest));
-                tokio::spawn(async move {
-                    // Who does not take its answer has none.
-                    let _ = tokio::time::timeout(PATIENCE, answer(stream, &*ledger, &latest)).await;
-                });
-            }
-            Err(error) => {
-                tracing::warn!(%error, "a connection for metrics could not be accepted");
-                tokio::time::sleep(Duration::from_millis(100)).await;
+impl Waiting {
+    /// Takes in how far the jobs are of which chunks wait; how long the one has waited that has not got on for
+    /// longest.
+    fn longest(&mut self, jobs: HashMap<JobId, u64>, now: Instant) -> Duration {
+        self.0.retain(|job, _| jobs.contains_key(job));
+        for (job, got) in jobs {
+            let known = self.0.entry(job).or_insert((got, now));
+            if known.0 != got {
+                *known = (got, now);
             }
         }
+        let waited = self.0.values().map(|(_, since)| now.duration_since(*since));
+        waited.max().unwrap_or_default()
     }
-}
-
-async fn answer(
-    mut stream: TcpStream,
-    ledger: &dyn Ledger,
-    latest: &Latest,
-) -> std::io::Result<()> {
-    let mut request = Vec::new();
-    let mut piece = [0; 1024];
-    while !request.windows(4).any(|end| end == b"\r\n\r\n") {
-        let read = stream.read(&mut piece).await?;
-        if read == 0 || request.len() > REQUEST_BYTES {
-            return Ok(());
-        }
-        request.extend_from_slice(&piece[..read]);
-    }
-    let line = String::from_utf8_lossy(&request);
-    let mut words = line.split_whitespace();
-    let asked = (words.next(), words.next());
-    let (status, body) = match asked {
-        (Some("GET"), Some("/metrics")) => match latest.text(ledger).await {
-            Ok(text) => ("200 OK", text),
-            Err(error) => ("503 Service Unavailable", format!("{error}\n")),
-        },
-        _ => ("404 Not Found", "only GET /metrics\n".to_owned()),
-    };
-    let head = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: text/plain; version=0.0.4\r\n\
-         Content-Length: {}\r\nConnection: close\r\n\r\n",
-        body.len()
-    );
-    stream.write_all(head.as_bytes()).await?;
-    stream.write_all(body.as_bytes()).await?;
-    stream.shutdown().await
 }
 
 /// A family of values, each with its label.
@@ -118,7 +49,7 @@ fn label(name: &str, value: &str) -> String {
 }
 
 /// All of it, in the text format of Prometheus.
-pub async fn metrics(ledger: &dyn Ledger) -> Result<String, LedgerError> {
+pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<String, LedgerError> {
     let mut states: BTreeMap<&str, u64> = JobState::ALL
         .iter()
         .map(|state| (state.name(), 0))
@@ -127,13 +58,20 @@ pub async fn metrics(ledger: &dyn Ledger) -> Result<String, LedgerError> {
     let mut paths: BTreeMap<&str, u64> = BTreeMap::new();
     let mut micros = 0;
     let mut speculative = [0; 2];
+    let mut standing = HashMap::new();
     for job in ledger.jobs(ROWS).await? {
         *states.entry(job.state.name()).or_default() += 1;
         for stage in ledger.stages(job.job).await? {
             if !job.state.has_ended() {
                 chunks[0] += stage.ready.chunks;
                 chunks[1] += stage.leased.chunks;
-                chunks[2] += stage.accepted.chunks + stage.failed.chunks;
+                let done = stage.accepted.chunks + stage.failed.chunks;
+                chunks[2] += done;
+                // What is leased or done differs once a chunk is given out, comes back or is done.
+                let got = stage.leased.chunks + 2 * done + u64::from(stage.stage.0);
+                if stage.ready.chunks > 0 {
+                    *standing.entry(job.job).or_default() += got;
+                }
             }
             *paths.entry("regular").or_default() += stage.outcomes.regular;
             *paths.entry("singular").or_default() += stage.outcomes.singular;
@@ -162,6 +100,17 @@ pub async fn metrics(ledger: &dyn Ledger) -> Result<String, LedgerError> {
     let of_chunks: Vec<_> = of_chunks.map(|(k, v)| (label("state", k), v)).collect();
     let help = "Chunks of jobs that have not ended; ready ones wait for a worker.";
     family(&mut text, "cognate_chunks", "gauge", help, &of_chunks);
+    let longest = waiting.longest(standing, Instant::now()).as_secs();
+    let help =
+        "Seconds that the job has waited which has ready chunks and has not got on for longest.";
+    let longest = [(String::new(), longest)];
+    family(
+        &mut text,
+        "cognate_waiting_seconds",
+        "gauge",
+        help,
+        &longest,
+    );
     let help = "Paths accepted, of all stages, by how they ended.";
     let of_paths = named(paths, "outcome");
     family(&mut text, "cognate_paths_total", "counter", help, &of_paths);
@@ -213,6 +162,7 @@ mod tests {
     use crate::ledger::conformance::*;
     use crate::ledger::memory::MemoryLedger;
     use crate::ledger::rows::Advance;
+    use std::sync::Arc;
 
     async fn busy() -> Arc<dyn Ledger> {
         let ledger = MemoryLedger::new(Arc::new(ManualClock::default()));
@@ -235,7 +185,9 @@ mod tests {
 
     #[tokio::test]
     async fn what_the_ledger_says_is_counted() {
-        let text = metrics(&*busy().await).await.unwrap();
+        let text = metrics(&*busy().await, &mut Waiting::default())
+            .await
+            .unwrap();
         assert!(text.contains("cognate_jobs{state=\"running\"} 1"), "{text}");
         assert!(
             text.contains("cognate_chunks{state=\"leased\"} 0"),
@@ -250,25 +202,20 @@ mod tests {
         }
     }
 
-    #[tokio::test]
-    async fn it_is_read_by_http() {
-        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
-        let address = listener.local_addr().unwrap();
-        let stop = CancellationToken::new();
-        let serving = tokio::spawn(serve(listener, busy().await, stop.clone()));
-        let ask = async |what: &str| {
-            let mut stream = TcpStream::connect(address).await.unwrap();
-            let request = format!("{what} HTTP/1.1\r\nHost: x\r\n\r\n");
-            stream.write_all(request.as_bytes()).await.unwrap();
-            let mut answer = String::new();
-            stream.read_to_string(&mut answer).await.unwrap();
-            answer
-        };
-        let answer = ask("GET /metrics").await;
-        assert!(answer.starts_with("HTTP/1.1 200 OK\r\n"), "{answer}");
-        assert!(answer.contains("# TYPE cognate_chunks gauge"), "{answer}");
-        assert!(ask("GET /").await.starts_with("HTTP/1.1 404"));
-        stop.cancel();
-        serving.await.unwrap();
+    #[test]
+    fn who_does_not_get_on_waits() {
+        let mut waiting = Waiting::default();
+        let (one, two) = (JobId(1), JobId(2));
+        let begin = Instant::now();
+        let seconds = Duration::from_secs;
+        let jobs = |got| HashMap::from([(one, 5), (two, got)]);
+        assert_eq!(waiting.longest(jobs(0), begin), seconds(0));
+        assert_eq!(waiting.longest(jobs(1), begin + seconds(7)), seconds(7));
+        let only_two = HashMap::from([(two, 1)]);
+        assert_eq!(waiting.longest(only_two, begin + seconds(9)), seconds(2));
+        assert_eq!(
+            waiting.longest(HashMap::new(), begin + seconds(10)),
+            seconds(0)
+        );
     }
 }

@@ -4,7 +4,9 @@
 //! store and a clock, and listeners by which calls come in.
 
 use crate::api::Context;
+use crate::api::accounting::Accounting;
 use crate::api::admission::Admission;
+use crate::api::audit_log::AuditLog;
 use crate::api::client_service::ClientService;
 use crate::api::security::{Guard, Security, Tokens};
 use crate::api::worker_service::WorkerService;
@@ -15,7 +17,8 @@ use crate::ledger::identity::CoordinatorId;
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::sql::SqlLedger;
 use crate::ledger::{Ledger, LedgerError};
-use crate::metrics;
+use crate::measures::StorageMeasures;
+use crate::monitor::Monitor;
 use crate::results::store::{Store, StoreError};
 use crate::transport::introduction::{Connections, raise_open_files};
 use crate::transport::shared_memory::SharedMemoryListener;
@@ -52,6 +55,14 @@ pub enum ServerError {
     Folder {
         /// Path of the folder.
         folder: String,
+        /// The operating system's error.
+        source: io::Error,
+    },
+    /// The audit log does not open.
+    #[error("cannot open the audit log {file}: {source}")]
+    AuditLog {
+        /// Path of the file.
+        file: String,
         /// The operating system's error.
         source: io::Error,
     },
@@ -92,6 +103,14 @@ impl Server {
         for address in &config.listen {
             listeners.push(Listener::open(address, &config.security, config.insecure).await?);
         }
+        let mut security = config.security;
+        if let Some(path) = &config.audit_log {
+            let opened = AuditLog::to_file(path);
+            security.audit = opened.map_err(|source| ServerError::AuditLog {
+                file: path.display().to_string(),
+                source,
+            })?;
+        }
         let metrics = match &config.metrics {
             None => None,
             Some(address) => {
@@ -129,11 +148,15 @@ impl Server {
             let refused = |error| tracing::info!(%error, "no shared memory; workers use gRPC");
             opened.map_err(refused).ok()
         });
-        let counted = Arc::clone(&ledger);
+        let measures = Arc::new(StorageMeasures::default());
+        if let Some(database) = &database {
+            database.measure(Arc::clone(&measures));
+        }
+        let store = store.measured(Arc::clone(&measures));
         let mut running = Self::serve(
             listeners,
             memory,
-            config.security,
+            security,
             ledger,
             store,
             who,
@@ -142,10 +165,13 @@ impl Server {
         .await;
         running.database = database;
         if let Some(listener) = metrics {
+            let monitor = Monitor::new(
+                Arc::clone(running.coordinator()),
+                Arc::clone(&running.context.accounting.measures),
+                measures,
+            );
             let stopping = running.stopping();
-            running
-                .tasks
-                .spawn(metrics::serve(listener, counted, stopping));
+            running.tasks.spawn(monitor.serve(listener, stopping));
         }
         Ok(running)
     }
@@ -161,6 +187,10 @@ impl Server {
         rules: Rules,
     ) -> RunningServer {
         let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
+        let accounting = Accounting {
+            audit: security.audit.clone(),
+            ..Accounting::default()
+        };
         let admission = Admission::new(rules.calls);
         let connections = Connections::new(rules.connections);
         let stopping = CancellationToken::new();
@@ -170,6 +200,7 @@ impl Server {
             rules,
             stopping.clone(),
             named.unwrap_or_default(),
+            accounting.clone(),
         ));
         let (routes, health) = routes(&context).await;
         let mut tasks = JoinSet::new();
@@ -186,7 +217,8 @@ impl Server {
         }
         let memory_ends = stopping.child_token();
         if let Some(memory) = memory {
-            tasks.spawn(memory.serve(admission.layer(routes), memory_ends.clone()));
+            let services = accounting.layer(admission.layer(routes));
+            tasks.spawn(memory.serve(services, memory_ends.clone()));
         }
         tasks.spawn(report_health(health, Arc::clone(&context)));
         tasks.spawn(coordinator.run(stopping));
@@ -259,7 +291,10 @@ pub async fn run(
         tokio::select! {
             _ = terminate.recv() => break,
             _ = interrupt.recv() => break,
-            _ = hangup.recv() => read_tokens_again(tokens.as_ref()),
+            _ = hangup.recv() => {
+                read_tokens_again(tokens.as_ref());
+                server.context.accounting.audit.reopen();
+            }
         }
     }
     server.shutdown().await;
@@ -364,9 +399,17 @@ async fn listen(
         .http2_keepalive_interval(Some(keep_alive))
         .http2_keepalive_timeout(Some(keep_alive))
         .tcp_keepalive(Some(keep_alive));
+    let guard = Guard {
+        // A socket's file is this user's alone: whoever opens it could read the tokens, too.
+        tokens: security
+            .tokens
+            .filter(|_| !matches!(listener, Listener::Unix(_))),
+        audit: security.audit,
+    };
+    let accounting = context.accounting.clone();
     let served = match listener {
         Listener::Tcp(listener, callers) => {
-            let mut server = server.layer(Guard(security.tokens)).layer(admission);
+            let mut server = server.layer(guard).layer(accounting).layer(admission);
             let incoming = transport::tcp_connections(listener, callers, connections);
             server
                 .add_routes(routes)
@@ -378,7 +421,7 @@ async fn listen(
             let incoming = transport::tcp_connections(listener, callers, connections);
             match server.tls_config(tls) {
                 Ok(server) => {
-                    let mut server = server.layer(Guard(security.tokens)).layer(admission);
+                    let mut server = server.layer(guard).layer(accounting).layer(admission);
                     server
                         .add_routes(routes)
                         .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
@@ -387,9 +430,8 @@ async fn listen(
                 Err(error) => Err(error),
             }
         }
-        // Its file is this user's alone: whoever opens it could read the tokens, too.
         Listener::Unix(socket) => {
-            let mut server = server.layer(Guard(None)).layer(admission);
+            let mut server = server.layer(guard).layer(accounting).layer(admission);
             let incoming = transport::unix_connections(socket, connections);
             server
                 .add_routes(routes)

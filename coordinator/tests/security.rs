@@ -79,7 +79,7 @@ async fn tokens_open_what_their_role_may() {
     let tokens = write(folder.path(), "tokens", TOKENS);
     let security = Security {
         tokens: Some(Tokens::read(&tokens).unwrap()),
-        tls: None,
+        ..Security::default()
     };
     let (server, address) = start(security).await;
     let with = |file: &PathBuf| CredentialFiles {
@@ -107,8 +107,8 @@ async fn certificates_are_checked_on_both_sides() {
     let at = |name: &str| folder.path().join(name);
     let tls = Tls::read(&at("ours.pem"), &at("ours.key"), Some(&at("ours-ca.pem"))).unwrap();
     let security = Security {
-        tokens: None,
         tls: Some(tls),
+        ..Security::default()
     };
     let (server, address) = start(security).await;
     assert!(
@@ -164,8 +164,8 @@ async fn beyond_loopback_callers_must_be_known() {
     };
     // A certificate of its own says who it is, not who calls.
     let anybody = Security {
-        tokens: None,
         tls: tls(None),
+        ..Security::default()
     };
     let refused = start(anybody, "0.0.0.0:0").await.err().unwrap();
     let beyond = matches!(
@@ -181,12 +181,13 @@ async fn beyond_loopback_callers_must_be_known() {
     assert!(refused.contains("--tls-certificate"), "{refused}");
     for security in [
         Security {
-            tokens: None,
             tls: tls(Some(at("ours-ca.pem"))),
+            ..Security::default()
         },
         Security {
             tokens: Some(Tokens::read(&tokens).unwrap()),
             tls: tls(None),
+            ..Security::default()
         },
     ] {
         let server = start(security, "0.0.0.0:0").await.unwrap();

@@ -3,6 +3,7 @@
 //! `Arguments` is what people type (`cognate worker` and `cognate-worker` share
 //! it); `Config` is the same, checked. Every number with unit, default and reason.
 
+use crate::log::LogFormat;
 use crate::machine::Machine;
 use crate::transport::address::Address;
 use crate::transport::connect::{CredentialError, CredentialFiles, Credentials, Role};
@@ -83,6 +84,9 @@ pub struct Arguments {
     /// End after so many seconds without reaching a coordinator [default: never]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub give_up_after: Option<Duration>,
+    /// How the log is written to standard error
+    #[arg(long, value_enum, default_value_t)]
+    pub log_format: LogFormat,
 }
 
 /// A time in seconds, as people type it.

@@ -14,7 +14,7 @@ struct Command {
 }
 
 fn main() -> ExitCode {
-    cognate_worker::log::to_standard_error();
     let command = Command::parse();
+    cognate_worker::log::to_standard_error(command.arguments.log_format);
     ExitCode::from(cognate_worker::command::execute(command.arguments))
 }

@@ -702,9 +702,15 @@ pub struct Coordinator {
     /// Serve addresses beyond this machine without asking anybody who they are
     #[arg(long)]
     pub insecure: bool,
-    /// Where Prometheus reads metrics, by plain HTTP: HOST:PORT [default: nowhere]
+    /// Where Prometheus reads metrics, and probes ask /live and /ready, by plain HTTP: HOST:PORT [default: nowhere]
     #[arg(long, value_name = "ADDR")]
     pub metrics: Option<String>,
+    /// How the log is written to standard error
+    #[arg(long, value_enum, default_value_t)]
+    pub log_format: cognate_worker::log::LogFormat,
+    /// A file to which is added, as lines of JSON, who submitted, cancelled, deleted and was refused [default: none]
+    #[arg(long, value_name = "FILE")]
+    pub audit_log: Option<PathBuf>,
     /// A file with the own certificate chain (PEM): all TCP addresses then speak TLS
     #[arg(long, value_name = "FILE", requires = "tls_key")]
     pub tls_certificate: Option<PathBuf>,
@@ -714,7 +720,7 @@ pub struct Coordinator {
     /// A file with the authority (PEM) whose certificates callers must have
     #[arg(long, value_name = "FILE", requires = "tls_certificate")]
     pub tls_client_ca: Option<PathBuf>,
-    /// A file with the tokens that TCP callers must have: lines of `client TOKEN` or `worker TOKEN`
+    /// A file with the tokens that TCP callers must have: lines of `client TOKEN` or `worker TOKEN`, to which may be added name=, tenant= and limits (deploy/README.md)
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
     /// Delete jobs that ended longer ago than so many days [default: 0, never]

@@ -37,6 +37,8 @@ pub struct ConfigFile {
     pub tls_client_ca: Option<PathBuf>,
     /// Address at which metrics are served.
     pub metrics: Option<String>,
+    /// File of who submitted, cancelled, deleted and was refused.
+    pub audit_log: Option<PathBuf>,
     /// Workers on this host may use shared memory.
     pub shared_memory: Option<bool>,
     /// ... while so many MiB are free in /dev/shm.
@@ -74,6 +76,7 @@ tables! {
         split_into: u64,
         in_flight_limit: u32,
         audit_percent: u32,
+        rework_percent: u32,
         speculation_times: u32,
         speculation_least_seconds: f64,
         held_paths: u64,
@@ -177,6 +180,7 @@ impl ConfigFile {
                     policy.in_flight_limit,
                 )?,
                 audit_percent: r.audit_percent.unwrap_or(policy.audit_percent).min(100),
+                rework_percent: r.rework_percent.unwrap_or(policy.rework_percent).min(100),
                 held_paths: r.held_paths.unwrap_or(policy.held_paths),
                 counting_operations: r.counting_operations.unwrap_or(policy.counting_operations),
                 planning: policy.planning,
@@ -266,6 +270,7 @@ mod tests {
             "tls_key",
             "tls_client_ca",
             "metrics",
+            "audit_log",
         ];
         let mut said = format!("{file:?}");
         let text = std::fs::read_to_string(&path).expect("it was read before");

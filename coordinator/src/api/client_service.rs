@@ -1,7 +1,10 @@
 //! gRPC for clients: decode, one call inwards, encode.
 
+use super::audit_log::Entry;
+use super::caller::Caller;
 use super::error::ApiError;
 use super::{Answers, Context, guarded, pieces, visible};
+use crate::coordinator::submission_limits::SubmissionLimits;
 use crate::coordinator::{Answered, ClassifiedPath, CoordinatorError};
 use crate::intake;
 use crate::jobs::planning::Planned;
@@ -21,9 +24,10 @@ use futures::future::ready;
 use futures::{StreamExt, stream};
 use prost::Message;
 use std::sync::Arc;
+use std::time::Instant;
 use tokio::sync::mpsc::Receiver;
 use tokio_stream::wrappers::ReceiverStream;
-use tonic::{Request, Response, Status, Streaming};
+use tonic::{Code, Request, Response, Status, Streaming};
 
 /// Whose jobs are nobody's in particular.
 const DEFAULT_TENANT: &str = "default";
@@ -59,6 +63,137 @@ impl ClientService {
 }
 
 impl ClientService {
+    /// The job of this id, if it is the caller's business; of others it hears as of those that never were.
+    async fn job(&self, caller: &Caller, text: &str) -> Result<JobId, ApiError> {
+        let job: JobId = text.parse()?;
+        if caller.tenant.is_none() {
+            return Ok(job);
+        }
+        let row = self.context.coordinator.ledger().job(job).await;
+        match row.map_err(CoordinatorError::from)? {
+            Some(row) if !caller.may_see(&row.asked.tenant) => {
+                Err(CoordinatorError::Ledger(LedgerError::UnknownJob(job)).into())
+            }
+            _ => Ok(job),
+        }
+    }
+
+    /// On whose behalf a caller submits: what the request says, if its token is not bound to another tenant.
+    fn tenant(caller: &Caller, asked: String) -> Result<Tenant, ApiError> {
+        match &caller.tenant {
+            None if asked.is_empty() => Ok(Tenant::new(DEFAULT_TENANT)?),
+            None => Ok(Tenant::new(asked)?),
+            Some(own) if asked.is_empty() || asked == own.as_str() => Ok(own.clone()),
+            Some(own) => Err(ApiError::OtherTenant {
+                own: own.to_string(),
+                asked: visible(&asked),
+            }),
+        }
+    }
+
+    /// Writes down what a caller asked for and what became of it.
+    fn record<T>(&self, caller: &Caller, call: &str, job: Option<&str>, done: &Result<T, Status>) {
+        let refusal = done.as_ref().err();
+        let job = job.map(visible);
+        let entry = Entry {
+            call,
+            job: job.as_deref(),
+            code: refusal.map_or(Code::Ok, Status::code),
+            why: refusal.map(Status::message),
+        };
+        self.context.accounting.audit.record(caller, entry);
+    }
+
+    async fn make_job(
+        &self,
+        caller: &Caller,
+        m: v1::SubmitRequest,
+    ) -> Result<v1::SubmitResponse, Status> {
+        let id = RequestId::new(m.request_id).map_err(ApiError::from)?;
+        let tenant = Self::tenant(caller, m.tenant)?;
+        let problem = m
+            .problem
+            .ok_or_else(|| ApiError::from(ProtocolError::missing("problem")))?;
+        let bytes = problem.encoded_len();
+        let quota = &self.context.accounting.quota;
+        quota.bytes(caller, bytes as u64, Instant::now())?;
+        let is_large = bytes > LARGE_PROBLEM;
+        let submission = from_proto::problem::submission(problem)
+            .map_err(|e| ApiError::from(e.within("problem")))?;
+        let coordinator = self.context.coordinator.clone();
+        let limits = SubmissionLimits {
+            jobs: caller.limits.jobs,
+            paths: caller.limits.paths,
+        };
+        let accepted = guarded(async move {
+            // Reading a large file takes long; it must hold up neither the runtime nor small ones.
+            let reading = coordinator.planning();
+            let problem = reading.read(is_large, || intake::take(submission)).await;
+            let problem = problem.map_err(CoordinatorError::from)??;
+            let submitted = coordinator.submit_within(id, tenant, problem, limits);
+            Ok(submitted.await?)
+        });
+        let accepted = accepted.await?;
+        Ok(v1::SubmitResponse {
+            job: accepted.job.to_string(),
+            warnings: accepted.warnings,
+        })
+    }
+
+    async fn delete_job(
+        &self,
+        caller: &Caller,
+        m: &v1::DeleteRequest,
+    ) -> Result<v1::DeleteResponse, Status> {
+        let job = self.job(caller, &m.job).await?;
+        let coordinator = self.context.coordinator.clone();
+        let cancel_first = m.cancel_first;
+        // Once begun it is done, also where the client leaves.
+        let removed = guarded(async move { Ok(coordinator.delete(job, cancel_first).await?) });
+        let removed = removed.await?;
+        let grace_ms = self.context.coordinator.policy().retention.grace_ms;
+        Ok(v1::DeleteResponse {
+            stages: removed.stages,
+            chunks: removed.chunks,
+            objects: removed.results.objects,
+            bytes: removed.results.bytes,
+            deleted_before: removed.before,
+            grace_seconds: grace_ms as f64 / 1000.0,
+        })
+    }
+
+    async fn keep_upload(
+        &self,
+        caller: &Caller,
+        pieces: Streaming<v1::ObjectPiece>,
+    ) -> Result<v1::UploadResponse, Status> {
+        let bytes = self.gather(caller, pieces).await?;
+        let size = bytes.len() as u64;
+        let digest = self.context.coordinator.put_object(bytes).await;
+        let digest = digest.map_err(ApiError::from)?;
+        Ok(v1::UploadResponse {
+            digest: to_proto::digest(digest),
+            size,
+        })
+    }
+
+    /// Puts an object's pieces together, up to the limit.
+    async fn gather(
+        &self,
+        caller: &Caller,
+        mut pieces: Streaming<v1::ObjectPiece>,
+    ) -> Result<Bytes, Status> {
+        let quota = &self.context.accounting.quota;
+        let mut bytes = BytesMut::new();
+        while let Some(piece) = pieces.message().await? {
+            within_limit("data", bytes.len() + piece.data.len(), OBJECT_BYTES)
+                .map_err(ApiError::from)?;
+            quota.bytes(caller, piece.data.len() as u64, Instant::now())?;
+            bytes.extend_from_slice(&piece.data);
+        }
+        Ok(bytes.freeze())
+    }
+
     /// What the planner noticed about a job, which must be there.
     async fn warnings(&self, job: JobId) -> Result<Vec<String>, ApiError> {
         let row = self.context.coordinator.ledger().job(job).await;
@@ -67,10 +202,6 @@ impl ClientService {
         let planned = Planned::from_bytes(&row.asked.options).map_err(CoordinatorError::from)?;
         Ok(planned.warnings)
     }
-}
-
-fn job(text: &str) -> Result<JobId, ApiError> {
-    Ok(text.parse()?)
 }
 
 fn state(state: JobState) -> v1::JobState {
@@ -201,50 +332,17 @@ fn flattened<T: Send + 'static>(
     Box::pin(messages)
 }
 
-/// Puts an object's pieces together, up to the limit.
-async fn gather(mut pieces: Streaming<v1::ObjectPiece>) -> Result<Bytes, Status> {
-    let mut bytes = BytesMut::new();
-    while let Some(piece) = pieces.message().await? {
-        within_limit("data", bytes.len() + piece.data.len(), OBJECT_BYTES)
-            .map_err(ApiError::from)?;
-        bytes.extend_from_slice(&piece.data);
-    }
-    Ok(bytes.freeze())
-}
-
 #[tonic::async_trait]
 impl ClientApi for ClientService {
     async fn submit(
         &self,
         request: Request<v1::SubmitRequest>,
     ) -> Result<Response<v1::SubmitResponse>, Status> {
-        let m = request.into_inner();
-        let id = RequestId::new(m.request_id).map_err(ApiError::from)?;
-        let tenant = if m.tenant.is_empty() {
-            DEFAULT_TENANT.to_owned()
-        } else {
-            m.tenant
-        };
-        let tenant = Tenant::new(tenant).map_err(ApiError::from)?;
-        let problem = m
-            .problem
-            .ok_or_else(|| ApiError::from(ProtocolError::missing("problem")))?;
-        let is_large = problem.encoded_len() > LARGE_PROBLEM;
-        let submission = from_proto::problem::submission(problem)
-            .map_err(|e| ApiError::from(e.within("problem")))?;
-        let coordinator = self.context.coordinator.clone();
-        let accepted = guarded(async move {
-            // Reading a large file takes long; it must hold up neither the runtime nor small ones.
-            let reading = coordinator.planning();
-            let problem = reading.read(is_large, || intake::take(submission)).await;
-            let problem = problem.map_err(CoordinatorError::from)??;
-            Ok(coordinator.submit(id, tenant, problem).await?)
-        });
-        let accepted = accepted.await?;
-        Ok(Response::new(v1::SubmitResponse {
-            job: accepted.job.to_string(),
-            warnings: accepted.warnings,
-        }))
+        let caller = Caller::of(&request);
+        let made = self.make_job(&caller, request.into_inner()).await;
+        let job = made.as_ref().ok().map(|made| made.job.as_str());
+        self.record(&caller, "Submit", job, &made);
+        made.map(Response::new)
     }
 
     type WatchStream = Answers<v1::JobProgress>;
@@ -253,7 +351,8 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::WatchRequest>,
     ) -> Result<Response<Self::WatchStream>, Status> {
-        let job = job(&request.into_inner().job)?;
+        let caller = Caller::of(&request);
+        let job = self.job(&caller, &request.into_inner().job).await?;
         // A job that is not there is an error of the call, not of the stream.
         let warnings = self.warnings(job).await?;
         let changes = self.context.coordinator.watch(job);
@@ -272,7 +371,8 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::GetSummaryRequest>,
     ) -> Result<Response<v1::Summary>, Status> {
-        let job = job(&request.into_inner().job)?;
+        let caller = Caller::of(&request);
+        let job = self.job(&caller, &request.into_inner().job).await?;
         let summary = self.context.coordinator.summary(job).await;
         let (summary, json) = summary.map_err(ApiError::from)?;
         let answer = counted(&summary);
@@ -293,7 +393,8 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::GetDecompositionRequest>,
     ) -> Result<Response<Self::GetDecompositionStream>, Status> {
-        let job = job(&request.into_inner().job)?;
+        let caller = Caller::of(&request);
+        let job = self.job(&caller, &request.into_inner().job).await?;
         let coordinator = &self.context.coordinator;
         let found = coordinator.decomposition(job).await;
         let found = found.map_err(ApiError::from)?;
@@ -313,7 +414,8 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::StreamSolutionsRequest>,
     ) -> Result<Response<Self::StreamSolutionsStream>, Status> {
-        let job = job(&request.into_inner().job)?;
+        let caller = Caller::of(&request);
+        let job = self.job(&caller, &request.into_inner().job).await?;
         let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
@@ -344,7 +446,8 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::StreamPathsRequest>,
     ) -> Result<Response<Self::StreamPathsStream>, Status> {
-        let job = job(&request.into_inner().job)?;
+        let caller = Caller::of(&request);
+        let job = self.job(&caller, &request.into_inner().job).await?;
         let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
@@ -361,7 +464,8 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::ExplainRequest>,
     ) -> Result<Response<v1::ExplainResponse>, Status> {
-        let job = job(&request.into_inner().job)?;
+        let caller = Caller::of(&request);
+        let job = self.job(&caller, &request.into_inner().job).await?;
         let explanation = self.context.coordinator.explain(job).await;
         let explanation = explanation.map_err(ApiError::from)?;
         Ok(Response::new(v1::ExplainResponse {
@@ -374,15 +478,20 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::CancelRequest>,
     ) -> Result<Response<v1::CancelResponse>, Status> {
-        let job = job(&request.into_inner().job)?;
-        let now = self
-            .context
-            .coordinator
-            .cancel(job, "cancelled by a client")
-            .await;
-        let now = now.map_err(ApiError::from)?;
+        let caller = Caller::of(&request);
+        let asked = request.into_inner().job;
+        let cancelled = async {
+            let job = self.job(&caller, &asked).await?;
+            let now = self
+                .context
+                .coordinator
+                .cancel(job, "cancelled by a client");
+            now.await.map_err(ApiError::from)
+        };
+        let cancelled = cancelled.await.map_err(Status::from);
+        self.record(&caller, "Cancel", Some(&asked), &cancelled);
         Ok(Response::new(v1::CancelResponse {
-            state: state(now).into(),
+            state: state(cancelled?).into(),
         }))
     }
 
@@ -390,32 +499,23 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::DeleteRequest>,
     ) -> Result<Response<v1::DeleteResponse>, Status> {
+        let caller = Caller::of(&request);
         let m = request.into_inner();
-        let job = job(&m.job)?;
-        let coordinator = self.context.coordinator.clone();
-        // Once begun it is done, also where the client leaves.
-        let removed = guarded(async move { Ok(coordinator.delete(job, m.cancel_first).await?) });
-        let removed = removed.await?;
-        let grace_ms = self.context.coordinator.policy().retention.grace_ms;
-        Ok(Response::new(v1::DeleteResponse {
-            stages: removed.stages,
-            chunks: removed.chunks,
-            objects: removed.results.objects,
-            bytes: removed.results.bytes,
-            deleted_before: removed.before,
-            grace_seconds: grace_ms as f64 / 1000.0,
-        }))
+        let deleted = self.delete_job(&caller, &m).await;
+        self.record(&caller, "Delete", Some(&m.job), &deleted);
+        deleted.map(Response::new)
     }
 
     async fn list_jobs(
         &self,
         request: Request<v1::ListJobsRequest>,
     ) -> Result<Response<v1::ListJobsResponse>, Status> {
+        let tenant = Caller::of(&request).tenant;
         let limit = match request.into_inner().limit {
             0 => JOBS_LISTED,
             limit => limit.min(JOBS_LIMIT),
         };
-        let jobs = self.context.coordinator.jobs(limit).await;
+        let jobs = self.context.coordinator.jobs(limit, tenant.as_ref()).await;
         let jobs = jobs.map_err(ApiError::from)?;
         Ok(Response::new(v1::ListJobsResponse {
             jobs: jobs.into_iter().map(overview).collect(),
@@ -449,14 +549,10 @@ impl ClientApi for ClientService {
         &self,
         request: Request<Streaming<v1::ObjectPiece>>,
     ) -> Result<Response<v1::UploadResponse>, Status> {
-        let bytes = gather(request.into_inner()).await?;
-        let size = bytes.len() as u64;
-        let digest = self.context.coordinator.put_object(bytes).await;
-        let digest = digest.map_err(ApiError::from)?;
-        Ok(Response::new(v1::UploadResponse {
-            digest: to_proto::digest(digest),
-            size,
-        }))
+        let caller = Caller::of(&request);
+        let kept = self.keep_upload(&caller, request.into_inner()).await;
+        self.record(&caller, "Upload", None, &kept);
+        kept.map(Response::new)
     }
 
     async fn get_server_info(

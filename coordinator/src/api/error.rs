@@ -38,6 +38,14 @@ pub enum ApiError {
         /// What is wrong with it.
         what: String,
     },
+    /// A client asks for what is another tenant's.
+    #[error("this token is of tenant {own}, and the request is for tenant {asked}")]
+    OtherTenant {
+        /// The token's tenant.
+        own: String,
+        /// The request's tenant.
+        asked: String,
+    },
     /// A later version will.
     #[error("not in this version: {0}")]
     NotInThisVersion(String),
@@ -52,6 +60,29 @@ pub enum ApiError {
     Panic(String),
 }
 
+/// A code as gRPC's pages write it.
+pub fn code_name(code: Code) -> &'static str {
+    match code {
+        Code::Ok => "OK",
+        Code::Cancelled => "CANCELLED",
+        Code::Unknown => "UNKNOWN",
+        Code::InvalidArgument => "INVALID_ARGUMENT",
+        Code::DeadlineExceeded => "DEADLINE_EXCEEDED",
+        Code::NotFound => "NOT_FOUND",
+        Code::AlreadyExists => "ALREADY_EXISTS",
+        Code::PermissionDenied => "PERMISSION_DENIED",
+        Code::ResourceExhausted => "RESOURCE_EXHAUSTED",
+        Code::FailedPrecondition => "FAILED_PRECONDITION",
+        Code::Aborted => "ABORTED",
+        Code::OutOfRange => "OUT_OF_RANGE",
+        Code::Unimplemented => "UNIMPLEMENTED",
+        Code::Internal => "INTERNAL",
+        Code::Unavailable => "UNAVAILABLE",
+        Code::DataLoss => "DATA_LOSS",
+        Code::Unauthenticated => "UNAUTHENTICATED",
+    }
+}
+
 impl ApiError {
     /// The status code that says what kind of error it is.
     pub fn code(&self) -> Code {
@@ -62,6 +93,7 @@ impl ApiError {
             | Self::Identity(_)
             | Self::Options(_)
             | Self::Field { .. } => Code::InvalidArgument,
+            Self::OtherTenant { .. } => Code::PermissionDenied,
             Self::NotInThisVersion(_) => Code::Unimplemented,
             Self::Coordinator(error) => code(error),
             Self::Stopping => Code::Unavailable,
@@ -80,6 +112,7 @@ impl ApiError {
             Self::Identity(error) => error.field().map(str::to_owned),
             Self::Options(misfit) => Some(format!("problem.options.{}", misfit.field())),
             Self::Field { field, .. } => Some(format!("problem.{field}")),
+            Self::OtherTenant { .. } => Some("tenant".to_owned()),
             Self::NotInThisVersion(_) | Self::Coordinator(_) | Self::Stopping | Self::Panic(_) => {
                 None
             }
@@ -109,9 +142,10 @@ fn code(error: &CoordinatorError) -> Code {
         CoordinatorError::Ledger(
             LedgerError::RequestReused(_) | LedgerError::RequestOfDeleted(_),
         ) => Code::AlreadyExists,
-        CoordinatorError::NotPlanned(_) | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => {
-            Code::ResourceExhausted
-        }
+        CoordinatorError::Ledger(LedgerError::NameTaken(_)) => Code::PermissionDenied,
+        CoordinatorError::NotPlanned(_)
+        | CoordinatorError::OverLimit { .. }
+        | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
         CoordinatorError::Ledger(
             LedgerError::Storage(_) | LedgerError::Unreachable(_) | LedgerError::Closed,
         )

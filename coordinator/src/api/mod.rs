@@ -1,9 +1,13 @@
 //! The services: decode, one call inwards, encode.
 
+pub mod accounting;
 pub mod admission;
+pub mod audit_log;
+pub mod caller;
 pub mod client_service;
 pub mod error;
 pub mod held_stream;
+pub mod quota;
 pub mod security;
 pub mod worker_service;
 
@@ -11,6 +15,7 @@ use crate::config::Rules;
 use crate::coordinator::{Coordinator, CoordinatorError};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{ChunkId, Epoch, LeaseId, WorkerId};
+use accounting::Accounting;
 use bytes::Bytes;
 use cognate_continuation::work::StageId;
 use cognate_protocol::error::ProtocolError;
@@ -39,6 +44,8 @@ pub struct Context {
     pub shared_memory: v1::SharedMemory,
     /// Streams of results that are open.
     pub streams: HeldStreams,
+    /// Who used how much, and where it is written who did what.
+    pub accounting: Accounting,
     /// Workers that get no work, and why.
     refused: Mutex<HashMap<WorkerId, String>>,
 }
@@ -50,6 +57,7 @@ impl Context {
         rules: Rules,
         stopping: CancellationToken,
         shared_memory: v1::SharedMemory,
+        accounting: Accounting,
     ) -> Self {
         Self {
             coordinator,
@@ -57,6 +65,7 @@ impl Context {
             rules,
             stopping,
             shared_memory,
+            accounting,
             refused: Mutex::default(),
         }
     }

@@ -1,6 +1,10 @@
 //! Security: who may call what. Tokens by role, compared in constant time; TLS.
 
-use cognate_worker::transport::connect::{CredentialError, Role, read_tokens};
+use super::audit_log::{AuditLog, Entry};
+use super::caller::Caller;
+use super::visible;
+use crate::ledger::identity::{Credential, Tenant};
+use cognate_worker::transport::tokens::{CredentialError, Limits, Role, read_tokens};
 use futures::future::BoxFuture;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -20,6 +24,8 @@ pub struct Security {
     pub tokens: Option<Tokens>,
     /// The own certificate, and whose certificates are wanted.
     pub tls: Option<Tls>,
+    /// Where it is written who did what.
+    pub audit: AuditLog,
 }
 
 impl Security {
@@ -79,8 +85,31 @@ pub struct Tokens {
     file: PathBuf,
 }
 
-/// What a token opens (`None`: everything), and its hash.
-type HashedToken = (Option<Role>, blake3::Hash);
+/// A token, without the token.
+struct HashedToken {
+    /// What it opens; `None`: everything.
+    role: Option<Role>,
+    hash: blake3::Hash,
+    name: Option<String>,
+    tenant: Option<Tenant>,
+    limits: Limits,
+}
+
+impl HashedToken {
+    /// Who has it, calling from there.
+    fn holder(&self, peer: String) -> Caller {
+        // Some digits of a hash of the hash: it tells tokens apart, and nothing about them.
+        let digits = blake3::hash(self.hash.as_bytes()).to_hex();
+        let credential = format!("token-{}", &digits[..16]);
+        Caller {
+            name: self.name.clone().unwrap_or_else(|| credential.clone()),
+            credential: Credential(credential),
+            tenant: self.tenant.clone(),
+            limits: self.limits,
+            peer,
+        }
+    }
+}
 
 impl std::fmt::Debug for Tokens {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -110,26 +139,28 @@ impl Tokens {
         self.held.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether a token opens what needs this role (`None`: any).
-    fn open(&self, token: &str, wanted: Option<Role>) -> bool {
+    /// Who has a token, if it opens what needs this role (`None`: any).
+    fn open(&self, token: &str, wanted: Option<Role>, peer: &str) -> Option<Caller> {
         let shown = blake3::hash(token.as_bytes());
-        let mut opens = false;
+        let mut holder = None;
         // All of them are compared, so that the time says nothing about which one fits.
-        for (role, hash) in self.held().iter() {
-            let fits = match (role, wanted) {
-                (Some(role), Some(wanted)) => *role == wanted,
+        for held in self.held().iter() {
+            let fits = match (held.role, wanted) {
+                (Some(role), Some(wanted)) => role == wanted,
                 _ => true,
             };
-            opens |= fits & (*hash == shown);
+            if fits & (held.hash == shown) {
+                holder = Some(held.holder(peer.to_owned()));
+            }
         }
-        opens
+        holder
     }
 
-    /// Why a call is refused; `None`: it is not.
-    fn refusal(&self, path: &str, headers: &http::HeaderMap) -> Option<Status> {
+    /// Who calls from there, or why the call is refused.
+    fn caller(&self, path: &str, headers: &http::HeaderMap, peer: &str) -> Result<Caller, Status> {
         let wanted = match path.split('/').nth(1).unwrap_or_default() {
             // Probes have no tokens, and learn only that it is alive.
-            "grpc.health.v1.Health" => return None,
+            "grpc.health.v1.Health" => return Ok(Caller::untold("nobody", peer)),
             "cognate.v1.WorkerApi" => Some(Role::Worker),
             "cognate.v1.ClientApi" => Some(Role::Client),
             _ => None,
@@ -139,30 +170,36 @@ impl Tokens {
             .and_then(|value| value.to_str().ok())
             .and_then(|value| value.strip_prefix("Bearer "))
         else {
-            return Some(Status::unauthenticated(
+            return Err(Status::unauthenticated(
                 "this coordinator asks for a token (--token-file)",
             ));
         };
-        if self.open(token, wanted) {
-            None
-        } else if self.open(token, None) {
-            let role = wanted.map_or("caller", Role::name);
-            Some(Status::permission_denied(format!(
-                "the token is not a {role}'s"
-            )))
-        } else {
-            Some(Status::unauthenticated(
-                "the token is none of this coordinator's",
-            ))
+        if let Some(caller) = self.open(token, wanted, peer) {
+            return Ok(caller);
         }
+        Err(match self.open(token, None, peer) {
+            Some(_) => {
+                let role = wanted.map_or("caller", Role::name);
+                Status::permission_denied(format!("the token is not a {role}'s"))
+            }
+            None => Status::unauthenticated("the token is none of this coordinator's"),
+        })
     }
 }
 
 fn hashed(file: &Path) -> Result<Vec<HashedToken>, CredentialError> {
-    let tokens = read_tokens(file)?.into_iter();
-    Ok(tokens
-        .map(|(role, token)| (role, blake3::hash(token.as_bytes())))
-        .collect())
+    let lines = read_tokens(file)?.into_iter();
+    let hashed = lines.map(|line| {
+        let tenant = line.tenant.map(Tenant::new).transpose();
+        Ok(HashedToken {
+            role: line.role,
+            hash: blake3::hash(line.token.as_bytes()),
+            name: line.name,
+            tenant: tenant.map_err(|error| CredentialError::of(file, error))?,
+            limits: line.limits,
+        })
+    });
+    hashed.collect()
 }
 
 /// Says that others than the owner can read the tokens.
@@ -185,7 +222,20 @@ fn peer<B>(request: &http::Request<B>) -> String {
     let secret = info.get::<TlsConnectInfo<TcpConnectInfo>>();
     let secret = secret.and_then(|info| info.get_ref().remote_addr());
     let address = plain.or(secret);
-    address.map_or_else(|| "unknown".to_owned(), |address| address.to_string())
+    address.map_or_else(|| "this host".to_owned(), |address| address.to_string())
+}
+
+/// By what a caller without a token is known: its certificate, or that this machine let it in.
+fn untold<B>(request: &http::Request<B>, peer: &str) -> Caller {
+    let info = request.extensions().get::<TlsConnectInfo<TcpConnectInfo>>();
+    let certificates = info.and_then(TlsConnectInfo::peer_certs);
+    match certificates.as_ref().and_then(|chain| chain.first()) {
+        Some(own) => {
+            let digits = blake3::hash(own).to_hex();
+            Caller::untold(&format!("certificate-{}", &digits[..16]), peer)
+        }
+        None => Caller::untold("local", peer),
+    }
 }
 
 /// Whoever shows a wrong token waits so long for the answer: guessing takes time, and mistakes do not.
@@ -193,14 +243,20 @@ const WRONG_TOKEN: Duration = Duration::from_millis(500);
 
 /// Stands before all services of a listener.
 #[derive(Clone, Debug)]
-pub struct Guard(pub Option<Tokens>);
+pub struct Guard {
+    /// The tokens that open something; `None`: nobody is asked.
+    pub tokens: Option<Tokens>,
+    /// Where it is written who was refused.
+    pub audit: AuditLog,
+}
 
 impl<S> Layer<S> for Guard {
     type Service = Guarded<S>;
 
     fn layer(&self, inner: S) -> Guarded<S> {
         Guarded {
-            tokens: self.0.clone(),
+            tokens: self.tokens.clone(),
+            audit: self.audit.clone(),
             inner,
         }
     }
@@ -210,6 +266,7 @@ impl<S> Layer<S> for Guard {
 #[derive(Clone, Debug)]
 pub struct Guarded<S> {
     tokens: Option<Tokens>,
+    audit: AuditLog,
     inner: S,
 }
 
@@ -227,24 +284,35 @@ where
         self.inner.poll_ready(cx)
     }
 
-    fn call(&mut self, request: http::Request<B>) -> Self::Future {
-        let tokens = self.tokens.as_ref();
-        match tokens.and_then(|t| t.refusal(request.uri().path(), request.headers())) {
-            Some(status) => {
-                let path = request.uri().path();
-                tracing::warn!(
-                    peer = peer(&request),
-                    path,
-                    why = status.message(),
-                    "a call is refused"
-                );
+    fn call(&mut self, mut request: http::Request<B>) -> Self::Future {
+        let peer = peer(&request);
+        let caller = match &self.tokens {
+            Some(tokens) => tokens.caller(request.uri().path(), request.headers(), &peer),
+            None => Ok(untold(&request, &peer)),
+        };
+        match caller {
+            Err(status) => {
+                let path = visible(request.uri().path());
+                let why = status.message();
+                tracing::warn!(peer, path, why, "a call is refused");
+                let entry = Entry {
+                    call: &path,
+                    job: None,
+                    code: status.code(),
+                    why: Some(why),
+                };
+                let stranger = Caller::untold("unknown", peer);
+                self.audit.record(&stranger, entry);
                 let refusal = async move {
                     tokio::time::sleep(WRONG_TOKEN).await;
                     Ok(status.into_http::<Body>())
                 };
                 futures::future::Either::Left(Box::pin(refusal))
             }
-            None => futures::future::Either::Right(self.inner.call(request)),
+            Ok(caller) => {
+                request.extensions_mut().insert(caller);
+                futures::future::Either::Right(self.inner.call(request))
+            }
         }
     }
 }
@@ -255,7 +323,13 @@ mod tests {
     use tonic::Code;
 
     fn tokens() -> Tokens {
-        let hash = |role, token: &str| (role, blake3::hash(token.as_bytes()));
+        let hash = |role, token: &str| HashedToken {
+            role,
+            hash: blake3::hash(token.as_bytes()),
+            name: None,
+            tenant: None,
+            limits: Limits::default(),
+        };
         let held = vec![
             hash(Some(Role::Client), "client-0123456789"),
             hash(Some(Role::Worker), "worker-0123456789"),
@@ -274,7 +348,7 @@ mod tests {
         std::fs::write(&file, "client client-0123456789\n").unwrap();
         let tokens = Tokens::read(&file).unwrap();
         let guard = tokens.clone();
-        let opens = |token: &str| guard.open(token, Some(Role::Client));
+        let opens = |token: &str| guard.open(token, Some(Role::Client), "here").is_some();
         assert!(opens("client-0123456789") && !opens("client-9876543210"));
         std::fs::write(&file, "client client-9876543210\n").unwrap();
         tokens.read_again().unwrap();
@@ -291,7 +365,8 @@ mod tests {
             if let Some(header) = header {
                 headers.insert("authorization", header.parse().unwrap());
             }
-            let refusal = tokens().refusal(path, &headers).map(|status| status.code());
+            let caller = tokens().caller(path, &headers, "here");
+            let refusal = caller.err().map(|status| status.code());
             assert_eq!(refusal, expected, "{path} {header:?}");
         };
         let (client, worker) = ("/cognate.v1.ClientApi/Submit", "/cognate.v1.WorkerApi/Pull");

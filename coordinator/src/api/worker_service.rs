@@ -1,11 +1,12 @@
 //! gRPC for workers: decode, one call inwards, encode.
 
+use super::caller::Caller;
 use super::error::ApiError;
 use super::{Answers, Context, duration_ms, guarded, lease_id, pieces, visible};
 use crate::coordinator::{Coordinator, CoordinatorError, Pull, Report};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
-use crate::ledger::identity::{LeaseId, RequestId, Speaker, WorkerId};
+use crate::ledger::identity::{Credential, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{Completion, GiveBack, Lease, Renewal, WorkerSeen};
 use cognate_continuation::work::StageId;
 use cognate_numeric::NUMERICS_REVISION;
@@ -45,7 +46,11 @@ fn speaker(identity: Option<v1::WorkerIdentity>) -> Result<Speaker, ApiError> {
 }
 
 /// A question for chunks, or why this worker gets none.
-fn pull(m: v1::PullRequest, longest: Duration) -> Result<(Pull, Option<String>), ApiError> {
+fn pull(
+    m: v1::PullRequest,
+    credential: Credential,
+    longest: Duration,
+) -> Result<(Pull, Option<String>), ApiError> {
     let Speaker { worker, session } = speaker(m.identity)?;
     let machine = m.machine.ok_or_else(|| ProtocolError::missing("machine"))?;
     for (field, text) in [
@@ -69,6 +74,7 @@ fn pull(m: v1::PullRequest, longest: Duration) -> Result<(Pull, Option<String>),
             host: visible(&machine.host),
             transport: visible(&machine.transport),
             draining: false,
+            credential,
         },
         slots: match refusal {
             None => m.free_slots.min(SLOTS),
@@ -182,7 +188,8 @@ impl WorkerApi for WorkerService {
         let Context {
             rules, stopping, ..
         } = &*self.context;
-        let (pull, refusal) = pull(request.into_inner(), rules.long_poll)?;
+        let credential = Caller::of(&request).credential;
+        let (pull, refusal) = pull(request.into_inner(), credential, rules.long_poll)?;
         if let Some(refused) = refusal {
             let worker = pull.worker.worker.clone();
             tracing::warn!(%worker, refused, "a worker gets no work");
@@ -206,12 +213,15 @@ impl WorkerApi for WorkerService {
         if stopping.is_cancelled() {
             return Ok(draining());
         }
+        let worker = pull.worker.worker.clone();
         let (context, question) = (self.context.clone(), pull);
         let pulled = guarded(async move { Ok(context.coordinator.pull(question).await?) });
         let leases = tokio::select! {
             leases = pulled => match leases {
-                Err(ApiError::Coordinator(CoordinatorError::Ledger(LedgerError::Evicted(worker)))) => {
-                    let refused = LedgerError::Evicted(worker.clone()).to_string();
+                Err(ApiError::Coordinator(CoordinatorError::Ledger(
+                    error @ (LedgerError::Evicted(_) | LedgerError::NameTaken(_)),
+                ))) => {
+                    let refused = error.to_string();
                     tracing::error!(%worker, refused, "a worker gets no work");
                     self.context.refuse(worker, &refused);
                     return Ok(Response::new(v1::PullResponse {

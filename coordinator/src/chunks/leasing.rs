@@ -29,9 +29,13 @@ pub struct Policy {
     pub split_into: u64,
     /// A job has at most this many chunks with workers. Default 20,000.
     pub in_flight_limit: u32,
-    /// So many of a hundred chunks are accepted only once two workers found the same. Default 0;
-    /// each costs the work of all of them that much again.
+    /// So many of a hundred chunks are accepted only once two workers found the same; a worker that is alone
+    /// is believed. Default 1, which costs a hundredth of the work again: of a worker that
+    /// computes wrongly every hundredth chunk shows it, and what it alone found is done again.
     pub audit_percent: u32,
+    /// Chunks are cut so small that about so many of a hundred paths are tracked again at most, however often
+    /// workers are lost. Default 1; 0: chunks are as large as `sizing` says.
+    pub rework_percent: u32,
     /// Of a stage of more paths than these only the ends are held in memory that matter to others (see
     /// `solutions::streamed`). Default 100,000, which take about 100 MB.
     pub held_paths: u64,
@@ -59,7 +63,8 @@ impl Default for Policy {
             suspicion_limit: 3,
             split_into: 8,
             in_flight_limit: 20_000,
-            audit_percent: 0,
+            audit_percent: 1,
+            rework_percent: 1,
             held_paths: 100_000,
             counting_operations: PLANNING_OPERATIONS,
             conduct: ConductRules::default(),

@@ -67,12 +67,15 @@ impl EndCheck {
         })
     }
 
-    /// What is wrong with the first of these results that cannot be right; `None` where all may be.
-    pub fn doubt(&self, results: &[ItemResult]) -> Option<String> {
-        let mut paths = results.iter().filter_map(ItemResult::path);
-        paths.find_map(|path| {
+    /// The first of these results that cannot be right; `None` where all may be.
+    pub fn doubt(&self, results: &[ItemResult]) -> Option<Doubt> {
+        results.iter().enumerate().find_map(|(place, result)| {
+            let path = result.path()?;
             let why = self.doubt_of(path)?;
-            Some(format!("path {}: {why}", path.origin.0))
+            Some(Doubt {
+                place,
+                why: format!("path {}: {why}", path.origin.0),
+            })
         })
     }
 
@@ -172,6 +175,15 @@ impl EndCheck {
     }
 }
 
+/// A result that cannot be right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Doubt {
+    /// Its place among the results.
+    pub place: usize,
+    /// What is wrong with it.
+    pub why: String,
+}
+
 /// What is done at one node of the expressions, by the places of its operands.
 #[derive(Clone, Copy, Debug)]
 enum Operation {
@@ -253,7 +265,7 @@ mod tests {
             let check = EndCheck::of(&system, &stage).unwrap();
             let prepared = PreparedWork::new(&system, &stage, &|_| None).unwrap();
             let results = prepared.run(0..prepared.items(), 8);
-            assert_eq!(check.doubt(&results), None);
+            assert!(check.doubt(&results).is_none());
             let (mut found, mut regular) = (0, 0);
             for (k, result) in results.iter().enumerate() {
                 let ItemResult::Track(path) = result else {
@@ -274,7 +286,7 @@ mod tests {
                 found += u32::from(doubt.is_some());
                 wrong.endpoint = Coordinates::Double(end[1..].to_vec());
                 let doubt = check.doubt(&[ItemResult::Track(wrong)]);
-                assert!(doubt.unwrap().contains("coordinates"));
+                assert!(doubt.unwrap().why.contains("coordinates"));
             }
             assert!(
                 regular > 0 && found * 10 >= regular * 9,

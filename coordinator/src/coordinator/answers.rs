@@ -4,7 +4,7 @@ use super::recorded::Recorded;
 use super::{Coordinator, CoordinatorError, job_row};
 use crate::jobs::planning::{Planned, STATE};
 use crate::jobs::progress::JobProgress;
-use crate::ledger::identity::JobId;
+use crate::ledger::identity::{JobId, Tenant};
 use crate::ledger::rows::{ChunkState, JobRow, JobState, StageRow, WorkerRow};
 use crate::results::answer::StoredAnswer;
 use cognate_algorithms::AnyAlgorithm;
@@ -26,6 +26,9 @@ use tokio::time::{sleep, timeout};
 const SHORTEST: Duration = Duration::from_millis(50);
 /// ... and at least this often: another coordinator may have changed something.
 const LONGEST: Duration = Duration::from_secs(1);
+
+/// Where only one tenant's jobs are listed they are looked for among so many of the latest.
+const LATEST_JOBS: u32 = 10_000;
 
 /// One path of a finished job.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,10 +114,21 @@ impl Coordinator {
         receiver
     }
 
-    /// The latest jobs, newest first, each with its stages.
-    pub async fn jobs(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, CoordinatorError> {
+    /// The latest jobs, of all tenants or of one, newest first, each with its stages.
+    pub async fn jobs(
+        &self,
+        limit: u32,
+        tenant: Option<&Tenant>,
+    ) -> Result<Vec<(JobRow, Vec<StageRow>)>, CoordinatorError> {
         let mut jobs = Vec::new();
-        for row in self.ledger.jobs(limit).await?.into_iter().rev() {
+        // Those of one tenant may stand behind many of others.
+        let looked = match tenant {
+            Some(_) => limit.max(LATEST_JOBS),
+            None => limit,
+        };
+        let rows = self.ledger.jobs(looked).await?.into_iter().rev();
+        let own = rows.filter(|row| tenant.is_none_or(|tenant| row.asked.tenant == *tenant));
+        for row in own.take(limit as usize) {
             let stages = self.ledger.stages(row.job).await?;
             jobs.push((row, stages));
         }

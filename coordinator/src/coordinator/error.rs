@@ -3,7 +3,7 @@
 use crate::jobs::planning::{PlanningError, UnreadablePlan};
 use crate::jobs::planning_queue::PlanningRefusal;
 use crate::ledger::LedgerError;
-use crate::ledger::identity::JobId;
+use crate::ledger::identity::{JobId, Tenant};
 use crate::ledger::rows::JobState;
 use crate::results::store::StoreError;
 use cognate_continuation::work::StageId;
@@ -20,6 +20,22 @@ pub enum CoordinatorError {
     /// The problem is not planned now, or not at all.
     #[error(transparent)]
     NotPlanned(#[from] PlanningRefusal),
+    /// The tenant has as much as it may.
+    #[error(
+        "tenant {tenant} may have {limit} {what}: it has {used}, and this asks for {asked} more"
+    )]
+    OverLimit {
+        /// On whose behalf the job was to run.
+        tenant: Tenant,
+        /// What is limited.
+        what: &'static str,
+        /// The most that there may be.
+        limit: u64,
+        /// What there is.
+        used: u64,
+        /// What this job would add.
+        asked: u64,
+    },
     /// There is no such stage.
     #[error("job {job} has no stage {}", stage.0)]
     UnknownStage {

@@ -4,6 +4,7 @@
 //! client and any worker, and drives the jobs that no other drives.
 
 mod answers;
+mod arbitration;
 mod changes;
 mod components;
 pub mod conduct;
@@ -17,8 +18,11 @@ mod run;
 #[cfg(test)]
 pub(crate) mod simulation;
 mod standing_still;
+pub mod submission_limits;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_audits;
 #[cfg(test)]
 mod tests_of_counting;
 #[cfg(test)]
@@ -27,6 +31,8 @@ mod tests_of_decomposition;
 mod tests_of_limits;
 #[cfg(test)]
 mod tests_of_removal;
+#[cfg(test)]
+mod tests_of_storage;
 mod work;
 
 pub use answers::{ClassifiedPath, Explanation};
@@ -36,7 +42,9 @@ pub use work::{Pull, Report};
 
 use self::changes::Changes;
 use self::conduct::Conduct;
+use self::submission_limits::SubmissionLimits;
 use crate::chunks::leasing::Policy;
+use crate::chunks::losses::Losses;
 use crate::chunks::plausibility::EndCheck;
 use crate::health::Health;
 use crate::jobs::planning::{Planned, STATE, plan_job};
@@ -44,6 +52,7 @@ use crate::jobs::planning_queue::PlanningQueue;
 use crate::ledger::identity::{CoordinatorId, JobId, RequestId, Tenant, WorkerId};
 use crate::ledger::rows::{Cancelled, JobState, NewJob, WorkerSeen};
 use crate::ledger::{Ledger, LedgerError};
+use crate::measures::ChunkEvents;
 use crate::recent::Recent;
 use crate::results::store::Store;
 use bytes::Bytes;
@@ -94,6 +103,14 @@ pub struct Coordinator {
     conduct: Conduct,
     /// Whether ledger and store can be used.
     health: Health,
+    /// When workers were lost with chunks in hand.
+    losses: Mutex<Losses>,
+    /// What happened to chunks.
+    events: ChunkEvents,
+    /// Submissions under limits are written one at a time.
+    limited: tokio::sync::Mutex<()>,
+    /// Items are done by the coordinator itself one at a time.
+    arbitration: tokio::sync::Mutex<()>,
     /// Problems that are read and planned, or wait for it.
     planning: PlanningQueue,
     /// Something may be leased that could not be before.
@@ -132,6 +149,10 @@ impl Coordinator {
             who,
             conduct: Conduct::new(policy.conduct),
             health: Health::default(),
+            losses: Mutex::default(),
+            events: ChunkEvents::default(),
+            limited: tokio::sync::Mutex::default(),
+            arbitration: tokio::sync::Mutex::default(),
             planning: PlanningQueue::new(policy.planning),
             policy,
             work: Notify::new(),
@@ -169,6 +190,11 @@ impl Coordinator {
         &self.health
     }
 
+    /// What happened to chunks here.
+    pub fn events(&self) -> &ChunkEvents {
+        &self.events
+    }
+
     /// Looks whether ledger and store can be used.
     pub async fn examine(&self) {
         self.health.examine(&*self.ledger, &self.store).await;
@@ -191,6 +217,21 @@ impl Coordinator {
         tenant: Tenant,
         problem: NewProblem,
     ) -> Result<Accepted, CoordinatorError> {
+        let unlimited = SubmissionLimits::default();
+        self.submit_within(request, tenant, problem, unlimited)
+            .await
+    }
+
+    /// The same, where a tenant may have only so much.
+    pub async fn submit_within(
+        &self,
+        request: RequestId,
+        tenant: Tenant,
+        problem: NewProblem,
+        limits: SubmissionLimits,
+    ) -> Result<Accepted, CoordinatorError> {
+        // Once before what takes long, and once when it is known how many paths there are.
+        self.check_limits(&request, &tenant, limits, 0).await?;
         let NewProblem {
             system,
             options,
@@ -247,6 +288,13 @@ impl Coordinator {
             options: planned.to_bytes(),
             numerics_revision: NUMERICS_REVISION,
         };
+        let _turn = match limits.is_any() {
+            true => Some(self.limited.lock().await),
+            false => None,
+        };
+        let paths = planned.paths.unwrap_or(0);
+        self.check_limits(&request, &job.tenant, limits, paths)
+            .await?;
         let submitted = self.ledger.submit(request, job).await?;
         if submitted.is_new {
             tracing::info!(job = %submitted.job, name = planned.name, start = planned.start,

@@ -7,6 +7,7 @@ use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::JobId;
 use crate::ledger::rows::JobEnd;
+use crate::measures::ChunkEvent;
 use futures::FutureExt;
 use std::any::Any;
 use std::collections::BTreeSet;
@@ -45,6 +46,7 @@ impl Coordinator {
         let tasks = TaskTracker::new();
         tasks.spawn(Arc::clone(&self).run_examination(stop.clone()));
         tasks.spawn(Arc::clone(&self).run_removal(stop.clone()));
+        tasks.spawn(Arc::clone(&self).run_arbitration(stop.clone()));
         let expiry = tasks.track_future(Arc::clone(&self).run_expiry(stop.clone()));
         let stewards = Arc::clone(&self).run_stewards(stop.clone(), tasks.clone());
         tokio::join!(expiry, stewards);
@@ -133,6 +135,7 @@ impl Coordinator {
     /// Takes back the leases that have expired by now.
     pub async fn expire(&self) -> Result<(), CoordinatorError> {
         let expired = self.ledger.expire().await?;
+        self.events.count(ChunkEvent::Expired, expired.len());
         let mut silent = BTreeSet::new();
         for gone in &expired {
             tracing::warn!(lease = %gone.lease, worker = %gone.worker,
@@ -141,6 +144,10 @@ impl Coordinator {
             self.wake_steward(gone.lease.chunk.job);
             self.changed(gone.lease.chunk.job);
         }
+        self.losses
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .add(silent.len(), Instant::now());
         for worker in &silent {
             self.failed(worker, "it fell silent");
         }

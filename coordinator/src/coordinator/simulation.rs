@@ -13,7 +13,7 @@ use crate::ledger::identity::*;
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
-use crate::results::store::Store;
+use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::prepared_work::PreparedWork;
@@ -58,6 +58,7 @@ pub fn policy(most_items: u64) -> Policy {
             ..Sizing::default()
         },
         // Here workers fail by chance, and time is simulated.
+        rework_percent: 0,
         conduct: ConductRules {
             failures: u32::MAX,
             ..ConductRules::default()
@@ -142,12 +143,23 @@ pub fn problem_of(text: &str, max_steps: Option<u32>) -> NewProblem {
 /// A worker process.
 struct Worker {
     name: String,
+    /// By what it is known; its name where nothing else was given to it.
+    credential: String,
     pulls: u64,
     width: usize,
     leases: Vec<Lease>,
     said: Option<Report>,
-    /// Its arithmetic is broken.
-    wrong: bool,
+    /// How its arithmetic is broken, if it is.
+    wrong: Option<Fault>,
+}
+
+/// How a worker computes wrongly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The first end of a chunk is another point.
+    Gross,
+    /// The first end of a chunk differs in its last bit.
+    LastBit,
 }
 
 /// A coordinator process with the job that it drives.
@@ -173,6 +185,10 @@ pub struct Cluster {
     pub heard_again: u64,
     /// Reports of late workers, after the second one's was accepted.
     pub overtaken: u64,
+    /// Storage loses what was written: workers do not always find what they need.
+    pub lossy: bool,
+    /// Votes that a coordinator struck.
+    pub struck: usize,
     /// One of the workers computes wrongly.
     broken: bool,
     /// Items whose results were accepted, by stage.
@@ -205,6 +221,8 @@ impl Cluster {
             tracked: 0,
             heard_again: 0,
             overtaken: 0,
+            lossy: false,
+            struck: 0,
             broken: false,
             accepted: BTreeSet::new(),
             processes: Vec::new(),
@@ -244,18 +262,27 @@ impl Cluster {
         let width = [1, 8, 16][self.dice.roll(3) as usize];
         self.workers.push(Worker {
             name: format!("w{}", self.born),
+            credential: format!("w{}", self.born),
             pulls: 0,
             width,
             leases: Vec::new(),
             said: None,
-            wrong: false,
+            wrong: None,
         });
     }
 
     /// Breaks a worker's arithmetic.
-    pub fn break_worker(&mut self, worker: usize) {
-        self.workers[worker].wrong = true;
+    pub fn break_worker(&mut self, worker: usize, how: Fault) {
+        self.workers[worker].wrong = Some(how);
         self.broken = true;
+    }
+
+    /// Starts a worker again under another name, with this credential.
+    pub fn give_credential(&mut self, worker: usize, credential: &str) {
+        self.born += 1;
+        let given = &mut self.workers[worker];
+        given.name = format!("w{}", self.born);
+        given.credential = credential.to_owned();
     }
 
     fn kill_worker(&mut self, worker: usize) {
@@ -265,7 +292,7 @@ impl Cluster {
 
     /// Submits the problem until it is accepted.
     pub async fn submit(&mut self, problem: &NewProblem) {
-        for _ in 0..9 {
+        for _ in 0..99 {
             let request = RequestId::new("request").expect("a good name");
             let tenant = Tenant::new("tenant").expect("a good name");
             let submitted = self.processes[0]
@@ -372,6 +399,7 @@ impl Cluster {
             host: "here".into(),
             transport: "none".into(),
             draining: false,
+            credential: Credential(asking.credential.clone()),
         };
         let pull = Pull {
             worker: says,
@@ -390,25 +418,22 @@ impl Cluster {
         }
     }
 
-    async fn prepare(&self, lease: &Lease) -> Arc<PreparedWork> {
+    /// What a worker needs for a lease; an error where storage does not have it now.
+    async fn prepare(&self, lease: &Lease) -> Result<Arc<PreparedWork>, StoreError> {
         let known = {
             let prepared = self.prepared.lock().expect("nobody panics here");
             prepared.get(&lease.definition).cloned()
         };
         if let Some(stage) = known {
-            return stage;
+            return Ok(stage);
         }
-        let stage = self
-            .store
-            .stage(lease.definition)
-            .await
-            .expect("it is there");
+        let stage = self.store.stage(lease.definition).await?;
         let digest = stage.system.unwrap_or(lease.problem);
-        let system: System = self.store.problem(digest).await.expect("it is there");
+        let system: System = self.store.problem(digest).await?;
         let points = match stage.start_points.object() {
             None => None,
             Some(object) => {
-                let bytes = self.store.get(object).await.expect("it is there");
+                let bytes = self.store.get(object).await?;
                 Some(Arc::new(
                     StoredPoints::from_bytes(&bytes).expect("they are points"),
                 ))
@@ -419,7 +444,7 @@ impl Cluster {
         let prepared = Arc::new(prepared);
         let mut known = self.prepared.lock().expect("nobody panics here");
         known.insert(lease.definition, Arc::clone(&prepared));
-        prepared
+        Ok(prepared)
     }
 
     /// A worker tracks its oldest chunk and reports it.
@@ -428,12 +453,21 @@ impl Cluster {
             return;
         }
         let lease = self.workers[worker].leases.remove(0);
-        let prepared = self.prepare(&lease).await;
-        let stage = self
-            .store
-            .stage(lease.definition)
-            .await
-            .expect("it is there");
+        let needed = match self.prepare(&lease).await {
+            Ok(prepared) => {
+                let stage = self.store.stage(lease.definition).await;
+                stage.map(|stage| (prepared, stage))
+            }
+            Err(error) => Err(error),
+        };
+        let (prepared, stage) = match needed {
+            Ok(needed) => needed,
+            Err(error) => {
+                assert!(self.lossy, "it is there: {error}");
+                self.workers[worker].leases.push(lease);
+                return self.give_back(process, worker).await;
+            }
+        };
         let items = lease.items.first..lease.items.last;
         if items
             .clone()
@@ -445,8 +479,18 @@ impl Cluster {
         }
         self.tracked += lease.items.len();
         let mut results = prepared.run(items, self.workers[worker].width);
-        if self.workers[worker].wrong {
-            let wrong = vec![Complex64::new(1.0, 2.0); 3];
+        if let Some(fault) = self.workers[worker].wrong {
+            let mut wrong = vec![Complex64::new(1.0, 2.0); 3];
+            if fault == Fault::LastBit {
+                wrong = match &results[0] {
+                    ItemResult::Track(path) => path.endpoint.to_double().to_vec(),
+                    ItemResult::LocalDimension(point) => point.point.clone(),
+                    other => panic!("a solve of this simulation has no {other:?}"),
+                };
+                if let Some(first) = wrong.first_mut() {
+                    first.re = f64::from_bits(first.re.to_bits() ^ 1);
+                }
+            }
             match &mut results[0] {
                 ItemResult::Track(path) => path.endpoint = Coordinates::Double(wrong),
                 ItemResult::LocalDimension(point) => point.point = wrong,
@@ -473,10 +517,12 @@ impl Cluster {
             match sent.await {
                 Ok(Completion::HashDiffers) => assert!(self.broken, "paths are pure"),
                 // What a broken worker found may be done again.
-                Ok(Completion::Accepted) if self.broken => {}
+                Ok(Completion::Accepted) if self.broken || self.lossy => {}
                 Ok(Completion::Accepted) => self.count(&report),
                 // The row was written, and the reply was lost.
-                Ok(Completion::AlreadyAccepted) if !self.broken && !self.is_counted(&report) => {
+                Ok(Completion::AlreadyAccepted)
+                    if !self.broken && !self.lossy && !self.is_counted(&report) =>
+                {
                     self.heard_again += 1;
                     self.count(&report);
                 }
@@ -526,10 +572,16 @@ impl Cluster {
         }
     }
 
-    /// A coordinator takes back what has expired.
+    /// A coordinator takes back what has expired, and settles disputes.
     pub async fn expire(&mut self, process: usize) {
-        if self.processes[process].coordinator.expire().await.is_err() {
-            self.crash(process);
+        let coordinator = Arc::clone(&self.processes[process].coordinator);
+        match coordinator.expire().await {
+            Ok(()) => {}
+            Err(_) => return self.crash(process),
+        }
+        match coordinator.settle_disputes().await {
+            Ok(struck) => self.struck += struck,
+            Err(_) => self.crash(process),
         }
     }
 

@@ -162,7 +162,7 @@ async fn a_worker_that_computes_wrongly_is_outvoted() {
         for _ in 0..4 {
             cluster.start_worker();
         }
-        cluster.break_worker(seed as usize % 4);
+        cluster.break_worker(seed as usize % 4, Fault::Gross);
         for worker in 0..4 {
             cluster.pull(0, worker).await;
         }
@@ -579,11 +579,14 @@ async fn what_cannot_be_solved_is_refused_at_the_door() {
         reused,
         CoordinatorError::Ledger(LedgerError::RequestReused(_))
     ));
-    assert_eq!(cluster.coordinator(0).jobs(10).await.unwrap().len(), 1);
+    assert_eq!(
+        cluster.coordinator(0).jobs(10, None).await.unwrap().len(),
+        1
+    );
 }
 
 async fn coordinator_is_empty(coordinator: &Coordinator) -> bool {
-    coordinator.jobs(10).await.unwrap().is_empty()
+    coordinator.jobs(10, None).await.unwrap().is_empty()
 }
 
 /// Results that no worker can have reported: a broken invariant, so that the algorithm panics.

@@ -1,13 +1,16 @@
 //! What workers call: pull, renew, report, give back.
 
+use super::arbitration::Verdict;
 use super::{Coordinator, CoordinatorError, job_row};
 use crate::chunks::audit::is_audited;
-use crate::chunks::plausibility::EndCheck;
+use crate::chunks::plausibility::{Doubt, EndCheck};
 use crate::ledger::identity::{ItemRange, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{
-    Completion, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing, WorkerSeen,
+    Completion, Confirmation, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing,
+    WorkerSeen,
 };
-use crate::ledger::rules::MOST_MICROS;
+use crate::ledger::rules::{HEARD_MS, MOST_MICROS};
+use crate::measures::ChunkEvent;
 use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, Work};
@@ -65,6 +68,8 @@ impl Coordinator {
             return Ok(Vec::new());
         }
         loop {
+            // Whoever waits here is here: others may be waiting for its word on a chunk.
+            self.note(&pull.worker).await?;
             if self.health.is_troubled() {
                 // What is leased now could be neither fetched nor kept.
                 if Instant::now() >= deadline {
@@ -79,6 +84,7 @@ impl Coordinator {
             woken.as_mut().enable();
             let leases = self.ledger.lease(request.clone()).await?;
             if !leases.is_empty() {
+                self.events.count(ChunkEvent::Leased, leases.len());
                 for lease in &leases {
                     if lease.speculative {
                         tracing::info!(lease = %lease.lease, worker = %pull.worker.worker,
@@ -103,13 +109,37 @@ impl Coordinator {
             threads,
             ..
         } = &pull.worker;
-        self.policy.request(
+        let mut request = self.policy.request(
             worker.clone(),
             pull.request.clone(),
             *numerics_revision,
             *threads,
             pull.slots,
-        )
+        );
+        let sizing = &mut request.sizing;
+        sizing.longest_ms = self.longest_ms().max(sizing.shortest_ms);
+        request
+    }
+
+    /// The most work in a chunk, in milliseconds: less where workers are lost often.
+    fn longest_ms(&self) -> u64 {
+        let workers = {
+            let seen = self
+                .seen
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            let latest = seen.values().map(|(_, when)| *when).max().unwrap_or(0);
+            let here = seen.values().filter(|(says, when)| {
+                !says.draining && latest.saturating_sub(*when) < HEARD_MS as i64
+            });
+            here.count() as u64
+        };
+        let mut losses = self
+            .losses
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let (percent, longest_ms) = (self.policy.rework_percent, self.policy.sizing.longest_ms);
+        losses.longest_ms(Instant::now(), workers, percent, longest_ms)
     }
 
     /// Remembers that a worker was here; not every time.
@@ -129,6 +159,21 @@ impl Coordinator {
             }
         }
         Ok(self.ledger.seen(says.clone()).await?)
+    }
+
+    /// A worker that works and asks for nothing is here, too.
+    async fn note_again(&self, worker: &WorkerId) -> Result<(), CoordinatorError> {
+        let said = {
+            let seen = self
+                .seen
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            seen.get(worker).map(|(says, _)| says.clone())
+        };
+        match said {
+            Some(says) => self.note(&says).await,
+            None => Ok(()),
+        }
     }
 
     /// A worker says that it leaves.
@@ -153,6 +198,7 @@ impl Coordinator {
         leases: &[LeaseId],
         by: &Speaker,
     ) -> Result<Vec<Renewal>, CoordinatorError> {
+        self.note_again(&by.worker).await?;
         let mut renewals = vec![Renewal::Lost; leases.len()];
         let (mut places, mut own) = (Vec::new(), Vec::new());
         for (place, &lease) in leases.iter().enumerate() {
@@ -216,6 +262,7 @@ impl Coordinator {
             }
         }
         checked.map_err(|what| {
+            self.events.count(ChunkEvent::Refused, 1);
             self.failed(&by.worker, &what);
             CoordinatorError::Report {
                 lease: lease.to_string(),
@@ -223,6 +270,10 @@ impl Coordinator {
             }
         })?;
         let (results, doubt) = self.doubt(lease, &stage, results).await?;
+        let verdict = match &doubt {
+            Some(doubt) => self.verdict(lease, &stage, doubt, &results).await,
+            None => Verdict::Right,
+        };
         let object = match self
             .store
             .put_results(lease, items, results, cpu_micros)
@@ -243,31 +294,33 @@ impl Coordinator {
             Err(error) => return Err(error.into()),
         };
         let address = object.address.clone();
-        let needs_another = is_audited(lease.chunk, self.policy.audit_percent) || doubt.is_some();
-        if let Some(why) = &doubt {
+        let is_right = verdict == Verdict::Right;
+        let is_audited = is_audited(lease.chunk, self.policy.audit_percent);
+        if let Some(Doubt { why, .. }) = doubt.as_ref().filter(|_| !is_right) {
+            self.events.count(ChunkEvent::Doubted, 1);
             tracing::warn!(%lease, worker = %by.worker, why,
                 "results that cannot be right: the chunk is done again");
             self.failed(&by.worker, why);
         }
-        let completion = if needs_another {
-            self.ledger.confirm(lease, object).await?
-        } else {
-            self.ledger.complete(lease, object).await?
-        };
+        let completion = self
+            .write_down(lease, &by, object, verdict, is_audited)
+            .await?;
         match completion {
             Completion::Unconfirmed => {
+                self.events.count(ChunkEvent::Unconfirmed, 1);
                 tracing::debug!(%lease, "a chunk is done again on another worker, to compare");
                 self.work.notify_waiters();
                 self.changed(lease.chunk.job);
             }
             Completion::Accepted => {
-                if doubt.is_none() {
+                self.events.count(ChunkEvent::Accepted, 1);
+                if is_right {
                     self.conduct.did_well(&by.worker);
                 }
                 tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
                 self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
-                if needs_another {
+                if is_audited || !is_right {
                     // Whoever was outvoted has lost chunks.
                     self.work.notify_waiters();
                 }
@@ -277,6 +330,7 @@ impl Coordinator {
                 self.remove_useless(lease, &address).await;
             }
             Completion::Stale => {
+                self.events.count(ChunkEvent::Stale, 1);
                 tracing::debug!(%lease, "the lease ended while its report was kept");
                 self.remove_useless(lease, &address).await;
             }
@@ -291,13 +345,36 @@ impl Coordinator {
         Ok(completion)
     }
 
-    /// The results, and what is wrong with the first end of a path that solves no equations.
+    /// The row of results that are kept: accepted, or compared with what others find.
+    async fn write_down(
+        &self,
+        lease: LeaseId,
+        by: &Speaker,
+        object: ResultObject,
+        verdict: Verdict,
+        is_audited: bool,
+    ) -> Result<Completion, CoordinatorError> {
+        let why = match (verdict, is_audited) {
+            (Verdict::Right, false) => return Ok(self.ledger.complete(lease, object).await?),
+            (Verdict::Right, true) => Confirmation::Audit,
+            (Verdict::Undecided, _) => Confirmation::Doubt,
+            (Verdict::Wrong, _) => Confirmation::Wrong,
+        };
+        if verdict == Verdict::Wrong {
+            tracing::error!(%lease, worker = %by.worker,
+                "a worker computes wrongly: it gets no more work");
+            self.events.count(ChunkEvent::Struck, 1);
+        }
+        Ok(self.ledger.confirm(lease, object, why).await?)
+    }
+
+    /// The results, and the first end of a path among them that solves no equations.
     async fn doubt(
         &self,
         lease: LeaseId,
         stage: &Stage,
         results: Vec<ItemResult>,
-    ) -> Result<(Vec<ItemResult>, Option<String>), CoordinatorError> {
+    ) -> Result<(Vec<ItemResult>, Option<Doubt>), CoordinatorError> {
         let LeaseId { chunk, .. } = lease;
         let key = (chunk.job, chunk.stage);
         let check = match self.end_checks.get(&key) {
@@ -335,7 +412,8 @@ impl Coordinator {
         object: ResultObject,
     ) -> Result<Completion, CoordinatorError> {
         let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
-            self.ledger.confirm(lease, object).await?
+            let confirmed = self.ledger.confirm(lease, object, Confirmation::Audit);
+            confirmed.await?
         } else {
             self.ledger.complete(lease, object).await?
         };
@@ -365,6 +443,7 @@ impl Coordinator {
                 continue;
             }
             if let GiveBack::Failed { reason } = &why {
+                self.events.count(ChunkEvent::Failed, 1);
                 tracing::warn!(%lease, worker = %by.worker, reason, "a worker could not do a chunk");
                 self.failed(&by.worker, reason);
             }

@@ -69,6 +69,10 @@ macro_rules! ledger_conformance {
             case!(jobs_that_only_wait_want_no_look);
             case!(a_job_that_has_ended_is_deleted_once);
             case!(what_is_deleted_stays_deleted);
+            case!(votes_are_told_apart_by_credential);
+            case!(who_is_alone_is_not_audited);
+            case!(a_lost_vote_accuses_nobody);
+            case!(a_name_belongs_to_its_credential);
 
             #[test]
             fn it_agrees_with_the_oracle() {
@@ -86,9 +90,11 @@ macro_rules! ledger_conformance {
 }
 pub(crate) use ledger_conformance;
 
+mod credentials;
 mod removal;
 mod speculation;
 mod suspicion;
+pub use self::credentials::*;
 pub use self::removal::*;
 pub use self::speculation::*;
 pub use self::suspicion::*;
@@ -312,24 +318,39 @@ pub async fn an_audited_chunk_needs_two_that_agree(ledger: &dyn Ledger, _: &Manu
     let (job, _) = running(ledger, "r", "t", 8, 8).await;
     let first = take(ledger, "v", "1").await;
     let found = result(first.items, 1, 5);
-    let done = ledger.confirm(first.lease, found.clone()).await.unwrap();
+    let done = ledger
+        .confirm(first.lease, found.clone(), Confirmation::Doubt)
+        .await
+        .unwrap();
     assert_eq!(done, Completion::Unconfirmed);
     assert_eq!(counts(ledger, job).await, (8, 0, 0, 0));
     // The answer was lost; and it does not change its mind.
-    let again = ledger.confirm(first.lease, found.clone()).await.unwrap();
+    let again = ledger
+        .confirm(first.lease, found.clone(), Confirmation::Doubt)
+        .await
+        .unwrap();
     assert_eq!(again, Completion::Unconfirmed);
-    let other = ledger.confirm(first.lease, result(first.items, 2, 5)).await;
+    let other = ledger
+        .confirm(first.lease, result(first.items, 2, 5), Confirmation::Doubt)
+        .await;
     assert_eq!(other.unwrap(), Completion::HashDiffers);
     // Not the same worker again, while there are others.
     assert!(ledger.lease(wants("v", "2", 1)).await.unwrap().is_empty());
     let second = take(ledger, "w", "1").await;
     assert_eq!(second.items, first.items, "the whole chunk");
     let done = ledger
-        .confirm(second.lease, result(second.items, 2, 5))
+        .confirm(
+            second.lease,
+            result(second.items, 2, 5),
+            Confirmation::Doubt,
+        )
         .await;
     assert_eq!(done.unwrap(), Completion::Unconfirmed);
     let third = take(ledger, "u", "1").await;
-    let done = ledger.confirm(third.lease, found).await.unwrap();
+    let done = ledger
+        .confirm(third.lease, found, Confirmation::Doubt)
+        .await
+        .unwrap();
     assert_eq!(done, Completion::Accepted);
     assert_eq!(counts(ledger, job).await, (0, 0, 8, 0));
     let rows = ledger.workers(9).await.unwrap();
@@ -353,14 +374,21 @@ pub async fn what_an_outvoted_worker_found_is_done_again(ledger: &dyn Ledger, _:
     let audited = take(ledger, "w", "2").await;
     let held = take(ledger, "w", "3").await;
     let done = ledger
-        .confirm(audited.lease, result(audited.items, 7, 5))
+        .confirm(
+            audited.lease,
+            result(audited.items, 7, 5),
+            Confirmation::Doubt,
+        )
         .await;
     assert_eq!(done.unwrap(), Completion::Unconfirmed);
     for who in ["u", "v"] {
         let lease = take(ledger, who, "1").await;
         assert_eq!(lease.items, audited.items);
         let found = result(lease.items, 1, 5);
-        ledger.confirm(lease.lease, found).await.unwrap();
+        ledger
+            .confirm(lease.lease, found, Confirmation::Doubt)
+            .await
+            .unwrap();
     }
     assert_eq!(counts(ledger, job).await, (24, 0, 8, 0));
     let late = ledger.complete(held.lease, result(held.items, 7, 5)).await;
@@ -395,7 +423,10 @@ pub async fn a_job_that_used_an_outvoted_worker_fails(ledger: &dyn Ledger, _: &M
     for (who, hash) in [("w", 7), ("u", 1), ("v", 1)] {
         let lease = take(ledger, who, "2").await;
         let found = result(lease.items, hash, 5);
-        ledger.confirm(lease.lease, found).await.unwrap();
+        ledger
+            .confirm(lease.lease, found, Confirmation::Doubt)
+            .await
+            .unwrap();
     }
     let row = ledger.job(job).await.unwrap().unwrap();
     assert_eq!(row.state, JobState::Failed);
@@ -601,6 +632,7 @@ pub fn seen(who: &str, threads: u32) -> WorkerSeen {
         host: "here".into(),
         transport: "grpc".into(),
         draining: false,
+        credential: Credential(format!("token-of-{who}")),
     }
 }
 

@@ -216,8 +216,15 @@ impl Ledger for FaultyLedger {
         &self,
         lease: LeaseId,
         result: ResultObject,
+        why: Confirmation,
     ) -> Result<Completion, LedgerError> {
-        self.write(self.inner.confirm(lease, result)).await
+        self.write(self.inner.confirm(lease, result, why)).await
+    }
+    async fn disputes(&self) -> Result<Vec<Dispute>, LedgerError> {
+        self.inner.disputes().await
+    }
+    async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError> {
+        self.write(self.inner.strike(vote, why)).await
     }
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         self.write(self.inner.give_back(lease, why)).await

@@ -95,6 +95,17 @@ name!(
     "tenant"
 );
 
+/// By what a caller is known, whatever names it gives itself: its token, its certificate, or that it is this
+/// machine's user. Empty where nobody remembers.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Credential(pub String);
+
+impl fmt::Display for Credential {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
 impl RequestId {
     /// Of a worker's question `SESSION.NUMBER` the session, with its dot: one life of the process.
     pub fn session(&self) -> &str {

@@ -11,7 +11,7 @@ use self::tables::{Job, Stage, Tables, Worker};
 use super::clock::{Clock, LedgerTime};
 use super::identity::*;
 use super::rows::*;
-use super::rules::{check_size, first_virtual_time, make_up};
+use super::rules::{HEARD_MS, check_size, first_virtual_time, make_up};
 use super::{Ledger, LedgerError};
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
@@ -596,14 +596,25 @@ impl Ledger for MemoryLedger {
         &self,
         lease: LeaseId,
         result: ResultObject,
+        why: Confirmation,
     ) -> Result<Completion, LedgerError> {
         check_size("the CPU time of a chunk", result.cpu_micros)?;
         let now = self.clock.now();
-        let vote = self.tables().confirm(now, lease, &result);
+        let vote = self.tables().confirm(now, lease, &result, why);
         match vote {
             Some(completion) => Ok(completion),
             None => self.complete(lease, result).await,
         }
+    }
+
+    async fn disputes(&self) -> Result<Vec<Dispute>, LedgerError> {
+        Ok(self.tables().disputes())
+    }
+
+    async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError> {
+        let now = self.clock.now();
+        self.tables().strike(now, vote, why);
+        Ok(())
     }
 
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
@@ -661,6 +672,13 @@ impl Ledger for MemoryLedger {
     async fn seen(&self, says: WorkerSeen) -> Result<(), LedgerError> {
         let now = self.clock.now();
         let mut tables = self.tables();
+        if let Some(known) = tables.workers.get(&says.worker)
+            && known.says.credential != Credential::default()
+            && known.says.credential != says.credential
+            && now.since_ms(known.last_seen) < HEARD_MS
+        {
+            return Err(LedgerError::NameTaken(says.worker));
+        }
         let worker = tables
             .workers
             .entry(says.worker.clone())

@@ -45,9 +45,16 @@ pub enum LedgerError {
     /// A stage was opened twice, or closed while some of its chunks were not finished.
     #[error("stage {1:?} of job {0} cannot be opened or closed now")]
     StageOrder(JobId, StageId),
-    /// The worker was outvoted at an audit.
-    #[error("worker {0} computed wrongly: two others found something else for a chunk of it")]
+    /// The worker was outvoted at an audit, or the coordinator found something else itself.
+    #[error(
+        "worker {0} computed wrongly: others, or the coordinator itself, found something else for a chunk of it"
+    )]
     Evicted(WorkerId),
+    /// Two workers that are known by different credentials have one name.
+    #[error(
+        "worker {0} is here already, with another token or certificate: give this one another name"
+    )]
+    NameTaken(WorkerId),
     /// A number is too large for the ledger.
     #[error("{0} is larger than the ledger can hold")]
     TooLarge(&'static str),
@@ -189,21 +196,29 @@ pub trait Ledger: Send + Sync {
         lease: LeaseId,
         result: ResultObject,
     ) -> Result<Completion, LedgerError>;
-    /// The same for a chunk that is audited: it is accepted once two executions agree, and ready
-    /// again until then, for another worker where there is one. Whoever found something else is
+    /// The same for a chunk that is done twice: it is accepted once two executions agree, and ready
+    /// again until then, for a worker of another credential where there is one, else for another
+    /// worker where there is one. Whoever found something else is
     /// evicted: it gets no chunk any more, its leases end, and what it alone has found in open
     /// stages is ready again. A job that has used such a result in a closed stage fails.
     async fn confirm(
         &self,
         lease: LeaseId,
         result: ResultObject,
+        why: Confirmation,
     ) -> Result<Completion, LedgerError>;
+    /// Chunks of unfinished jobs for which executions found different things, some of them.
+    async fn disputes(&self) -> Result<Vec<Dispute>, LedgerError>;
+    /// Takes the vote away that was cast under this lease, if it is there; whoever was wrong is evicted, as in
+    /// [`Self::confirm`].
+    async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError>;
     /// Returns a leased chunk to ready. A lease that has ended is left alone.
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError>;
     /// Returns chunks whose lease has ended when this is called to ready, each with one more
     /// suspicion. What was renewed before is not among them, however long the writing takes.
     async fn expire(&self) -> Result<Vec<Expired>, LedgerError>;
-    /// Remembers that a worker was here.
+    /// Remembers that a worker was here. A name belongs to the credential that it came with, while its worker
+    /// is here.
     async fn seen(&self, worker: WorkerSeen) -> Result<(), LedgerError>;
     /// All workers that were ever seen, the latest `limit` of them.
     async fn workers(&self, limit: u32) -> Result<Vec<WorkerRow>, LedgerError>;

@@ -537,6 +537,8 @@ pub struct WorkerSeen {
     pub transport: String,
     /// True when it takes no more chunks.
     pub draining: bool,
+    /// By what it is known, whatever its name: not its own word.
+    pub credential: Credential,
 }
 
 /// A worker's row.
@@ -578,6 +580,37 @@ pub struct Vote {
     pub epoch: Epoch,
     /// Worker that executed the chunk.
     pub worker: WorkerId,
+    /// Credential of the worker at that time.
+    pub credential: Credential,
     /// Hash of the results' records.
     pub hash: Digest,
+}
+
+/// Why a chunk is done twice before it is accepted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Confirmation {
+    /// To compare. A worker that is alone is believed.
+    Audit,
+    /// The results cannot be right: the chunk is done again also where only the same worker is there.
+    Doubt,
+    /// The results are wrong, whoever else finds the same: the worker is evicted, and the chunk is done again.
+    Wrong,
+}
+
+/// A chunk for which executions found different things.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dispute {
+    /// The chunk; it is ready, and leased only to workers whose credential has no vote.
+    pub chunk: ChunkRow,
+    /// What each execution found.
+    pub votes: Vec<Vote>,
+}
+
+/// Why a vote is taken away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strike {
+    /// It is wrong: its worker is evicted.
+    Wrong,
+    /// The object that it speaks of is lost, which is no fault of the worker's.
+    Lost,
 }

@@ -6,6 +6,9 @@ use super::rows::StageRow;
 
 /// Workers that were heard within this time count for the sizes of chunks.
 pub const PRESENT_MS: u64 = 60_000;
+/// Workers that were heard within this time may be waited for with an audit: a worker that waits or works is heard
+/// every 5 s, and a killed one holds a job up no longer than its lease and this.
+pub const HEARD_MS: u64 = 15_000;
 /// No chunk is charged more, in microseconds of CPU: a hundred days. Sums stay far from overflow.
 pub const MOST_MICROS: u64 = 8_640_000_000_000;
 /// What an item is taken to cost, in microseconds of CPU, while nothing is measured.

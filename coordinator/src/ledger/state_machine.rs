@@ -83,6 +83,10 @@ enum Call {
         lease: usize,
         failed: bool,
     },
+    Strike {
+        lease: usize,
+        wrong: bool,
+    },
     Expire,
     Seen {
         who: u8,
@@ -131,6 +135,7 @@ fn call() -> impl Strategy<Value = Call> {
             }
         ),
         2 => (lease, any::<bool>()).prop_map(|(lease, failed)| Call::GiveBack { lease, failed }),
+        1 => (0..1000usize, 0..6u8).prop_map(|(lease, dice)| Call::Strike { lease, wrong: dice == 0 }),
         3 => Just(Call::Expire),
         2 => (0..3u8, 1..9u32).prop_map(|(who, threads)| Call::Seen { who, threads }),
         4 => (0..900u64).prop_map(|ms| Call::Wait { ms }),
@@ -294,8 +299,13 @@ impl Pair<'_> {
                 let mut items = lease.items;
                 items.last += u64::from(other_items);
                 let object = result(items, hash, cpu_micros);
+                let why = match cpu_micros % 9 {
+                    0 => Confirmation::Wrong,
+                    1..5 => Confirmation::Audit,
+                    _ => Confirmation::Doubt,
+                };
                 let done = if audited {
-                    both!(self, confirm(lease.lease, object.clone()))
+                    both!(self, confirm(lease.lease, object.clone(), why))
                 } else {
                     both!(self, complete(lease.lease, object.clone()))
                 };
@@ -313,6 +323,20 @@ impl Pair<'_> {
                         assert!(new, "item {item} was accepted twice");
                     }
                 }
+            }
+            Call::Strike { lease, wrong } => {
+                let Some(lease) = leases.iter().rev().nth(lease % 12) else {
+                    return;
+                };
+                let why = match wrong {
+                    true => Strike::Wrong,
+                    false => Strike::Lost,
+                };
+                both!(self, disputes());
+                both!(self, strike(lease.lease, why));
+                let workers = both!(self, workers(10)).unwrap_or_default();
+                *evicted = workers.iter().filter(|worker| worker.evicted).count();
+                *accepted = self.accepted().await;
             }
             Call::GiveBack { lease, failed } => {
                 let Some(lease) = leases.iter().rev().nth(lease % 12) else {

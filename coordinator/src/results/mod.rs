@@ -1,6 +1,8 @@
 //! Results: write-once objects, and what the summary of a finished job says of the job.
 
 pub mod answer;
+#[cfg(test)]
+pub(crate) mod faulty_storage;
 pub mod finished;
 pub mod references;
 pub mod retention;

@@ -8,6 +8,7 @@
 use super::trash::{JOBS, OBJECTS};
 use crate::ledger::identity::{ItemRange, LeaseId, digest_of};
 use crate::ledger::rows::{Outcomes, ResultObject};
+use crate::measures::StorageMeasures;
 use bytes::Bytes;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
@@ -26,6 +27,7 @@ use serde::de::DeserializeOwned;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Why an object was not written or read.
 #[derive(Debug, thiserror::Error)]
@@ -111,6 +113,7 @@ pub struct Store {
     pub(super) objects: Arc<dyn ObjectStore>,
     /// The folder with the marker; `None` in memory.
     pub(super) folder: Option<PathBuf>,
+    measures: Arc<StorageMeasures>,
 }
 
 impl Store {
@@ -135,6 +138,7 @@ impl Store {
         Ok(Self {
             objects: Arc::new(local),
             folder: Some(folder.to_owned()),
+            measures: Arc::default(),
         })
     }
 
@@ -192,11 +196,27 @@ impl Store {
         })
     }
 
+    /// Counts its operations in these.
+    pub fn measured(self, measures: Arc<StorageMeasures>) -> Self {
+        Self { measures, ..self }
+    }
+
+    /// Objects somewhere else.
+    #[cfg(test)]
+    pub(crate) fn on(objects: Arc<dyn ObjectStore>) -> Self {
+        Self {
+            objects,
+            folder: None,
+            measures: Arc::default(),
+        }
+    }
+
     /// Objects that live as long as this process.
     pub fn in_memory() -> Self {
         Self {
             objects: Arc::new(InMemory::new()),
             folder: None,
+            measures: Arc::default(),
         }
     }
 
@@ -205,7 +225,11 @@ impl Store {
         // It would make the folder where another is to be mounted.
         self.is_there()?;
         let mode = PutOptions::from(PutMode::Create);
-        match self.objects.put_opts(address, bytes.into(), mode).await {
+        let begin = Instant::now();
+        let put = self.objects.put_opts(address, bytes.into(), mode).await;
+        let failed = matches!(&put, Err(error) if !is_there_already(error));
+        self.measures.writes.observe(begin.elapsed(), failed);
+        match put {
             Ok(_) => Ok(true),
             Err(object_store::Error::AlreadyExists { .. }) => Ok(false),
             Err(error) => Err(error.into()),
@@ -213,8 +237,14 @@ impl Store {
     }
 
     async fn read(&self, address: &Address) -> Result<Bytes, StoreError> {
-        match self.objects.get(address).await {
-            Ok(found) => Ok(found.bytes().await?),
+        let begin = Instant::now();
+        let got = match self.objects.get(address).await {
+            Ok(found) => found.bytes().await,
+            Err(error) => Err(error),
+        };
+        self.measures.reads.observe(begin.elapsed(), got.is_err());
+        match got {
+            Ok(bytes) => Ok(bytes),
             Err(object_store::Error::NotFound { .. }) => {
                 self.is_there()?;
                 self.read_trashed(address).await
@@ -364,6 +394,17 @@ impl Store {
         (object, bytes)
     }
 
+    /// The object that results of a lease were kept as which were not accepted (yet).
+    pub fn voted_results(lease: LeaseId, items: ItemRange, hash: Digest) -> ResultObject {
+        ResultObject {
+            items,
+            address: results_address(lease, items).to_string(),
+            hash,
+            cpu_micros: 0,
+            outcomes: Outcomes::default(),
+        }
+    }
+
     /// Removes the results of a lease that the ledger does not name and never will.
     pub async fn remove_results(&self, address: &str) -> Result<(), StoreError> {
         let address =
@@ -401,6 +442,10 @@ impl Store {
         })
         .await
     }
+}
+
+fn is_there_already(error: &object_store::Error) -> bool {
+    matches!(error, object_store::Error::AlreadyExists { .. })
 }
 
 /// Runs long work where it holds nobody up.

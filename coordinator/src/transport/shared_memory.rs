@@ -3,6 +3,7 @@
 //! Behind it are the same services as behind the sockets. A thread sleeps until a
 //! worker rings; each call is a task, called off when its worker no longer waits.
 
+use crate::api::accounting::Accounted;
 use crate::api::admission::Admitting;
 use bytes::Bytes;
 use cognate_protocol::v1;
@@ -41,8 +42,8 @@ const LEAVE: Duration = Duration::from_secs(1);
 /// Responses that exist at a time: memory is reserved for so many of the largest size.
 const RESPONSES: usize = 64;
 
-/// What answers calls: the services behind the limits of calls.
-type Services = Admitting<Routes>;
+/// What answers calls: the services behind the limits of calls, counted.
+type Services = Accounted<Admitting<Routes>>;
 type Active = ActiveRequest<Ipc, [u8], (), [u8], ()>;
 
 /// A listener in shared memory that is open.

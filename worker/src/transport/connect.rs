@@ -3,7 +3,9 @@
 //! Workers and clients share it.
 
 use super::address::Address;
-use std::path::{Path, PathBuf};
+pub use super::tokens::{CredentialError, Role};
+use super::tokens::{TokenLine, read_tokens};
+use std::path::PathBuf;
 use std::time::Duration;
 use tonic::metadata::{Ascii, MetadataValue};
 use tonic::service::Interceptor;
@@ -16,83 +18,6 @@ const CONNECT: Duration = Duration::from_secs(5);
 const KEEP_ALIVE: Duration = Duration::from_secs(10);
 /// And is given up if it does not answer within this.
 const KEEP_ALIVE_ANSWER: Duration = Duration::from_secs(10);
-
-/// What a caller may do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// Submit jobs and read results.
-    Client,
-    /// Track paths.
-    Worker,
-}
-
-impl Role {
-    /// As it is written in a token file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Client => "client",
-            Self::Worker => "worker",
-        }
-    }
-}
-
-/// Fewest characters of a token: what is shorter can be guessed.
-pub const SHORTEST_TOKEN: usize = 16;
-
-/// A file that holds no token, or not what it should.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: {what}")]
-pub struct CredentialError {
-    /// Path of the file, or name of the option.
-    pub file: String,
-    /// What is wrong with the file or option.
-    pub what: String,
-}
-
-fn wrong(file: &Path, what: impl ToString) -> CredentialError {
-    CredentialError {
-        file: file.display().to_string(),
-        what: what.to_string(),
-    }
-}
-
-/// The tokens of a file with their roles, and the line of each that is malformed refused.
-///
-/// A line is `client TOKEN`, `worker TOKEN`, or a token alone, which is good for both; what
-/// follows `#` is a comment.
-pub fn read_tokens(file: &Path) -> Result<Vec<(Option<Role>, String)>, CredentialError> {
-    let text = std::fs::read_to_string(file).map_err(|error| wrong(file, error))?;
-    let mut tokens = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let line = line.split('#').next().unwrap_or_default();
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let (role, token) = match *words {
-            [] => continue,
-            [token] => (None, token),
-            ["client", token] => (Some(Role::Client), token),
-            ["worker", token] => (Some(Role::Worker), token),
-            _ => {
-                let what = format!(
-                    "line {}: expected `client TOKEN`, `worker TOKEN` or a token",
-                    number + 1
-                );
-                return Err(wrong(file, what));
-            }
-        };
-        if token.len() < SHORTEST_TOKEN || !token.bytes().all(|b| b.is_ascii_graphic()) {
-            let what = format!(
-                "line {}: a token has at least {SHORTEST_TOKEN} visible ASCII characters",
-                number + 1
-            );
-            return Err(wrong(file, what));
-        }
-        tokens.push((role, token.to_owned()));
-    }
-    if tokens.is_empty() {
-        return Err(wrong(file, "it holds no token"));
-    }
-    Ok(tokens)
-}
 
 /// The files that a caller names.
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
@@ -131,21 +56,23 @@ pub struct Credentials {
 impl Credentials {
     /// Reads the files that are named.
     pub fn read(files: &CredentialFiles, role: Role) -> Result<Self, CredentialError> {
-        let pem = |file: &PathBuf| std::fs::read(file).map_err(|error| wrong(file, error));
+        let pem =
+            |file: &PathBuf| std::fs::read(file).map_err(|error| CredentialError::of(file, error));
         let bearer = match &files.token_file {
             None => None,
             Some(file) => {
                 let tokens = read_tokens(file)?;
-                let fits = |(of, _): &&(Option<Role>, String)| of.is_none_or(|of| of == role);
-                let Some((_, token)) = tokens.iter().find(fits) else {
-                    return Err(wrong(
+                let fits = |line: &&TokenLine| line.role.is_none_or(|of| of == role);
+                let Some(TokenLine { token, .. }) = tokens.iter().find(fits) else {
+                    return Err(CredentialError::of(
                         file,
                         format!("it holds no token of a {}", role.name()),
                     ));
                 };
                 let header = format!("Bearer {token}");
-                let mut header: MetadataValue<Ascii> =
-                    header.parse().map_err(|error| wrong(file, error))?;
+                let mut header: MetadataValue<Ascii> = header
+                    .parse()
+                    .map_err(|error| CredentialError::of(file, error))?;
                 header.set_sensitive(true);
                 Some(header)
             }
@@ -279,8 +206,8 @@ mod tests {
         let (_folder, path) =
             file("# of the laboratory\nclient 0123456789abcdef\nworker fedcba9876543210 # new\n\n");
         let tokens = read_tokens(&path).unwrap();
-        assert_eq!(tokens[0], (Some(Role::Client), "0123456789abcdef".into()));
-        assert_eq!(tokens[1].0, Some(Role::Worker));
+        assert_eq!(tokens[0].token, "0123456789abcdef");
+        assert_eq!(tokens[1].role, Some(Role::Worker));
         let files = CredentialFiles {
             token_file: Some(path),
             ..CredentialFiles::default()

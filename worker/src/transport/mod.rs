@@ -8,6 +8,7 @@ pub mod connect;
 pub mod grpc;
 pub mod route;
 pub mod shared_memory;
+pub mod tokens;
 
 use crate::chunk_runner::TrackedChunk;
 use crate::machine::Machine;

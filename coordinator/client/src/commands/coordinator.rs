@@ -10,7 +10,7 @@ use cognate_worker::transport::connect::CredentialError;
 
 /// Serves until somebody wants it to end; then lets running calls finish.
 pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
-    cognate_worker::log::to_standard_error();
+    cognate_worker::log::to_standard_error(a.log_format);
     // Ledger, results and sockets are this user's: whoever reads them knows all problems and answers.
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let config = config(a)?;
@@ -95,6 +95,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
         config.rules.policy.retention.keep_ms = keep.map_err(|e| wrong("--retain-days", &e))?;
     }
     config.metrics = a.metrics.clone().or(file.metrics);
+    config.audit_log = a.audit_log.clone().or(file.audit_log);
     config.insecure = a.insecure || file.insecure.unwrap_or(false);
     Ok(config)
 }

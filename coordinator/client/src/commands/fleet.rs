@@ -11,7 +11,7 @@ use std::time::Duration;
 /// Keeps the fleet until it is interrupted; its workers go on.
 pub async fn run(a: &Arguments) -> Result<Exit, ClientError> {
     let Arguments::Slurm(a) = a;
-    cognate_worker::log::to_standard_error();
+    cognate_worker::log::to_standard_error(cognate_worker::log::LogFormat::Text);
     let fleet = fleet(a)?;
     if a.once {
         fleet.once().await?;

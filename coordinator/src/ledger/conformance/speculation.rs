@@ -155,19 +155,29 @@ pub async fn what_is_suspected_or_not_late_is_not_given_twice(
 pub async fn an_audit_ends_both_leases(ledger: &dyn Ledger, clock: &ManualClock) {
     let (job, first) = late(ledger, clock).await;
     let second = take(ledger, "w", "w.3").await;
-    let voted = ledger.confirm(first.lease, found(&first, 1)).await.unwrap();
+    let voted = ledger
+        .confirm(first.lease, found(&first, 1), Confirmation::Doubt)
+        .await
+        .unwrap();
     assert_eq!(voted, Completion::Unconfirmed);
     assert_eq!(counts(ledger, job).await, (8, 0, 8, 0));
-    let over = ledger.confirm(second.lease, found(&second, 1)).await;
+    let over = ledger
+        .confirm(second.lease, found(&second, 1), Confirmation::Doubt)
+        .await;
     assert_eq!(over.unwrap(), Completion::Stale);
-    let again = ledger.confirm(first.lease, found(&first, 1)).await;
+    let again = ledger
+        .confirm(first.lease, found(&first, 1), Confirmation::Doubt)
+        .await;
     assert_eq!(again.unwrap(), Completion::Unconfirmed);
     // Another one confirms; it is late, and nobody gets the chunk beside it.
     let third = take(ledger, "u", "u.1").await;
     assert!(!third.speculative);
     clock.advance_ms(30_000);
     assert!(ledger.lease(wants("w", "w.4", 1)).await.unwrap().is_empty());
-    let done = ledger.confirm(third.lease, found(&third, 1)).await.unwrap();
+    let done = ledger
+        .confirm(third.lease, found(&third, 1), Confirmation::Doubt)
+        .await
+        .unwrap();
     assert_eq!(done, Completion::Accepted);
     assert_eq!(counts(ledger, job).await, (0, 0, 16, 0));
 }

@@ -1,15 +1,18 @@
 //! Audits in memory: votes on chunks, and what becomes of a worker that was outvoted.
 
-use super::tables::{Chunk, Stage, Tables};
+use super::tables::{Chunk, Stage, Tables, Worker};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
-use crate::ledger::rules::{PRESENT_MS, tainted};
+use crate::ledger::rules::{HEARD_MS, tainted};
 
 impl Chunk {
-    /// Whether this worker has executed the chunk for an audit.
-    pub fn has_vote_of(&self, worker: &WorkerId) -> bool {
+    fn has_vote_of(&self, worker: &WorkerId) -> bool {
         self.votes.iter().any(|vote| vote.worker == *worker)
+    }
+
+    fn has_vote_by(&self, credential: &Credential) -> bool {
+        self.votes.iter().any(|vote| vote.credential == *credential)
     }
 }
 
@@ -54,15 +57,66 @@ impl Tables {
         self.workers.get(worker).is_some_and(|known| known.evicted)
     }
 
-    /// Whether no other worker is here that could confirm what this one finds.
-    pub fn is_only_worker(&self, now: LedgerTime, request: &LeaseRequest) -> bool {
-        !self.workers.values().any(|other| {
-            other.says.worker != request.worker
-                && other.says.numerics_revision == request.numerics_revision
-                && !other.says.draining
-                && !other.evicted
-                && now.since_ms(other.last_seen) < PRESENT_MS
+    /// Workers of this revision that are here.
+    fn here(&self, now: LedgerTime, revision: u32) -> impl Iterator<Item = &Worker> {
+        self.workers.values().filter(move |worker| {
+            worker.says.numerics_revision == revision
+                && !worker.says.draining
+                && !worker.evicted
+                && now.since_ms(worker.last_seen) < HEARD_MS
         })
+    }
+
+    /// Whether no other worker is here that could confirm what this one finds.
+    fn is_only_worker(&self, now: LedgerTime, who: &WorkerId, revision: u32) -> bool {
+        !self
+            .here(now, revision)
+            .any(|other| other.says.worker != *who)
+    }
+
+    /// Whether this worker may vote on a chunk: one of another credential, where it is here; else one of another
+    /// name; else whoever is alone. Where the votes differ only another credential: the coordinator decides
+    /// meanwhile.
+    pub fn may_vote(&self, now: LedgerTime, chunk: &Chunk, request: &LeaseRequest) -> bool {
+        let (who, revision) = (&request.worker, request.numerics_revision);
+        let agree = chunk.votes.len() < 2;
+        if chunk.votes.is_empty() || (agree && self.is_only_worker(now, who, revision)) {
+            return true;
+        }
+        let is_new = |worker: &Worker| !chunk.has_vote_by(&worker.says.credential);
+        let by_credential = self.workers.get(who).is_none_or(is_new);
+        let nobody_else = || agree && !self.here(now, revision).any(is_new);
+        !chunk.has_vote_of(who) && (by_credential || nobody_else())
+    }
+
+    /// Chunks for which executions found different things.
+    pub fn disputes(&self) -> Vec<Dispute> {
+        let going_on = self.jobs.values().filter(|job| !job.row.state.has_ended());
+        let stages = going_on.flat_map(|job| job.stages.values());
+        let ready = stages.flat_map(|s| s.ready.iter().filter_map(|first| s.chunks.get(first)));
+        let disputed = ready.filter(|chunk| chunk.votes.len() >= 2);
+        let dispute = |chunk: &Chunk| Dispute {
+            chunk: chunk.row.clone(),
+            votes: chunk.votes.clone(),
+        };
+        disputed.map(dispute).collect()
+    }
+
+    /// Takes a vote away.
+    pub fn strike(&mut self, now: LedgerTime, vote: LeaseId, why: Strike) {
+        let Some(chunk) = self.chunk(vote.chunk) else {
+            return;
+        };
+        if matches!(chunk.row.state, ChunkState::Accepted { .. }) {
+            return;
+        }
+        let place = chunk.votes.iter().position(|cast| cast.epoch == vote.epoch);
+        let Some(struck) = place.map(|place| chunk.votes.remove(place)) else {
+            return;
+        };
+        if why == Strike::Wrong {
+            self.evict(now, &struck.worker);
+        }
     }
 
     /// One execution of an audited chunk; `None` where it is not the chunk's lease that stands, nor
@@ -72,8 +126,19 @@ impl Tables {
         now: LedgerTime,
         lease: LeaseId,
         result: &ResultObject,
+        why: Confirmation,
     ) -> Option<Completion> {
         let holder = self.holder(lease);
+        let name = holder.as_ref().map(|holder| holder.worker.clone());
+        let known = name.and_then(|name| self.workers.get(&name));
+        let (credential, is_alone) = match known.map(|worker| &worker.says) {
+            Some(says) => {
+                let is_only = self.is_only_worker(now, &says.worker, says.numerics_revision);
+                (says.credential.clone(), is_only)
+            }
+            // It never said what it is: nobody is of its revision.
+            None => (Credential::default(), true),
+        };
         let chunk = self.chunk(lease.chunk)?;
         if let ChunkState::Accepted { .. } = chunk.row.state {
             return None;
@@ -86,10 +151,19 @@ impl Tables {
                 Completion::HashDiffers
             });
         };
+        if why == Confirmation::Wrong {
+            // Its leases end, this one among them.
+            self.evict(now, &holder.worker);
+            return Some(Completion::Unconfirmed);
+        }
+        if why == Confirmation::Audit && chunk.votes.is_empty() && is_alone {
+            return None;
+        }
         let agreed = chunk.votes.iter().any(|vote| vote.hash == result.hash);
         chunk.votes.push(Vote {
             epoch: lease.epoch,
             worker: holder.worker.clone(),
+            credential,
             hash: result.hash,
         });
         if !agreed {

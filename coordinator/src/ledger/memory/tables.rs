@@ -236,7 +236,6 @@ impl Tables {
         if self.is_evicted(&request.worker) {
             return None;
         }
-        let is_only_worker = self.is_only_worker(now, request);
         let turn = |job: &Job| {
             let tenant = self.tenants.get(&job.row.asked.tenant).copied();
             (tenant.unwrap_or(0), job.virtual_time, job.row.number)
@@ -260,7 +259,7 @@ impl Tables {
                     .iter()
                     .filter_map(|first| stage.chunks.get(first))
             })
-            .filter(|chunk| is_only_worker || !chunk.has_vote_of(&request.worker))
+            .filter(|chunk| self.may_vote(now, chunk, request))
             .find(|chunk| {
                 chunk.row.suspicions < request.suspicion_limit && self.may_try(now, chunk, request)
             })

@@ -2,32 +2,55 @@
 //! of one operation of a commit.
 
 use super::decode::*;
-use super::engine::{Connection, query};
+use super::engine::{Connection, Query, Row, query};
 use super::leases::{Found, accept, complete, find, release, release_all};
 use super::speculation::{drop_elder, drop_elders_of_worker};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
-use crate::ledger::rules::{check_size, tainted};
+use crate::ledger::rules::{HEARD_MS, check_size, tainted};
 use std::collections::BTreeSet;
 
+/// Asks for the votes on a chunk.
+pub fn votes_on(chunk: ChunkId) -> Query {
+    query("SELECT * FROM votes WHERE job = ? AND stage = ? AND first = ? ORDER BY epoch")
+        .bind(chunk.job.to_string())
+        .bind(chunk.stage.0)
+        .bind(signed(chunk.first))
+}
+
+/// A vote.
+pub fn vote(row: &Row) -> Result<Vote, LedgerError> {
+    Ok(Vote {
+        epoch: Epoch(number(row, "epoch")?),
+        worker: worker(row)?,
+        credential: Credential(text(row, "credential")?),
+        hash: digest(row, "hash")?,
+    })
+}
+
 async fn votes(c: &mut Connection, chunk: ChunkId) -> Result<Vec<Vote>, LedgerError> {
-    let rows =
-        query("SELECT * FROM votes WHERE job = ? AND stage = ? AND first = ? ORDER BY epoch")
-            .bind(chunk.job.to_string())
-            .bind(chunk.stage.0)
-            .bind(signed(chunk.first))
-            .fetch_all(c)
-            .await?;
-    let vote = |row| {
-        Ok(Vote {
-            epoch: Epoch(number(row, "epoch")?),
-            worker: worker(row)?,
-            hash: digest(row, "hash")?,
-        })
-    };
+    let rows = votes_on(chunk).fetch_all(c).await?;
     rows.iter().map(vote).collect()
+}
+
+/// Whether another worker is here that could confirm what this one found.
+async fn has_other(
+    c: &mut Connection,
+    now: LedgerTime,
+    who: &WorkerId,
+) -> Result<bool, LedgerError> {
+    let other = query(
+        "SELECT 1 AS one FROM workers o JOIN workers m ON m.worker = ?
+         WHERE o.worker <> m.worker AND o.numerics_revision = m.numerics_revision
+           AND o.last_seen > ? AND o.draining = 0 AND o.evicted = 0 LIMIT 1",
+    )
+    .bind(who.as_str())
+    .bind(now.0.saturating_sub_unsigned(HEARD_MS))
+    .fetch_optional(c)
+    .await?;
+    Ok(other.is_some())
 }
 
 /// One execution of an audited chunk.
@@ -36,6 +59,7 @@ pub async fn confirm(
     now: LedgerTime,
     lease: LeaseId,
     result: ResultObject,
+    why: Confirmation,
 ) -> Result<Completion, LedgerError> {
     let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
     let Some(found) = find(c, lease.chunk).await? else {
@@ -54,9 +78,20 @@ pub async fn confirm(
             None => complete(c, now, lease, result).await,
         };
     };
+    if why == Confirmation::Wrong {
+        // Its leases end, this one among them.
+        evict(c, now, &holder.worker).await?;
+        return Ok(Completion::Unconfirmed);
+    }
+    let is_spared = why == Confirmation::Audit && votes.is_empty();
+    if is_spared && !has_other(c, now, &holder.worker).await? {
+        return complete(c, now, lease, result).await;
+    }
     let (job, first) = (lease.chunk.job.to_string(), signed(lease.chunk.first));
     query(
-        "INSERT INTO votes (job, stage, first, epoch, worker, hash) VALUES (?, ?, ?, ?, ?, ?);
+        "INSERT INTO votes (job, stage, first, epoch, worker, hash, credential)
+         VALUES (?, ?, ?, ?, ?, ?,
+                 COALESCE((SELECT credential FROM workers WHERE worker = ?), ''));
          UPDATE chunks SET votes = votes + 1 WHERE job = ? AND stage = ? AND first = ?",
     )
     .bind(&job)
@@ -65,6 +100,7 @@ pub async fn confirm(
     .bind(signed(lease.epoch.0))
     .bind(holder.worker.as_str())
     .bind(result.hash.to_string())
+    .bind(holder.worker.as_str())
     .bind(&job)
     .bind(lease.chunk.stage.0)
     .bind(first)
@@ -90,6 +126,42 @@ pub async fn confirm(
         evict(c, now, &outvoted.worker).await?;
     }
     Ok(Completion::Accepted)
+}
+
+/// Takes a vote away.
+pub async fn strike(
+    c: &mut Connection,
+    now: LedgerTime,
+    vote: LeaseId,
+    why: Strike,
+) -> Result<(), LedgerError> {
+    let votes = votes(c, vote.chunk).await?;
+    let Some(struck) = votes.iter().find(|cast| cast.epoch == vote.epoch) else {
+        return Ok(());
+    };
+    // Of a chunk that was accepted meanwhile the votes say who confirmed whom.
+    let found = find(c, vote.chunk).await?;
+    if found.is_none_or(|found| found.state == "accepted") {
+        return Ok(());
+    }
+    let (job, first) = (vote.chunk.job.to_string(), signed(vote.chunk.first));
+    query(
+        "DELETE FROM votes WHERE job = ? AND stage = ? AND first = ? AND epoch = ?;
+         UPDATE chunks SET votes = votes - 1 WHERE job = ? AND stage = ? AND first = ?",
+    )
+    .bind(&job)
+    .bind(vote.chunk.stage.0)
+    .bind(first)
+    .bind(signed(vote.epoch.0))
+    .bind(&job)
+    .bind(vote.chunk.stage.0)
+    .bind(first)
+    .execute(&mut *c)
+    .await?;
+    match why {
+        Strike::Wrong => evict(c, now, &struck.worker).await,
+        Strike::Lost => Ok(()),
+    }
 }
 
 /// Adds to the virtual time of a job and its tenant.

@@ -26,7 +26,7 @@ pub fn small(row: &Row, column: &str) -> Result<u32, LedgerError> {
     u32::try_from(value).map_err(|_| damaged(format_args!("{column} is {value}")))
 }
 
-fn text(row: &Row, column: &str) -> Result<String, LedgerError> {
+pub fn text(row: &Row, column: &str) -> Result<String, LedgerError> {
     row.try_get(column)
 }
 
@@ -228,6 +228,7 @@ pub fn worker_row(row: &Row) -> Result<WorkerRow, LedgerError> {
             host: text(row, "host")?,
             transport: text(row, "transport")?,
             draining: number(row, "draining")? != 0,
+            credential: Credential(text(row, "credential")?),
         },
         first_seen: time(row, "first_seen")?,
         last_seen: time(row, "last_seen")?,

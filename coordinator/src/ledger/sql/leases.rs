@@ -9,7 +9,7 @@ use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::*;
 use crate::ledger::rows::*;
-use crate::ledger::rules::{PRESENT_MS, check_size, estimate};
+use crate::ledger::rules::{HEARD_MS, PRESENT_MS, check_size, estimate};
 
 /// What a chunk's row says that the operations here need.
 pub struct Found {
@@ -150,7 +150,9 @@ async fn acquit(c: &mut Connection, session: &str) -> Result<(), LedgerError> {
 
 /// Whose turn it is: the tenant's, then the job's least virtual time, then the first chunk; how
 /// many threads all other workers have; how many jobs are running. A suspect is for those that have
-/// been here for a lease's time and have not tried it, where there are some.
+/// been here for a lease's time and have not tried it, where there are some. What was voted on is for
+/// another credential, where it is here; else for another name; else for whoever is alone. Where the
+/// votes differ it is for another credential only: the coordinator decides meanwhile.
 const CHOOSE: &str = "
     SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
            c.epoch AS chunk_epoch, c.alone AS chunk_alone, c.votes AS chunk_votes,
@@ -182,12 +184,26 @@ const CHOOSE: &str = "
                                                 AND a.first = r.first
                                                 AND a.worker = p.worker)))
                       AND (r.votes = 0
-                           OR NOT EXISTS (SELECT 1 FROM votes v WHERE v.job = r.job
-                                          AND v.stage = r.stage AND v.first = r.first
-                                          AND v.worker = ?)
-                           OR NOT EXISTS (SELECT 1 FROM workers o WHERE o.last_seen > ?
-                                          AND o.draining = 0 AND o.evicted = 0
-                                          AND o.numerics_revision = ? AND o.worker <> ?)))
+                           OR (r.votes < 2
+                               AND NOT EXISTS (SELECT 1 FROM workers o WHERE o.last_seen > ?
+                                               AND o.draining = 0 AND o.evicted = 0
+                                               AND o.numerics_revision = ? AND o.worker <> ?))
+                           OR (NOT EXISTS (SELECT 1 FROM votes v WHERE v.job = r.job
+                                           AND v.stage = r.stage AND v.first = r.first
+                                           AND v.worker = ?)
+                               AND (NOT EXISTS (SELECT 1 FROM votes v JOIN workers m
+                                                ON m.worker = ?
+                                                WHERE v.job = r.job AND v.stage = r.stage
+                                                  AND v.first = r.first
+                                                  AND v.credential = m.credential)
+                                    OR (r.votes < 2
+                                        AND NOT EXISTS (SELECT 1 FROM workers p
+                                            WHERE p.last_seen > ? AND p.draining = 0
+                                              AND p.evicted = 0 AND p.numerics_revision = ?
+                                              AND NOT EXISTS (SELECT 1 FROM votes v
+                                                  WHERE v.job = r.job AND v.stage = r.stage
+                                                    AND v.first = r.first
+                                                    AND v.credential = p.credential)))))))
     WHERE j.ended IS NULL AND j.state = 'running' AND j.numerics_revision = ?
       AND j.leased_chunks < ? AND s.ready_chunks > 0
       AND NOT EXISTS (SELECT 1 FROM workers e WHERE e.worker = ? AND e.evicted = 1)
@@ -233,10 +249,13 @@ async fn lease_one(
         .bind(now.0.saturating_sub_unsigned(request.duration_ms))
         .bind(request.numerics_revision)
         .bind(request.worker.as_str())
-        .bind(request.worker.as_str())
-        .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
+        .bind(now.0.saturating_sub_unsigned(HEARD_MS))
         .bind(request.numerics_revision)
         .bind(request.worker.as_str())
+        .bind(request.worker.as_str())
+        .bind(request.worker.as_str())
+        .bind(now.0.saturating_sub_unsigned(HEARD_MS))
+        .bind(request.numerics_revision)
         .bind(request.numerics_revision)
         .bind(request.in_flight_limit)
         .bind(request.worker.as_str())
@@ -631,17 +650,29 @@ pub async fn seen(
     now: LedgerTime,
     says: WorkerSeen,
 ) -> Result<(), LedgerError> {
+    let taken = query(
+        "SELECT 1 AS one FROM workers WHERE worker = ? AND last_seen > ?
+         AND credential <> '' AND credential <> ?",
+    )
+    .bind(says.worker.as_str())
+    .bind(now.0.saturating_sub_unsigned(HEARD_MS))
+    .bind(says.credential.0.as_str())
+    .fetch_optional(&mut *c)
+    .await?;
+    if taken.is_some() {
+        return Err(LedgerError::NameTaken(says.worker));
+    }
     query(
         "INSERT INTO workers (worker, version, numerics_revision, instruction_set, threads,
-                lane_width, host, transport, draining, first_seen, last_seen, items_done,
-                chunks_done)
-         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0, 0)
+                lane_width, host, transport, draining, credential, first_seen, last_seen,
+                items_done, chunks_done)
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0, 0)
          ON CONFLICT (worker) DO UPDATE SET version = excluded.version,
                 numerics_revision = excluded.numerics_revision,
                 instruction_set = excluded.instruction_set, threads = excluded.threads,
                 lane_width = excluded.lane_width, host = excluded.host,
                 transport = excluded.transport, draining = excluded.draining,
-                last_seen = excluded.last_seen",
+                credential = excluded.credential, last_seen = excluded.last_seen",
     )
     .bind(says.worker.as_str())
     .bind(says.version)
@@ -652,6 +683,7 @@ pub async fn seen(
     .bind(says.host)
     .bind(says.transport)
     .bind(i64::from(says.draining))
+    .bind(says.credential.0)
     .bind(now.0)
     .bind(now.0)
     .execute(&mut *c)

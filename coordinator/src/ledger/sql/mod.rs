@@ -23,10 +23,11 @@ use super::clock::{Clock, LedgerTime};
 use super::identity::*;
 use super::rows::*;
 use super::{Ledger, LedgerError};
+use crate::measures::StorageMeasures;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// How long a database server that is not reached is waited for when the ledger is opened ...
@@ -34,8 +35,11 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// ... and how long between two attempts.
 const PAUSE: Duration = Duration::from_millis(500);
 
+/// Disputes that are settled in one round.
+const DISPUTES: u32 = 16;
+
 /// Version of the schema that this program writes.
-pub const SCHEMA_VERSION: i64 = 5;
+pub const SCHEMA_VERSION: i64 = 6;
 
 /// What makes version n + 1 of version n; the first makes version 1 of an empty database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
@@ -44,12 +48,14 @@ const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
     include_str!("../schema_3.sql"),
     include_str!("../schema_4.sql"),
     include_str!("../schema_5.sql"),
+    include_str!("../schema_6.sql"),
 ];
 
 /// A ledger in a database.
 pub struct SqlLedger {
     writer: Writer,
     readers: Readers,
+    measures: Arc<OnceLock<Arc<StorageMeasures>>>,
 }
 
 impl SqlLedger {
@@ -90,9 +96,11 @@ impl SqlLedger {
             .migrate(&MIGRATIONS, SCHEMA_VERSION, &fresh)
             .await?;
         let readers = engine.readers().await?;
+        let measures = Arc::default();
         Ok(Self {
-            writer: Writer::start(engine, connection),
+            writer: Writer::start(engine, connection, Arc::clone(&measures)),
             readers,
+            measures,
         })
     }
 
@@ -107,6 +115,12 @@ impl SqlLedger {
         let row = rows.read_optional(&self.readers).await?;
         let latest = row.map_or(Ok(0), |row| row.try_get::<i64>("latest"))?;
         Ok(LedgerTime(latest))
+    }
+
+    /// Counts its commits in these from now on, once and for all.
+    pub fn measure(&self, measures: Arc<StorageMeasures>) {
+        // Said twice, the first ones are kept.
+        let _ = self.measures.set(measures);
     }
 
     /// Writes what is under way and closes the connections.
@@ -401,9 +415,35 @@ impl Ledger for SqlLedger {
         &self,
         lease: LeaseId,
         result: ResultObject,
+        why: Confirmation,
     ) -> Result<Completion, LedgerError> {
         self.writer
-            .write(move |c, now| Box::pin(audit::confirm(c, now, lease, result)))
+            .write(move |c, now| Box::pin(audit::confirm(c, now, lease, result, why)))
+            .await
+    }
+
+    async fn disputes(&self) -> Result<Vec<Dispute>, LedgerError> {
+        let chunks = query(
+            "SELECT c.* FROM chunks c JOIN jobs j ON j.job = c.job
+             WHERE c.state = 'ready' AND c.votes >= 2 AND j.ended IS NULL
+             ORDER BY c.job, c.stage, c.first LIMIT ?",
+        )
+        .bind(DISPUTES);
+        let mut disputes = Vec::new();
+        for row in chunks.read_all(&self.readers).await? {
+            let chunk = chunk_row(&row)?;
+            let votes = audit::votes_on(chunk.chunk).read_all(&self.readers).await?;
+            disputes.push(Dispute {
+                votes: votes.iter().map(audit::vote).collect::<Result<_, _>>()?,
+                chunk,
+            });
+        }
+        Ok(disputes)
+    }
+
+    async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError> {
+        self.writer
+            .write(move |c, now| Box::pin(audit::strike(c, now, vote, why)))
             .await
     }
 

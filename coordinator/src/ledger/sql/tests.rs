@@ -271,7 +271,10 @@ async fn a_database_of_version_1_still_opens() {
     let lease = one.lease(wants("w", "1", 1)).await.unwrap().remove(0);
     let object = result(lease.items, 1, 100_000);
     // What the second version is for.
-    let voted = one.confirm(lease.lease, object).await.unwrap();
+    let voted = one
+        .confirm(lease.lease, object, Confirmation::Doubt)
+        .await
+        .unwrap();
     assert_eq!(voted, Completion::Unconfirmed);
     let mut now = PgConnection::connect(&url).await.expect("the database");
     let votes = of_version("SELECT * FROM votes").fetch_all(&mut now).await;

@@ -3,7 +3,9 @@
 use super::engine::{Connection, Engine};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
+use crate::measures::StorageMeasures;
 use futures::future::BoxFuture;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, oneshot};
 
@@ -37,9 +39,13 @@ pub struct Writer {
 
 impl Writer {
     /// Starts the task; it ends when the writer is closed or dropped.
-    pub fn start(engine: Engine, connection: Connection) -> Self {
+    pub fn start(
+        engine: Engine,
+        connection: Connection,
+        measures: Arc<OnceLock<Arc<StorageMeasures>>>,
+    ) -> Self {
         let (operations, queue) = mpsc::channel(4 * GROUP);
-        tokio::spawn(run(engine, connection, queue));
+        tokio::spawn(run(engine, connection, queue, measures));
         Self { operations }
     }
 
@@ -159,7 +165,12 @@ impl Link {
     }
 }
 
-async fn run(engine: Engine, connection: Connection, mut queue: mpsc::Receiver<Message>) {
+async fn run(
+    engine: Engine,
+    connection: Connection,
+    mut queue: mpsc::Receiver<Message>,
+    measures: Arc<OnceLock<Arc<StorageMeasures>>>,
+) {
     let mut closing = None;
     let mut link = Link {
         engine,
@@ -168,22 +179,27 @@ async fn run(engine: Engine, connection: Connection, mut queue: mpsc::Receiver<M
     };
     while closing.is_none() {
         match queue.recv().await {
-            Some(Message::Write(first)) => match link.begin().await {
-                Ok((connection, now)) => {
-                    match commit_group(connection, now, first, &mut queue).await {
-                        Ok(close) => closing = close,
-                        Err(error) => {
-                            tracing::error!(%error, "a commit of the ledger failed");
-                            link.roll_back().await;
-                        }
+            Some(Message::Write(first)) => {
+                let begin = Instant::now();
+                let written = match link.begin().await {
+                    Ok((connection, now)) => {
+                        let done = commit_group(connection, now, first, &mut queue).await;
+                        done.map_err(|error| (error, "a commit of the ledger failed"))
+                    }
+                    // Whoever wrote hears that it was not done, and asks again.
+                    Err(error) => Err((error, "nothing is written")),
+                };
+                if let Some(measures) = measures.get() {
+                    measures.commits.observe(begin.elapsed(), written.is_err());
+                }
+                match written {
+                    Ok(close) => closing = close,
+                    Err((error, what)) => {
+                        tracing::error!(%error, "{what}");
+                        link.roll_back().await;
                     }
                 }
-                // Whoever wrote hears that it was not done, and asks again.
-                Err(error) => {
-                    tracing::error!(%error, "nothing is written");
-                    link.roll_back().await;
-                }
-            },
+            }
             Some(Message::Close(reply)) => closing = Some(reply),
             None => break,
         }

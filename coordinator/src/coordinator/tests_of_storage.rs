@@ -1,0 +1,46 @@
+//! Storage that fails under a job: what was lost is tracked again, and the answer is the undisturbed one.
+
+use super::simulation::*;
+use super::*;
+use crate::ledger::clock::ManualClock;
+use crate::ledger::memory::MemoryLedger;
+use crate::ledger::rows::{JobRow, JobState};
+use crate::results::faulty_storage::{FaultyStorage, StorageFault};
+use std::collections::BTreeMap;
+
+/// Runs the job on storage that loses the results of one chunk in so many.
+async fn run(one_in: u64, seed: u64) -> (JobRow, Arc<FaultyStorage>) {
+    let clock = Arc::new(ManualClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    let storage = Arc::new(FaultyStorage::new("jobs", one_in, seed));
+    let store = Store::on(storage.clone());
+    let mut policy = policy([1, 3, 5, 16][seed as usize % 4]);
+    policy.suspicion_limit = 1000;
+    let mut cluster = Cluster::new(ledger, store, clock, policy, seed);
+    cluster.start_coordinator();
+    cluster.start_coordinator();
+    cluster.start_worker();
+    cluster.start_worker();
+    cluster.lossy = true;
+    cluster.submit(&problem()).await;
+    (cluster.run().await, storage)
+}
+
+#[tokio::test]
+async fn results_that_storage_loses_are_tracked_again() {
+    let (_, reference) = undisturbed(&problem()).await;
+    let mut happened: BTreeMap<StorageFault, u64> = BTreeMap::new();
+    for seed in 0..40 {
+        let (row, storage) = run([3, 8, 20][seed as usize % 3], seed).await;
+        assert_eq!(row.state, JobState::Solved, "seed {seed}: {:?}", row.reason);
+        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+        for (fault, times) in storage.happened() {
+            *happened.entry(fault).or_default() += times;
+        }
+    }
+    println!("{happened:?}");
+    assert!(
+        happened.len() == 4 && happened.values().all(|&times| times > 10),
+        "{happened:?}"
+    );
+}
