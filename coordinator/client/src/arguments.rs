@@ -387,7 +387,8 @@ pub struct Decompose {
     /// Prove every witness point by a box, and which unions of them are no components
     #[arg(long, help_heading = "Components")]
     pub certify: bool,
-    /// Values of the parameters: Bertini's format or JSON, one set
+    /// Values of the parameters: Bertini's format or JSON. Of several sets each is decomposed, from components at general
+    /// values, and it is said where the list of components changes, which split and which join
     #[arg(long, value_name = "FILE", help_heading = "Problem")]
     pub target_parameters: Option<PathBuf>,
     /// Variable groups instead of those in the file: "x,y;z,w"

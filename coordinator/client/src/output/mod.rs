@@ -6,6 +6,7 @@ pub mod certificates;
 pub mod curve_svg;
 pub mod decomposition;
 pub mod drawing;
+pub mod family;
 pub mod files;
 pub mod json;
 pub mod linkages;
