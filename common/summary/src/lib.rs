@@ -6,8 +6,8 @@
 
 pub mod about;
 pub mod decomposition;
-pub mod family;
 mod explained;
+pub mod family;
 pub mod question;
 pub mod solve;
 

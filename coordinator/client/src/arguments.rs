@@ -78,6 +78,8 @@ pub enum Command {
     RealCurve(sets::RealCurve),
     /// At least one point on every connected part of the real points of components
     RealPoints(sets::Plain),
+    /// The real part of components of dimension 2 in space: triangles, Euler characteristic, pictures
+    RealSurface(sets::RealSurface),
     /// What components have in common with other components, or with the solutions of further equations
     Intersect(sets::Intersect),
     /// Where the equations lose rank on components

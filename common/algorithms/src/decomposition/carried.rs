@@ -80,7 +80,10 @@ pub(super) fn obstacle(
     let own = known.components.iter().filter(|c| c.dimension() == lowest);
     let multiple = own.clone().find(|c| !c.deflation.is_empty());
     if let Some(set) = multiple {
-        return Some(format!("component {} of the general member is multiple", set.id));
+        return Some(format!(
+            "component {} of the general member is multiple",
+            set.id
+        ));
     }
     let doubtful = own.clone().find(|c| !c.settled());
     doubtful.map(|set| format!("component {} of the general member is not settled", set.id))
@@ -219,7 +222,8 @@ impl Carried {
 
     /// Takes the points of the next component.
     fn take(&mut self, points: Vec<Vec<Complex64>>) {
-        self.of.extend(std::iter::repeat_n(self.place, points.len()));
+        self.of
+            .extend(std::iter::repeat_n(self.place, points.len()));
         self.points.extend(points);
         self.place += 1;
     }
@@ -266,7 +270,10 @@ impl Carried {
     /// Which components the points of each known one have become.
     pub fn family(&self, problem: &Problem, known: &[ComponentId], found: &[WitnessSet]) -> Family {
         let dimension = self.superset.dimension as u32;
-        let here: Vec<&WitnessSet> = found.iter().filter(|c| c.dimension() == dimension).collect();
+        let here: Vec<&WitnessSet> = found
+            .iter()
+            .filter(|c| c.dimension() == dimension)
+            .collect();
         let mut components: Vec<CarriedComponent> = known
             .iter()
             .map(|&id| CarriedComponent {

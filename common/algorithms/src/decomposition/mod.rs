@@ -44,7 +44,8 @@ use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
-    ComponentId, Decomposition, Dimension, Doubt, Family, KnownComponents, Method, TrackedPaths, WitnessSet,
+    ComponentId, Decomposition, Dimension, Doubt, Family, KnownComponents, Method, TrackedPaths,
+    WitnessSet,
 };
 use cognate_systems::system::System;
 pub use costs::DecompositionCosts;

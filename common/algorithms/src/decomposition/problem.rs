@@ -154,7 +154,11 @@ impl Problem {
         check_homogeneous(&system, &degrees(&system)?)?;
         let seed = tracking.seed;
         let system = System {
-            scaling: units.unwrap_or_else(|| scaling_of(&system, &[])),
+            scaling: match (units, options.own_units) {
+                (Some(units), _) => units,
+                (None, true) => scaling_of(&system, &[]),
+                (None, false) => Scaling::default(),
+            },
             ..system.into_owned()
         };
         let scaling = system.scaling.clone();

@@ -50,7 +50,11 @@ pub async fn run(
     ended
 }
 
-async fn sweep(a: &Decompose, target: &Target, mut prepared: Prepared) -> Result<Exit, ClientError> {
+async fn sweep(
+    a: &Decompose,
+    target: &Target,
+    mut prepared: Prepared,
+) -> Result<Exit, ClientError> {
     let options = &mut prepared.submission.options;
     let seed = *options.seed.get_or_insert(SEED);
     let values = std::mem::take(&mut options.target_parameters);
@@ -123,7 +127,9 @@ fn general_values(given: &[Vec<Complex64>], seed: u64) -> Vec<Complex64> {
         sizes.fold(0.0f64, f64::max)
     };
     let sizes: Vec<f64> = (0..count).map(size).collect();
-    let sizes = sizes.into_iter().map(|size| if size > 0.0 { size } else { 1.0 });
+    let sizes = sizes
+        .into_iter()
+        .map(|size| if size > 0.0 { size } else { 1.0 });
     sizes.map(|size| random.unit() * size).collect()
 }
 

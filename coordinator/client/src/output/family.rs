@@ -120,7 +120,11 @@ impl Sweep {
         }
         text.push_str(&columns.render(look));
         if let Some(folder) = files {
-            let _ = writeln!(text, "\n{}", look.dim(&format!("sets are in {}", folder.display())));
+            let _ = writeln!(
+                text,
+                "\n{}",
+                look.dim(&format!("sets are in {}", folder.display()))
+            );
         }
         text
     }

@@ -3,6 +3,7 @@
 pub mod answers;
 mod bertini;
 pub mod certificates;
+pub mod curve_dxf;
 pub mod curve_svg;
 pub mod decomposition;
 pub mod drawing;
@@ -15,6 +16,7 @@ pub mod parquet;
 pub mod paths;
 pub mod progress;
 pub mod summary;
+pub mod surface;
 pub mod table;
 pub mod text;
 
