@@ -2,6 +2,8 @@
 //!
 //! `SEEDS=30 cargo test -p cognate-tests --test decomposition` takes more seeds than the three of every run.
 
+mod carried;
+
 use cognate_algorithms::Root;
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
 use cognate_algorithms::run_locally::drive;
@@ -538,4 +540,84 @@ fn projective_sets_are_decomposed() {
         "hom_variable_group x, y, z, w; function f, g; f = x*w - y*z; g = (x - w)*(y + z);",
     );
     check("two sections of a quadric", &system, &[(1, 2, 1, 2)]);
+}
+
+/// A system whose components are known by theory, and by a primary decomposition over the rationals; `components` are
+/// dimension, degree, multiplicity and count.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Known {
+    name: String,
+    groups: Vec<Vec<String>>,
+    homogeneous: bool,
+    equations: Vec<String>,
+    components: Vec<Expected>,
+    /// Where the components are from.
+    source: String,
+    /// What may stay in doubt, and takes long.
+    #[serde(default)]
+    doubt: Option<String>,
+}
+
+impl Known {
+    fn system(&self) -> System {
+        let word = match self.homogeneous {
+            true => "hom_variable_group",
+            false => "variable_group",
+        };
+        let groups = self.groups.iter();
+        let groups: Vec<String> = groups
+            .map(|g| format!("{word} {};", g.join(", ")))
+            .collect();
+        let names: Vec<String> = (1..=self.equations.len())
+            .map(|k| format!("f{k}"))
+            .collect();
+        let lines = names.iter().zip(&self.equations);
+        let lines: Vec<String> = lines.map(|(f, e)| format!("{f} = {e};")).collect();
+        let functions = names.join(", ");
+        written(&format!(
+            "{} function {functions}; {}",
+            groups.join(" "),
+            lines.join(" ")
+        ))
+    }
+}
+
+/// Determinantal and toric varieties, sets of matrices, ideals of graphs, multiple and embedded sets, empty ones. One way
+/// for each system in turn; `SEEDS` asks for all ways and more seeds.
+#[test]
+fn components_that_theory_knows() {
+    let text = include_str!("known_by_theory.json");
+    let all: Vec<Known> = serde_json::from_str(text).expect("the list is as it was written");
+    assert!(all.iter().all(|known| !known.source.is_empty()));
+    let seeds: Option<u64> = std::env::var("SEEDS").ok().and_then(|n| n.parse().ok());
+    let mut report = String::new();
+    for (k, known) in all.iter().enumerate() {
+        if known.doubt.is_some() && seeds.is_none() {
+            continue;
+        }
+        let system = known.system();
+        let methods: Vec<Option<Method>> = match seeds {
+            None => vec![(k % 4).checked_sub(1).map(|place| Method::ALL[place])],
+            Some(_) => std::iter::once(None).chain(Method::ALL.map(Some)).collect(),
+        };
+        let mut expected = known.components.clone();
+        expected.sort_by(|a, b| b.cmp(a));
+        for method in methods {
+            for seed in 1..=seeds.unwrap_or(1) {
+                let found = decompose_by(&system, seed, method);
+                let counts = counted(&found);
+                let right = counts == expected && found.settled() && found.adds_up();
+                let allowed = known.doubt.is_some() && !found.settled();
+                if !right && !allowed {
+                    let (name, doubts) = (&known.name, doubts(&found));
+                    let _ = write!(
+                        report,
+                        "\n{name}, {method:?}, seed {seed}: {counts:?}{doubts}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(report.is_empty(), "{report}");
 }

@@ -340,3 +340,73 @@ fn real_points_are_on_every_part() {
     let circle = cognate_tests::systems::with_conjugates(circle, "p~P");
     check_real_points("isotropic circle", &circle, &[all]);
 }
+
+/// Euler characteristic with compact support, whether it is bounded, connected parts.
+fn check_surface(name: &str, equation: &str, expected: (i64, bool, u64)) {
+    let system = written(&format!(
+        "variable_group x, y, z; function f; f = {equation};"
+    ));
+    for seed in seeds() {
+        let answer = ask(name, &system, seed, &Question::RealSurface { samples: 3 });
+        let Answer::RealSurface(surfaces) = answer else {
+            panic!("{answer:?}");
+        };
+        let [surface] = surfaces.as_slice() else {
+            panic!("{name}: one component");
+        };
+        let counts = surface.mesh.counts();
+        let found = (surface.euler, surface.compact, counts.parts);
+        assert_eq!(found, expected, "{name}, seed {seed}: {counts:?}");
+        if surface.compact {
+            assert_eq!(
+                (counts.euler, counts.border),
+                (surface.euler, 0),
+                "{name}, seed {seed}"
+            );
+        }
+        // The points are on the surface.
+        let value = |p: &[f64; 3]| -> f64 {
+            let program = cognate_continuation::bend::SlicedEquations::new(&system, Vec::new());
+            let point: Vec<_> = p.iter().map(|&x| Complex64::new(x, 0.0)).collect();
+            let exact: Vec<_> = point
+                .iter()
+                .map(|&z| cognate_continuation::bend::exactly(z))
+                .collect();
+            program.residuals(&exact)[0].0
+        };
+        let size = |p: &[f64; 3]| p.iter().map(|x| x.abs()).fold(1.0, f64::max).powi(4);
+        for point in surface.mesh.vertices.iter().step_by(97) {
+            assert!(
+                value(point) < 1e-6 * size(point),
+                "{name}, seed {seed}: {point:?}"
+            );
+        }
+    }
+}
+
+macro_rules! real_surfaces {
+    ($($name:ident: $equation:expr, $expected:expr;)*) => {$(
+        #[test]
+        fn $name() {
+            check_surface(stringify!($name), $equation, $expected);
+        }
+    )*};
+}
+
+// Euler characteristics by hand: a sphere has 2, a torus 0, a plane 1, a cylinder 0; at a cone's apex two planes meet. The
+// surface of Whitney holds its whole axis, and a torus with five handles has 2 - 2 * 5.
+real_surfaces! {
+    surface_sphere: "x^2 + y^2 + z^2 - 1", (2, true, 1);
+    surface_ellipsoid: "x^2 + 4*y^2 + 9*z^2 - 2*x - 5", (2, true, 1);
+    surface_torus: "(x^2 + y^2 + z^2 + 3)^2 - 16*(x^2 + y^2)", (0, true, 1);
+    surface_hyperboloid: "x^2 + y^2 - z^2 - 1", (0, false, 1);
+    surface_two_sheets: "x^2 + y^2 - z^2 + 1", (2, false, 2);
+    surface_paraboloid: "x^2 + 2*y^2 - z", (1, false, 1);
+    surface_saddle: "x*y - z", (1, false, 1);
+    surface_cone: "x^2 + y^2 - z^2", (1, false, 1);
+    surface_empty: "x^2 + y^2 + z^2 + 1", (0, true, 0);
+    surface_point: "x^2 + 2*y^2 + 3*z^2", (1, true, 1);
+    surface_quartic_ball: "x^4 + y^4 + z^4 - 1", (2, true, 1);
+    surface_whitney: "x^2 - y^2*z", (1, false, 1);
+    surface_tangle: "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 59/5", (-8, true, 1);
+}

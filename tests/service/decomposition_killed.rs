@@ -48,6 +48,7 @@ fn kills_leave_no_trace_where_equations_are_added() {
     let known = KnownComponents {
         equations: 1,
         components: components(&text("f", first)),
+        parameters: Vec::new(),
     };
     let options = Options {
         decompose: Some(Decompose {

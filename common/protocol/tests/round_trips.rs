@@ -52,6 +52,7 @@ proptest! {
         let known = (seed % 4 == 1).then_some(KnownComponents {
             equations: 1 + (seed % 9) as u32,
             components: vec![component(1, 2), component(0, 1)],
+            parameters: vec![Complex64::new(0.5, -2.0); (seed % 3) as usize],
         });
         let verify = seed % 3 == 1;
         let decompose = Some(Decompose { dimensions, idle_loops, method, verify, known });
@@ -196,6 +197,7 @@ fn questions_about_loci_come_back() {
     for question in [
         Question::SingularLocus,
         Question::RealPoints,
+        Question::RealSurface { samples: 4 },
         Question::Intersect(second(Vec::new())),
         Question::Intersect(second(vec![component(1, 4), component(0, 1)])),
     ] {

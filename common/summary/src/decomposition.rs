@@ -2,6 +2,7 @@
 //! has it.
 
 use super::about::{About, TimeBlock, WorkerBlock};
+use super::family::FamilyBlock;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
     Decomposition, Dimension, Doubt, Irreducible, Proof, TrackedPaths, Verification, WitnessSet,
@@ -78,6 +79,9 @@ pub struct DecompositionBlock {
     pub verification: Option<Verification>,
     /// What keeps the answer from being settled, in words; empty where it is.
     pub unsettled: Vec<String>,
+    /// What has become of the components of a general member of the family; `null` where none were known.
+    #[serde(default)]
+    pub family: Option<FamilyBlock>,
 }
 
 /// A component, or many that are alike.
@@ -181,6 +185,7 @@ impl DecompositionBlock {
                 .collect(),
             embedded: "not searched".into(),
             verification: found.verification.clone(),
+            family: found.family.as_ref().map(FamilyBlock::new),
             unsettled,
         }
     }

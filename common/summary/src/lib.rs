@@ -1,12 +1,13 @@
 //! Summaries: what a finished job is in one JSON object, field by field as the contract has it.
 //!
 //! A coordinator makes them of an answer and of what it knows of the job ([`about`]); clients read them.
-//! [`solve`] has isolated solutions, [`decomposition`] components, [`question`] answers of components.
+//! [`solve`] has isolated solutions, [`decomposition`] components, [`family`] what they become at other values of parameters, [`question`] answers of components.
 #![forbid(unsafe_code)]
 
 pub mod about;
 pub mod decomposition;
 mod explained;
+pub mod family;
 pub mod question;
 pub mod solve;
 

@@ -3,6 +3,7 @@
 use super::about::{About, TimeBlock, WorkerBlock};
 use cognate_algorithms::answer::AnsweredQuestion;
 use cognate_solutions::witness::real_curve::RealCurve;
+use cognate_solutions::witness::real_surface::RealSurface;
 use cognate_solutions::witness::{Answer, TrackedPaths};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ pub struct QuestionSummary {
     /// Id of the job.
     pub job: String,
     /// What was asked: `member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`,
-    /// `real-points` or `certify`.
+    /// `real-surface`, `real-points` or `certify`.
     pub question: String,
     /// The system and the seed.
     pub problem: AskedProblem,
@@ -27,6 +28,9 @@ pub struct QuestionSummary {
     /// Real curves with their vertices and arcs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curves: Option<Vec<Value>>,
+    /// Triangles of real surfaces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surfaces: Option<Vec<Value>>,
     /// Groups of variables, where degrees are by groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<Vec<Vec<String>>>,
@@ -157,6 +161,10 @@ fn blocks(answer: &Answer) -> Blocks {
             });
             (Some(points), Some(each.collect()), None)
         }
+        Answer::RealSurface(surfaces) => {
+            let each = surfaces.iter().map(surface_counts);
+            (None, Some(each.collect()), None)
+        }
         Answer::RealCurve(curves) => (None, Some(curves.iter().map(counts).collect()), None),
         Answer::Mobility(points) => {
             let each = points.iter().map(|p| {
@@ -182,6 +190,29 @@ fn counts(curve: &RealCurve) -> Value {
         "connected_components": counts.connected_components,
         "vertices": curve.vertices.len(), "edges": curve.edges.len(),
         "settled": curve.doubts.is_empty(),
+    })
+}
+
+/// What the real part of a component of dimension 2 consists of; numbers that are not known are `null`.
+fn surface_counts(surface: &RealSurface) -> Value {
+    let settled = surface.doubts.is_empty();
+    let counts = surface.mesh.counts();
+    let known = |value: Value| if settled { value } else { Value::Null };
+    json!({
+        "id": surface.id.to_string(), "degree": surface.degree,
+        "compact": known(json!(surface.compact)), "euler": known(json!(surface.euler)),
+        "parts": known(json!(counts.parts)), "crossing_edges": known(json!(counts.crossing)),
+        "levels": surface.levels.len(), "vertices": surface.mesh.vertices.len(),
+        "triangles": surface.mesh.triangles.len(), "settled": settled,
+    })
+}
+
+/// A real surface as it is drawn.
+fn mesh(surface: &RealSurface) -> Value {
+    let mesh = &surface.mesh;
+    json!({
+        "id": surface.id.to_string(), "vertices": mesh.vertices, "triangles": mesh.triangles,
+        "segments": mesh.segments,
     })
 }
 
@@ -219,6 +250,10 @@ impl QuestionSummary {
             Answer::RealCurve(curves) => Some(curves.iter().map(graph).collect()),
             _ => None,
         };
+        let surfaces = match answer {
+            Answer::RealSurface(surfaces) => Some(surfaces.iter().map(mesh).collect()),
+            _ => None,
+        };
         let unsettled = asked.doubts.clone();
         Self {
             job: about.job.clone(),
@@ -233,6 +268,7 @@ impl QuestionSummary {
             points,
             components,
             curves,
+            surfaces,
             groups,
             settled: unsettled.is_empty(),
             unsettled,

@@ -78,6 +78,8 @@ pub enum Command {
     RealCurve(sets::RealCurve),
     /// At least one point on every connected part of the real points of components
     RealPoints(sets::Plain),
+    /// The real part of components of dimension 2 in space: triangles, Euler characteristic, pictures
+    RealSurface(sets::RealSurface),
     /// What components have in common with other components, or with the solutions of further equations
     Intersect(sets::Intersect),
     /// Where the equations lose rank on components
@@ -387,7 +389,8 @@ pub struct Decompose {
     /// Prove every witness point by a box, and which unions of them are no components
     #[arg(long, help_heading = "Components")]
     pub certify: bool,
-    /// Values of the parameters: Bertini's format or JSON, one set
+    /// Values of the parameters: Bertini's format or JSON. Of several sets each is decomposed, from components at general
+    /// values, and it is said where the list of components changes, which split and which join
     #[arg(long, value_name = "FILE", help_heading = "Problem")]
     pub target_parameters: Option<PathBuf>,
     /// Variable groups instead of those in the file: "x,y;z,w"

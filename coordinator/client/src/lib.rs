@@ -59,6 +59,9 @@ fn start(command: Command) -> Started {
         Command::Mobility(a) => Orderly(Box::pin(async move { question::mobility(&a).await })),
         Command::Certify(a) => Orderly(Box::pin(async move { question::certify(&a).await })),
         Command::RealCurve(a) => Orderly(Box::pin(async move { question::real_curve(&a).await })),
+        Command::RealSurface(a) => {
+            Orderly(Box::pin(async move { question::real_surface(&a).await }))
+        }
         Command::RealPoints(a) => Orderly(Box::pin(async move { question::real_points(&a).await })),
         Command::Intersect(a) => Orderly(Box::pin(async move { intersect::run(&a).await })),
         Command::SingularLocus(a) => {

@@ -15,7 +15,7 @@ const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL05");
 const LARGE: RecordKind = RecordKind(b"CGNLRG04");
 
 /// Decompositions as objects.
-const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC05");
+const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC06");
 
 /// Answers of components as objects.
 const ANSWER: RecordKind = RecordKind(b"CGNANS01");

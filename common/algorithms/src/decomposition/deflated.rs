@@ -251,7 +251,7 @@ impl Deflations {
                 let values = values.map(f64::from_bits);
                 Arc::new(fibre(&problem.curve_equations(), form, values))
             }
-            StageSystem::Pair { .. } | StageSystem::MultipleCut { .. } => {
+            StageSystem::Pair { .. } | StageSystem::MultipleCut { .. } | StageSystem::Family => {
                 unreachable!("these are of two problems: who asks makes them")
             }
             StageSystem::Sliced { dimension } => {

@@ -69,6 +69,8 @@ impl Tracking {
 pub(crate) enum StageSystem {
     /// Combinations of the equations, as many as there are variables.
     Staircase,
+    /// The equations of a family, whose parameters stay such, with the slices of their lowest dimension.
+    Family,
     /// All given equations with the slices of this dimension.
     Sliced {
         /// The dimension.

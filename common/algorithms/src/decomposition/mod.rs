@@ -9,6 +9,7 @@
 //!
 //! Stages differ in their systems, which their openings bring.
 
+mod carried;
 pub(crate) mod cascade;
 mod costs;
 pub(crate) mod deflated;
@@ -27,6 +28,8 @@ mod slices;
 pub(crate) mod split;
 pub(crate) mod superset;
 #[cfg(test)]
+mod tests_of_carried;
+#[cfg(test)]
 mod tests_of_resumed;
 mod unions;
 
@@ -34,13 +37,15 @@ use crate::answer::Answer;
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
 use crate::solve::{Next, Root, Solve, StageNumbers};
+use carried::Carried;
 use cascade::Cascade;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
-    ComponentId, Decomposition, Dimension, Doubt, KnownComponents, Method, TrackedPaths, WitnessSet,
+    ComponentId, Decomposition, Dimension, Doubt, Family, KnownComponents, Method, TrackedPaths,
+    WitnessSet,
 };
 use cognate_systems::system::System;
 pub use costs::DecompositionCosts;
@@ -64,6 +69,8 @@ use std::sync::Arc;
 enum Step {
     /// Known components go to the slices on which other equations cut them.
     Resumed(Resumed),
+    /// Components of a general member of the family go to the values of the parameters.
+    Carried(Carried),
     /// Combination by combination: points of all dimensions.
     Cascade(Cascade),
     /// Equation by equation.
@@ -111,6 +118,9 @@ struct State {
     components: Vec<WitnessSet>,
     paths: TrackedPaths,
     paths_of_loops: TrackedPaths,
+    /// What the components of a general member of the family came to, and why they were not used, where they were not.
+    carried: Option<Carried>,
+    not_carried: String,
 }
 
 /// A whole decomposition, as a plan that asks for paths and learns from results.
@@ -152,6 +162,9 @@ impl DecompositionSolve {
     fn of_state(state: State, problem: Problem) -> Result<Self, ProblemError> {
         let known = match (&state.step, &state.options.known) {
             (Step::Resumed(_), Some(known)) => Some(tracked(&problem, known)?),
+            (Step::Carried(_), _) => {
+                Some(carried::tracked(&problem, &state.system, &state.options)?)
+            }
             _ => None,
         };
         Ok(Self {
@@ -166,14 +179,27 @@ impl DecompositionSolve {
     /// The decomposition of a system that has been checked.
     pub fn new(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
         let problem = Problem::of_options(system, options)?;
+        let of_family = options.known.as_ref().filter(|k| !k.parameters.is_empty());
         let method = match (&options.known, options.method) {
+            (Some(_), _) if of_family.is_some() => Method::Slices,
             (Some(_), _) => Method::Equations,
             (None, Some(method)) => method,
             (None, None) => costs::choose(&problem).0,
         };
-        let step = match options.known {
-            Some(_) => Step::Resumed(Resumed::default()),
-            None => first_step(method, &problem),
+        let mut not_carried = String::new();
+        let step = match (&options.known, of_family) {
+            (_, Some(known)) => {
+                let general = carried::general(&problem, system, options)?;
+                match carried::obstacle(&problem, &general, known) {
+                    None => Step::Carried(Carried::default()),
+                    Some(why) => {
+                        not_carried = why;
+                        first_step(method, &problem)
+                    }
+                }
+            }
+            (Some(_), None) => Step::Resumed(Resumed::default()),
+            (None, None) => first_step(method, &problem),
         };
         let state = State {
             system: Arc::new(system.clone()),
@@ -189,6 +215,8 @@ impl DecompositionSolve {
             components: Vec::new(),
             paths: TrackedPaths::default(),
             paths_of_loops: TrackedPaths::default(),
+            carried: None,
+            not_carried,
         };
         Self::of_state(state, problem)
     }
@@ -213,6 +241,12 @@ impl DecompositionSolve {
                 state.paths.add(&paths);
                 let known = self.known.as_mut()?;
                 resumed.advance(problem, known, done.as_ref())
+            }
+            Step::Carried(carried) => {
+                state.paths.add(&paths);
+                let known = self.known.as_mut()?;
+                let of = (&*state.system, &state.options);
+                carried.advance(problem, of, known, done.as_ref())
             }
             Step::Cascade(cascade) => {
                 state.paths.add(&paths);
@@ -256,8 +290,18 @@ impl DecompositionSolve {
                 state.step = Step::JunkFilter(JunkFilter::new(equations.supersets(problem), true));
                 return;
             }
+            Step::Carried(carried) => {
+                state.carried = Some(std::mem::take(carried));
+                state.step = Step::Slices(Slices::above(problem.levels));
+                self.known = None;
+                return;
+            }
             Step::Slices(slices) => {
-                state.step = Step::JunkFilter(JunkFilter::new(slices.supersets(), false));
+                let mut supersets = slices.supersets();
+                if state.purpose == Purpose::First {
+                    supersets.extend(state.carried.as_ref().map(Carried::superset));
+                }
+                state.step = Step::JunkFilter(JunkFilter::new(supersets, false));
                 return;
             }
             Step::JunkFilter(filter) => {
@@ -301,6 +345,9 @@ impl DecompositionSolve {
             (Purpose::First, _) if self.may_go_again() && !found.settled() => {
                 (Purpose::Again, Method::Cascade)
             }
+            (Purpose::First, _) if self.state.carried.is_some() && !found.settled() => {
+                (Purpose::Again, Method::Slices)
+            }
             (Purpose::First, _) if verify => (Purpose::Verify, second),
             (Purpose::Verify, Some(first)) => {
                 let second = std::mem::replace(&mut found, *first);
@@ -339,7 +386,7 @@ impl DecompositionSolve {
     }
 
     fn summary(&mut self) -> Decomposition {
-        ordered(Decomposition {
+        let mut found = ordered(Decomposition {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
@@ -349,6 +396,25 @@ impl DecompositionSolve {
             dimensions: std::mem::take(&mut self.state.dimensions),
             paths: self.state.paths,
             paths_of_loops: self.state.paths_of_loops,
+            family: None,
+        });
+        found.family = self.family(&found);
+        found
+    }
+
+    /// What the components of a general member of the family have become.
+    fn family(&self, found: &Decomposition) -> Option<Family> {
+        let known = self.state.options.known.as_ref();
+        let known = known.filter(|known| !known.parameters.is_empty())?;
+        let lowest = (self.problem.variables() - self.problem.levels) as u32;
+        let own = known.components.iter().map(|set| set.id);
+        let own: Vec<ComponentId> = own.filter(|id| id.dimension == lowest).collect();
+        Some(match &self.state.carried {
+            Some(carried) => carried.family(&self.problem, &own, &found.components),
+            None => Family {
+                reason: self.state.not_carried.clone(),
+                ..Family::default()
+            },
         })
     }
 
@@ -377,6 +443,11 @@ impl DecompositionSolve {
             Step::Resumed(resumed) => {
                 let known = self.known.as_mut();
                 resumed.system_of(known.expect("they are known while they move"), wanted)
+            }
+            Step::Carried(carried) => {
+                let known = self.known.as_mut();
+                let known = known.expect("they are known while they move");
+                carried.system_of(&self.problem, &self.state.system, known, wanted)
             }
             Step::Equations(equations) => {
                 equations.system_of(&self.problem, &mut self.prefixes, wanted)
@@ -490,6 +561,7 @@ impl Solve for DecompositionSolve {
         Progress {
             description: match &self.state.step {
                 Step::Resumed(resumed) => resumed.description().into(),
+                Step::Carried(carried) => carried.description().into(),
                 Step::Cascade(cascade) => cascade.description(&self.problem),
                 Step::Equations(equations) => equations.description(&self.problem),
                 Step::Slices(slices) => slices.description(&self.problem),

@@ -35,6 +35,8 @@ pub struct DecompositionOptions {
     pub confirm_junk: bool,
     /// Loops in a row that bring no points together before points stay apart.
     pub idle_loops: u32,
+    /// Whether units are found that suit the coefficients; else the variables are tracked as they are.
+    pub own_units: bool,
     /// Components that the other equations cut; `None`: none is known.
     pub known: Option<KnownComponents>,
 }
@@ -53,6 +55,7 @@ impl Default for DecompositionOptions {
             max_retries: MAX_RETRIES,
             confirm_junk: true,
             idle_loops: 12,
+            own_units: true,
             known: None,
         }
     }

@@ -116,19 +116,34 @@ impl Problem {
         system: &System,
         options: &DecompositionOptions,
     ) -> Result<Self, ProblemError> {
+        Self::in_units(system, options, None)
+    }
+
+    /// The same in given units.
+    pub fn in_units(
+        system: &System,
+        options: &DecompositionOptions,
+        scaling: Option<Scaling>,
+    ) -> Result<Self, ProblemError> {
         let tracking = Tracking {
             settings: options.settings.clone(),
             tolerances: options.tolerances.clone(),
             max_retries: options.max_retries,
             seed: options.seed,
         };
-        Self::new(system, tracking, options)
+        Self::new(system, tracking, options, scaling)
+    }
+
+    /// The units in which all of it is tracked.
+    pub fn scaling(&self) -> &Scaling {
+        &self.scaling
     }
 
     fn new(
         system: &System,
         tracking: Tracking,
         options: &DecompositionOptions,
+        units: Option<Scaling>,
     ) -> Result<Self, ProblemError> {
         let count = system.equation_count();
         let (system, kept) = without_vanishing(with_values(system, &options.parameters)?);
@@ -139,7 +154,11 @@ impl Problem {
         check_homogeneous(&system, &degrees(&system)?)?;
         let seed = tracking.seed;
         let system = System {
-            scaling: scaling_of(&system, &[]),
+            scaling: match (units, options.own_units) {
+                (Some(units), _) => units,
+                (None, true) => scaling_of(&system, &[]),
+                (None, false) => Scaling::default(),
+            },
             ..system.into_owned()
         };
         let scaling = system.scaling.clone();

@@ -23,6 +23,8 @@ const MOST_BEGINNINGS: u32 = 8;
 pub(super) struct Slices {
     /// How many rows hold where the open stage ends; 0 before the first.
     rows: usize,
+    /// How many hold at the end, where that is not down to the lowest dimension that is asked.
+    last: Option<usize>,
     supersets: Vec<Superset>,
     /// How often the dimension was begun before, and the best that was found then.
     beginnings: u32,
@@ -33,9 +35,18 @@ impl Slices {
     pub fn new() -> Self {
         Self {
             rows: 0,
+            last: None,
             supersets: Vec::new(),
             beginnings: 0,
             best: None,
+        }
+    }
+
+    /// All dimensions but the lowest, where so many rows hold.
+    pub fn above(levels: usize) -> Self {
+        Self {
+            last: Some(levels - 1),
+            ..Self::new()
         }
     }
 
@@ -70,7 +81,7 @@ impl Slices {
             self.supersets.push(superset);
             self.beginnings = 0;
         }
-        if self.rows == problem.asked_levels {
+        if self.rows == self.last.unwrap_or(problem.asked_levels) {
             return None;
         }
         self.rows += 1;

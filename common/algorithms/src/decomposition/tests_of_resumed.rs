@@ -47,6 +47,7 @@ fn resuming(variables: &str, first: &str, seed: u64) -> DecompositionOptions {
         known: Some(KnownComponents {
             equations: system.equations.len() as u32,
             components: found.components,
+            parameters: Vec::new(),
         }),
         ..options(seed)
     }
@@ -251,6 +252,7 @@ fn one_equation_after_the_other() {
         options.known = Some(KnownComponents {
             equations: count as u32,
             components: found.components,
+            parameters: Vec::new(),
         });
     }
 }

@@ -1,5 +1,5 @@
 //! Questions to components that are known by their witness sets: membership, samples, images, degrees by groups,
-//! mobility, real points and curves, intersections, singular loci.
+//! mobility, real points, curves and surfaces, intersections, singular loci.
 //!
 //! What moves witness points to other slices is a parameter homotopy, tracked in stages like any other. (Sommese,
 //! Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 to 16.)
@@ -13,6 +13,7 @@ mod multidegree;
 mod project;
 mod real_curve;
 mod real_points;
+mod real_surface;
 mod sample;
 #[cfg(test)]
 mod tests;
@@ -45,6 +46,7 @@ use multidegree::Multidegree;
 use project::Project;
 use real_curve::RealCurves;
 use real_points::RealPoints;
+use real_surface::RealSurfaces;
 use sample::Sample;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -57,6 +59,9 @@ pub const MOST_SAMPLES: u64 = 1_000_000;
 pub const MOST_DEPTH: u32 = 20;
 /// Most samples on either side of the middle of an arc.
 pub const MOST_ARC_SAMPLES: u32 = 1000;
+
+/// Most samples on either side of the middle of a slab of a surface.
+pub const MOST_SURFACE_SAMPLES: u32 = 50;
 
 /// Why a question cannot be asked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -92,6 +97,7 @@ enum Asking {
     RealCurve(Box<RealCurves>),
     Locus(Box<Locus>),
     RealPoints(Box<RealPoints>),
+    RealSurface(Box<RealSurfaces>),
     Done(Box<Answer>),
 }
 
@@ -118,6 +124,29 @@ struct State {
     crossings_left: u64,
     stages: Vec<StageProgress>,
     paths: TrackedPaths,
+}
+
+impl State {
+    /// A question to components of all equations, of which nothing is known yet.
+    fn new(
+        system: &System,
+        options: &DecompositionOptions,
+        components: &[WitnessSet],
+        asking: Asking,
+    ) -> Self {
+        Self {
+            system: Arc::new(system.clone()),
+            options: options.clone(),
+            components: components.to_vec(),
+            own: None,
+            others: None,
+            asking,
+            job: None,
+            crossings_left: 0,
+            stages: Vec::new(),
+            paths: TrackedPaths::default(),
+        }
+    }
 }
 
 /// A question as a plan that asks for paths and learns from results.
@@ -227,13 +256,7 @@ impl QuestionSolve {
                 Asking::Mobility(Mobility::new(system, points, *depth)?)
             }
             Question::RealCurve { samples } => {
-                if !(1..=MOST_ARC_SAMPLES).contains(samples) {
-                    return Err(QuestionError::Wish {
-                        field: "samples",
-                        found: samples.to_string(),
-                        expected: format!("1 to {MOST_ARC_SAMPLES}"),
-                    });
-                }
+                within("samples", *samples, MOST_ARC_SAMPLES)?;
                 Asking::RealCurve(Box::new(RealCurves::new(*samples)))
             }
             Question::Intersect(with) => {
@@ -262,19 +285,28 @@ impl QuestionSolve {
                 Asking::Locus(Box::new(Locus::new(Wanted::Singular, 0..count)))
             }
             Question::RealPoints => Asking::RealPoints(Box::new(RealPoints::new())),
+            Question::RealSurface { samples } => {
+                within("samples", *samples, MOST_SURFACE_SAMPLES)?;
+                Asking::RealSurface(Box::new(RealSurfaces::new(*samples)))
+            }
         };
-        Self::try_from(State {
-            system: Arc::new(system.clone()),
-            options: options.clone(),
-            components: components.to_vec(),
+        let state = State {
             own,
             others,
-            asking,
-            job: None,
-            crossings_left: 0,
-            stages: Vec::new(),
-            paths: TrackedPaths::default(),
-        })
+            ..State::new(system, options, components, asking)
+        };
+        Self::try_from(state)
+    }
+
+    /// Real curves, told how to be followed.
+    fn of_curves(
+        system: &System,
+        options: &DecompositionOptions,
+        components: &[WitnessSet],
+        curves: RealCurves,
+    ) -> Result<Self, QuestionError> {
+        let asking = Asking::RealCurve(Box::new(curves));
+        Self::try_from(State::new(system, options, components, asking))
     }
 
     /// The same with another limit of repetitions, where nothing is open yet.
@@ -334,7 +366,10 @@ impl QuestionSolve {
         let done = state.job.take();
         if let Some(job) = &done {
             state.paths.add(&job.paths());
-            state.crossings_left += job.crossings_left();
+            // Of fibres of a surface all points are looked at.
+            if !matches!(state.asking, Asking::RealSurface(_)) {
+                state.crossings_left += job.crossings_left();
+            }
         }
         let done = done.as_ref();
         let mut with = self.sets.context();
@@ -349,6 +384,13 @@ impl QuestionSolve {
             Asking::RealCurve(asking) => asking.advance(&mut with, done),
             Asking::Locus(asking) => asking.advance(&mut with, done),
             Asking::RealPoints(asking) => asking.advance(&mut with, done),
+            Asking::RealSurface(asking) => {
+                let job = asking.advance(&mut with, done);
+                if asking.has_child() {
+                    return None;
+                }
+                job
+            }
             Asking::Done(_) => None,
         };
         if job.is_none() {
@@ -366,6 +408,10 @@ impl QuestionSolve {
                     Answer::Components(Box::new(found))
                 }
                 Asking::RealPoints(asking) => Answer::RealPoints(asking.take()),
+                Asking::RealSurface(asking) => {
+                    state.paths.add(&asking.paths());
+                    Answer::RealSurface(asking.take())
+                }
                 Asking::Done(_) => return None,
             };
             state.asking = Asking::Done(Box::new(answer));
@@ -399,14 +445,29 @@ impl Solve for QuestionSolve {
             if let Asking::Done(_) = self.state.asking {
                 return Next::Done;
             }
+            if let Asking::RealSurface(asking) = &mut self.state.asking
+                && asking.has_child()
+            {
+                match asking.next(numbers) {
+                    Next::Open(opening) => {
+                        let stage = real_surface::progress(&opening.stage);
+                        self.state.stages.push(stage);
+                        return Next::Open(opening);
+                    }
+                    Next::Wait => return Next::Wait,
+                    Next::Done => {}
+                }
+            }
             self.state.job = self.next_job();
         }
     }
 
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
-        let job = self.state.job.as_mut();
-        job.expect("only an open stage is absorbed")
-            .absorb(stage, results);
+        match (&mut self.state.job, &mut self.state.asking) {
+            (Some(job), _) => job.absorb(stage, results),
+            (None, Asking::RealSurface(asking)) => asking.absorb(stage, results),
+            (None, _) => unreachable!("only an open stage is absorbed"),
+        }
         if let Some(known) = self.state.stages.iter_mut().find(|known| known.id == stage) {
             known.absorbed = true;
         }
@@ -424,6 +485,7 @@ impl Solve for QuestionSolve {
             Asking::RealCurve(_) => "following real branches between critical points",
             Asking::Locus(asking) => asking.description(),
             Asking::RealPoints(asking) => asking.description(),
+            Asking::RealSurface(asking) => asking.description(),
             Asking::Done(_) => "done",
         };
         Progress {
@@ -443,6 +505,18 @@ impl Solve for QuestionSolve {
             doubts: self.doubts(),
             paths: self.paths(),
         }))
+    }
+}
+
+/// Whether a number is one of these.
+fn within(field: &'static str, found: u32, most: u32) -> Result<(), QuestionError> {
+    match (1..=most).contains(&found) {
+        true => Ok(()),
+        false => Err(QuestionError::Wish {
+            field,
+            found: found.to_string(),
+            expected: format!("1 to {most}"),
+        }),
     }
 }
 

@@ -20,7 +20,8 @@ use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use traced::{Critical, End, FibrePoint, Task, Tracing, distance, row_of, value};
+use traced::{Critical, End, FibrePoint, Task, Tracing, distance};
+pub(super) use traced::{row_of, value};
 
 /// Most stages between fibres: one for each end of a slab and for each sample.
 const MOST_STAGES: usize = 20_000;
@@ -56,9 +57,20 @@ enum Phase {
     Slabs(usize),
 }
 
+/// A form that is given, and values of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Given {
+    form: Vec<[i32; 2]>,
+    /// Levels besides those of the curve; none: only these.
+    levels: Vec<f64>,
+    /// The order of magnitude of the form.
+    size: f64,
+}
+
 /// Component by component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RealCurves {
+    given: Option<Given>,
     /// Samples of each arc, besides its ends and its middle.
     samples: u32,
     found: Vec<RealCurve>,
@@ -70,11 +82,20 @@ pub(super) struct RealCurves {
 impl RealCurves {
     pub fn new(samples: u32) -> Self {
         Self {
+            given: None,
             samples,
             found: Vec::new(),
             phase: Phase::Begin,
             number: 0,
             now: Tracing::default(),
+        }
+    }
+
+    /// Along this form, with these levels, among which are those of all curves, where there are some.
+    pub fn along(samples: u32, form: Vec<[i32; 2]>, levels: Vec<f64>, size: f64) -> Self {
+        Self {
+            given: Some(Given { form, levels, size }),
+            ..Self::new(samples)
         }
     }
 
@@ -112,7 +133,8 @@ impl RealCurves {
         if begun && now.doubts.is_empty() {
             curve.check();
         }
-        if begun && !curve.doubts.is_empty() && self.number + 1 < MOST_FORMS {
+        let others = self.given.is_none() && self.number + 1 < MOST_FORMS;
+        if begun && !curve.doubts.is_empty() && others {
             self.number += 1;
             return;
         }
@@ -141,7 +163,10 @@ impl RealCurves {
         let Some(involution) = &with.problem.involution else {
             return self.doubt("complex conjugation does not map solutions to solutions");
         };
-        self.now.form = form(with, self.number);
+        self.now.form = match &self.given {
+            Some(given) => given.form.clone(),
+            None => form(with, self.number),
+        };
         self.phase = Phase::Mirror;
         let row = &operand.slices[0];
         let mut start = vec![row[0].conj()];
@@ -166,11 +191,8 @@ impl RealCurves {
         let ends = job.ends();
         let inside = ends.iter().filter(|(_, _, end)| back(end)).count();
         if inside == 0 && ends.len() == own.len() {
-            return self.doubt(
-                "it is not its own conjugate: its real points are finitely many, and are not searched",
-            );
-        }
-        if inside < own.len() {
+            self.now.apart = true;
+        } else if inside < own.len() {
             return self.doubt("whether it is its own conjugate is not clear");
         }
         self.phase = Phase::Start;
@@ -238,6 +260,9 @@ impl RealCurves {
 
     /// A line has no critical points.
     fn no_critical_points(&mut self, with: &mut Context<'_>) -> Option<Job> {
+        if self.now.apart {
+            return None;
+        }
         let operand = &with.operands[self.found.len()];
         self.slabs(with, operand)
     }
@@ -302,6 +327,9 @@ impl RealCurves {
                 });
             }
         }
+        if self.now.apart {
+            return None;
+        }
         self.slabs(with, operand)
     }
 
@@ -323,18 +351,23 @@ impl RealCurves {
                 _ => now.levels.push(value),
             }
         }
-        let margin = match now.levels.len() {
-            0 | 1 => 0.5 * size_of(operand, &now.form),
-            _ => 0.2 * range,
-        };
-        now.middles = match (now.levels.first(), now.levels.last()) {
-            (Some(first), Some(last)) => {
-                let between = now.levels.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
-                let before = std::iter::once(first - margin);
-                before.chain(between).chain([last + margin]).collect()
+        if let Some(given) = self.given.as_ref().filter(|g| !g.levels.is_empty()) {
+            let own = std::mem::replace(&mut now.levels, given.levels.clone());
+            let same = |a: f64| {
+                given
+                    .levels
+                    .iter()
+                    .any(|b| (a - b).abs() <= SAME_VALUE * range)
+            };
+            if !own.into_iter().all(same) {
+                return self.doubt("a critical point is at none of the levels");
             }
-            _ => vec![0.0],
-        };
+        }
+        let size = self
+            .given
+            .as_ref()
+            .map_or_else(|| size_of(operand, &now.form), |g| g.size);
+        now.middles = middles(&now.levels, size);
         let row = |value: &f64| vec![row_of(&now.form, *value)];
         let targets = now.middles.iter().map(row).collect();
         self.phase = Phase::Fibres;
@@ -388,35 +421,25 @@ impl RealCurves {
     fn plan_tasks(&mut self) {
         let now = &mut self.now;
         let last = now.levels.len();
-        let count = f64::from(self.samples + 1);
+        // Where there is no level.
+        let reach = self.given.as_ref().map_or(1.0, |given| 0.5 * given.size);
         for slab in 0..now.middles.len() {
             let middle = now.middles[slab];
             let sides = [slab.checked_sub(1), (slab < last).then_some(slab)];
-            let other = sides.into_iter().flatten().next();
-            let reach = other.map_or(1.0, |level| (now.levels[level] - middle).abs());
-            for (side, level) in sides.into_iter().enumerate() {
-                if let Some(level) = level {
-                    let to = now.levels[level];
-                    now.tasks.push(Task {
+            let values = values_beside(&now.levels, middle, (slab, reach), self.samples);
+            for (values, level) in values.into_iter().zip(sides) {
+                now.tasks.extend(level.map(|level| Task {
+                    slab,
+                    to: now.levels[level],
+                    level: Some(level),
+                }));
+                if now.fibres[slab].iter().any(|p| p.real) {
+                    let sample = |to: f64| Task {
                         slab,
                         to,
-                        level: Some(level),
-                    });
-                }
-                if !now.fibres[slab].iter().any(|p| p.real) {
-                    continue;
-                }
-                let sign = if side == 0 { -1.0 } else { 1.0 };
-                let end = level.map_or(middle + sign * reach, |level| now.levels[level]);
-                for k in 1..=self.samples {
-                    // Denser near the end, where arcs may turn.
-                    let part = f64::from(k) / count;
-                    let part = part * (2.0 - part);
-                    now.tasks.push(Task {
-                        slab,
-                        to: middle + part * (end - middle),
                         level: None,
-                    });
+                    };
+                    now.tasks.extend(values.into_iter().map(sample));
                 }
             }
         }
@@ -459,6 +482,54 @@ impl RealCurves {
     }
 }
 
+/// Values of the form in the middle of the slabs: before the first level, between two, after the last.
+fn middles(levels: &[f64], size: f64) -> Vec<f64> {
+    let (Some(first), Some(last)) = (levels.first(), levels.last()) else {
+        return vec![0.0];
+    };
+    let margin = match levels.len() {
+        1 => 0.5 * size,
+        _ => 0.2 * (last - first).max(1e-3 * first.abs().max(1.0)),
+    };
+    let between = levels.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    let before = std::iter::once(first - margin);
+    before.chain(between).chain([last + margin]).collect()
+}
+
+/// Values of samples on either side of the middle of a slab; `reach`: how far they go where there is no level at all.
+fn values_beside(
+    levels: &[f64],
+    middle: f64,
+    (slab, reach): (usize, f64),
+    samples: u32,
+) -> [Vec<f64>; 2] {
+    let sides = [slab.checked_sub(1), (slab < levels.len()).then_some(slab)];
+    let other = sides.into_iter().flatten().next();
+    let reach = other.map_or(reach, |level| (levels[level] - middle).abs());
+    let count = f64::from(samples + 1);
+    let parts = (1..=samples).map(|k| f64::from(k) / count);
+    // Denser near the end, where arcs may turn.
+    let parts: Vec<f64> = parts.map(|part| part * (2.0 - part)).collect();
+    let side = |level: Option<usize>, sign: f64| {
+        let end = level.map_or(middle + sign * reach, |level| levels[level]);
+        let parts = parts.iter();
+        parts.map(|part| middle + part * (end - middle)).collect()
+    };
+    [side(sides[0], -1.0), side(sides[1], 1.0)]
+}
+
+/// Values of the middles and of all samples of each slab, ascending, of curves along a form of this size that is given.
+pub(super) fn sections(levels: &[f64], size: f64, samples: u32) -> Vec<Vec<f64>> {
+    let middles = middles(levels, size).into_iter().enumerate();
+    let values = middles.map(|(slab, middle)| {
+        let [below, above] = values_beside(levels, middle, (slab, 0.5 * size), samples);
+        let mut values: Vec<f64> = below.into_iter().chain([middle]).chain(above).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    });
+    values.collect()
+}
+
 /// A random real form: integers that conjugation exchanges where it exchanges variables.
 fn form(with: &Context<'_>, number: u32) -> Vec<[i32; 2]> {
     let n = with.problem.variables();
@@ -483,7 +554,7 @@ fn form(with: &Context<'_>, number: u32) -> Vec<[i32; 2]> {
 }
 
 /// The order of magnitude of the form on a component.
-fn size_of(operand: &Operand, form: &[[i32; 2]]) -> f64 {
+pub(super) fn size_of(operand: &Operand, form: &[[i32; 2]]) -> f64 {
     let row = row_of(form, 0.0);
     let length = row.iter().map(|c| c.norm_sqr()).sum::<f64>().sqrt();
     let points = operand.set.doubles();

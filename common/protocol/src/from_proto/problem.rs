@@ -230,6 +230,11 @@ fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
         Some(known) => Some(KnownComponents {
             equations: known.equations,
             components: witness_sets(known.components).map_err(|e| e.within("decompose.known"))?,
+            parameters: {
+                let (field, values) = ("decompose.known.parameters", &known.parameters);
+                within_limit(field, values.len(), sizes::PARAMETERS)?;
+                complexes(field, values)?
+            },
         }),
     };
     Ok(Decompose {

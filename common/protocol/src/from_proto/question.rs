@@ -36,6 +36,9 @@ fn asked(m: v1::Question) -> Result<Asked, ProtocolError> {
         }),
         v1::question::Kind::SingularLocus(_) => Question::SingularLocus,
         v1::question::Kind::RealPoints(_) => Question::RealPoints,
+        v1::question::Kind::RealSurface(surface) => Question::RealSurface {
+            samples: surface.samples,
+        },
         v1::question::Kind::Certify(_) => Question::Certify,
         v1::question::Kind::Multidegree(_) => Question::Multidegree,
         v1::question::Kind::Mobility(mobility) => Question::Mobility {

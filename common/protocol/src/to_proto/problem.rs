@@ -117,6 +117,7 @@ fn decompose(wanted: &Decompose) -> v1::Decompose {
         known: wanted.known.as_ref().map(|known| v1::KnownComponents {
             equations: known.equations,
             components: known.components.iter().map(witness_set).collect(),
+            parameters: complexes(&known.parameters),
         }),
     }
 }

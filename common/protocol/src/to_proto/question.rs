@@ -31,6 +31,9 @@ pub fn question(asked: &Asked) -> v1::Question {
         })),
         Question::SingularLocus => Some(Kind::SingularLocus(true)),
         Question::RealPoints => Some(Kind::RealPoints(true)),
+        Question::RealSurface { samples } => Some(Kind::RealSurface(v1::RealSurfaceQuestion {
+            samples: *samples,
+        })),
         Question::Certify => Some(Kind::Certify(true)),
         Question::Multidegree => Some(Kind::Multidegree(true)),
         Question::Mobility { points, depth } => Some(Kind::Mobility(v1::MobilityQuestion {

@@ -3,6 +3,7 @@
 use super::decomposition::Decomposition;
 use super::evidence::Trace;
 use super::real_curve::RealCurve;
+use super::real_surface::RealSurface;
 use super::witness_set::ComponentId;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -174,6 +175,8 @@ pub enum Answer {
     Components(Box<Decomposition>),
     /// Real points.
     RealPoints(Vec<RealPoints>),
+    /// Real surfaces.
+    RealSurface(Vec<RealSurface>),
 }
 
 impl Answer {
@@ -190,6 +193,7 @@ impl Answer {
             Self::RealCurve(_) => "real-curve",
             Self::Components(_) => "components",
             Self::RealPoints(_) => "real-points",
+            Self::RealSurface(_) => "real-surface",
         }
     }
 
@@ -217,6 +221,10 @@ impl Answer {
             Self::Components(_) => Vec::new(),
             Self::RealPoints(components) => {
                 let each = components.iter();
+                each.flat_map(|c| of_component(c.id, &c.doubts)).collect()
+            }
+            Self::RealSurface(surfaces) => {
+                let each = surfaces.iter();
                 each.flat_map(|c| of_component(c.id, &c.doubts)).collect()
             }
         }

@@ -1,6 +1,7 @@
 //! Decomposition: all components of all dimensions, and how the paths that found them add up.
 
 use super::evidence::Doubt;
+use super::family::Family;
 use super::method::{Method, Verification};
 use super::witness_set::WitnessSet;
 use crate::completeness::Completeness;
@@ -75,6 +76,9 @@ pub struct Decomposition {
     pub paths: TrackedPaths,
     /// ... and to tell its points apart.
     pub paths_of_loops: TrackedPaths,
+    /// What the components of a general member of the family have become, where these were known.
+    #[serde(default)]
+    pub family: Option<Family>,
 }
 
 impl Decomposition {

@@ -76,4 +76,9 @@ pub enum Question {
     SingularLocus,
     /// At least one point on every connected part of the real points of each component.
     RealPoints,
+    /// The real part of each component of dimension 2 in space.
+    RealSurface {
+        /// Sections between two levels on either side of a middle, and points of each strip of a section.
+        samples: u32,
+    },
 }

@@ -1,9 +1,10 @@
 //! `cognate decompose`: every irreducible component of every dimension, on a coordinator of its own or on a
-//! running one; of a system, or of one whose components are known with further equations.
+//! running one; of a system, of one whose components are known with further equations, or of a family at many values
+//! of its parameters.
 
 use super::question::{joined, read};
 use crate::arguments::{Decompose, MethodName};
-use crate::commands::solve;
+use crate::commands::{family, solve};
 use crate::connection::Target;
 use crate::error::{ClientError, Exit};
 use crate::problem::{self, Prepared, read_system};
@@ -22,6 +23,9 @@ pub async fn run(a: &Decompose) -> Result<Exit, ClientError> {
         (None, ..) => unreachable!("the parser wants a file, or --resume with --add"),
     };
     let prepared = problem::for_components(prepared, &a.components);
+    if prepared.submission.options.target_parameters.len() > 1 {
+        return family::run(a, running.as_ref(), prepared).await;
+    }
     let output = a.output();
     solve::anywhere(&a.service, running.as_ref(), &output, &a.progress, prepared).await
 }
@@ -47,6 +51,7 @@ async fn resumed(
     let known_components = KnownComponents {
         equations: u32::try_from(equations).expect("equations are counted in 32 bits"),
         components: known.sets(),
+        parameters: Vec::new(),
     };
     let options = Options {
         seed: Some(known.seed),

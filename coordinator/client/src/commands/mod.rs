@@ -7,6 +7,7 @@ pub mod coordinator;
 pub mod decompose;
 pub mod delete;
 pub mod explain;
+pub mod family;
 pub mod fleet;
 pub mod fsck;
 pub mod info;

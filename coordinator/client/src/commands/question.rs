@@ -1,4 +1,4 @@
-//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-points`, `singular-locus` and
+//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-surface`, `real-points`, `singular-locus` and
 //! `certify`: what is asked of components that were found before. Each is a job, of a coordinator of its own or of a running one.
 
 use crate::commands::solve;
@@ -7,7 +7,7 @@ use crate::error::{ClientError, Exit};
 use crate::output::curve_svg;
 use crate::problem::Prepared;
 use crate::sets::arguments::{
-    Member, Mobility, Plain, Project, Ranges, RealCurve, Sample, SetArguments,
+    Member, Mobility, Plain, Project, Ranges, RealCurve, RealSurface, Sample, SetArguments,
 };
 use crate::sets::{KnownSet, points};
 use cognate_continuation::tracker::settings::Preset;
@@ -95,6 +95,12 @@ pub async fn singular_locus(a: &Plain) -> Result<Exit, ClientError> {
 /// Real points of components.
 pub async fn real_points(a: &Plain) -> Result<Exit, ClientError> {
     ask(&a.set, |_| Ok(Question::RealPoints)).await
+}
+
+/// The real part of surfaces.
+pub async fn real_surface(a: &RealSurface) -> Result<Exit, ClientError> {
+    let samples = a.samples;
+    ask(&a.set, |_| Ok(Question::RealSurface { samples })).await
 }
 
 /// How points can be moved.

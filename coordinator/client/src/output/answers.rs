@@ -2,7 +2,7 @@
 
 use super::files::{create, make_folder, write_file};
 use super::text::{Columns, Look, count, counted, seconds, wrapped};
-use super::{json, print};
+use super::{json, print, surface};
 use crate::arguments::{Format, OutputArguments};
 use crate::error::{ClientError, Exit};
 use cognate_summary::question::QuestionSummary;
@@ -152,6 +152,15 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
         ],
         "sample" => &["id", "count", "wanted", "failed"],
         "certify" => &["id", "points", "certified", "distinct"],
+        "real-surface" => &[
+            "id",
+            "degree",
+            "compact",
+            "euler",
+            "parts",
+            "triangles",
+            "settled",
+        ],
         "real-points" => &["id", "points", "has_real_points", "settled"],
         "real-curve" => &[
             "id",
@@ -239,6 +248,9 @@ fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result
             "samples.csv",
             &arcs(curves, summary.problem.variables),
         )?;
+    }
+    if let Some(surfaces) = &summary.surfaces {
+        surface::write(folder, surfaces)?;
     }
     write_file(folder, "summary.json", &json::summary(summary_json))
 }

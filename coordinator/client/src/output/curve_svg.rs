@@ -1,9 +1,10 @@
 //! Real curves as a drawing (SVG): arcs, smooth and singular vertices, in two coordinates.
 
 use super::files::write_file;
+use super::{curve_dxf, surface};
 use crate::error::ClientError;
 use cognate_systems::system::System;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -62,7 +63,7 @@ pub fn axes(system: &System, names: &[String]) -> Result<Vec<AxisOf>, String> {
     }
 }
 
-/// Writes curve.svg from the folder's curve.json.
+/// Writes curve.svg and curve.dxf from the folder's curve.json, and of curves in three variables and more curve.html.
 pub fn write(folder: &Path, axes: &[AxisOf]) -> Result<(), ClientError> {
     let path = folder.join("curve.json");
     let text = std::fs::read_to_string(&path).map_err(|source| ClientError::File {
@@ -72,7 +73,65 @@ pub fn write(folder: &Path, axes: &[AxisOf]) -> Result<(), ClientError> {
     })?;
     let curves: Value = serde_json::from_str(&text)
         .map_err(|e| ClientError::GaveUp(format!("its curves are no JSON: {e}")))?;
+    write_file(
+        folder,
+        "curve.dxf",
+        &curve_dxf::drawing(&lines(&curves, axes)),
+    )?;
+    if let Some(spatial) = spatial(&curves) {
+        surface::page(folder, "curve.html", &spatial)?;
+    }
     write_file(folder, "curve.svg", &drawing(&curves, axes))
+}
+
+/// The points of each arc with its vertices, and names of the curves.
+fn lines(curves: &Value, axes: &[AxisOf]) -> Vec<(String, Vec<(f64, f64)>)> {
+    let of_curve = |curve: &Value| {
+        let name = curve["id"].as_str().unwrap_or("curve").replace('.', "-");
+        let edges = list(&curve["edges"]).iter();
+        let arcs = edges.map(|edge| (name.clone(), whole_arc(curve, edge, axes)));
+        arcs.collect::<Vec<_>>()
+    };
+    list(curves).iter().flat_map(of_curve).collect()
+}
+
+/// The arcs in the first three variables, as pieces of a surface without triangles; `None` where there are fewer.
+fn spatial(curves: &Value) -> Option<Vec<Value>> {
+    let mut found = Vec::new();
+    for curve in list(curves) {
+        let (mut vertices, mut segments) = (Vec::new(), Vec::new());
+        let point = |p: &Value| -> Option<[f64; 3]> {
+            let part = |k: usize| p[k][0].as_f64();
+            Some([part(0)?, part(1)?, part(2)?])
+        };
+        for edge in list(&curve["edges"]) {
+            let end = |k: usize| {
+                let vertex = edge["ends"][k].as_u64()?;
+                Some(&curve["vertices"][vertex as usize]["point"])
+            };
+            let samples = list(&edge["samples"]).iter();
+            let first = vertices.len();
+            for p in end(0).into_iter().chain(samples).chain(end(1)) {
+                vertices.push(point(p)?);
+            }
+            segments.extend((first + 1..vertices.len()).map(|k| [k - 1, k]));
+        }
+        found.push(
+            json!({"id": curve["id"], "vertices": vertices, "triangles": [], "segments": segments}),
+        );
+    }
+    Some(found)
+}
+
+/// The points of an arc: from its lower vertex over its samples to its upper one.
+fn whole_arc(curve: &Value, edge: &Value, axes: &[AxisOf]) -> Vec<(f64, f64)> {
+    let end = |k: usize| {
+        let vertex = edge["ends"][k].as_u64()?;
+        coordinates(&curve["vertices"][vertex as usize]["point"], axes)
+    };
+    let samples = list(&edge["samples"]).iter();
+    let samples = samples.filter_map(|p| coordinates(p, axes));
+    end(0).into_iter().chain(samples).chain(end(1)).collect()
 }
 
 fn coordinates(point: &Value, axes: &[AxisOf]) -> Option<(f64, f64)> {
@@ -150,14 +209,8 @@ fn draw_arc(
     axes: &[AxisOf],
     (place, color): (&Placement<'_>, &str),
 ) {
-    let end = |k: usize| {
-        let vertex = edge["ends"][k].as_u64()?;
-        coordinates(&curve["vertices"][vertex as usize]["point"], axes)
-    };
-    let samples = list(&edge["samples"]).iter();
-    let samples = samples.filter_map(|p| coordinates(p, axes));
-    let whole = end(0).into_iter().chain(samples).chain(end(1));
-    let points: Vec<String> = whole
+    let points: Vec<String> = whole_arc(curve, edge, axes)
+        .into_iter()
         .map(place)
         .map(|(x, y)| format!("{x:.2},{y:.2}"))
         .collect();
@@ -177,7 +230,6 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     #[test]
     fn arcs_go_from_vertex_to_vertex() {

@@ -54,7 +54,7 @@ pub(super) fn make_folder(path: &Path) -> Result<(), ClientError> {
 }
 
 /// A file in a folder, which is there, with this text.
-pub(super) fn write_file(folder: &Path, name: &str, text: &str) -> Result<(), ClientError> {
+pub(crate) fn write_file(folder: &Path, name: &str, text: &str) -> Result<(), ClientError> {
     let mut out = create(folder, name)?;
     out.write(text)?;
     out.finish()

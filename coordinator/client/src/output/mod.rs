@@ -3,9 +3,11 @@
 pub mod answers;
 mod bertini;
 pub mod certificates;
+pub mod curve_dxf;
 pub mod curve_svg;
 pub mod decomposition;
 pub mod drawing;
+pub mod family;
 pub mod files;
 pub mod json;
 pub mod linkages;
@@ -14,6 +16,7 @@ pub mod parquet;
 pub mod paths;
 pub mod progress;
 pub mod summary;
+pub mod surface;
 pub mod table;
 pub mod text;
 

@@ -26,8 +26,8 @@ pub struct SetArguments {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
-    /// Also write summary.json here, points as samples.csv, real curves as curve.json and curve.svg, components as a
-    /// SET
+    /// Also write summary.json here, points as samples.csv, real curves as curve.json, .svg, .dxf and .html, real
+    /// surfaces as surface.json, .obj, .stl, .svg and .html, components as a SET
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// How progress is shown until the answer is there.
@@ -153,6 +153,20 @@ pub struct RealCurve {
     /// The two variables that curve.svg shows [default: the first two]; of a pair of conjugates real and imaginary part
     #[arg(long, value_name = "X,Y", value_delimiter = ',')]
     pub axes: Vec<String>,
+}
+
+/// `cognate real-surface`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate real-surface here --component 2.1 --output surface && open surface/surface.html")]
+pub struct RealSurface {
+    /// Components.
+    #[command(flatten)]
+    pub set: SetArguments,
+    /// Sections between two levels on either side of a middle, and points of each strip of a section
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=50))]
+    pub samples: u32,
 }
 
 /// `cognate mobility`.

@@ -459,6 +459,7 @@ impl Locus {
     pub fn take(&mut self, variables: &[String]) -> Decomposition {
         let highest = self.dimensions.first().map_or(0, |d| d.number);
         ordered(Decomposition {
+            family: None,
             variables: variables.to_vec(),
             method: Method::Equations,
             verification: None,

@@ -47,7 +47,10 @@ pub(super) fn assemble(with: &Context<'_>, operand: &Operand, now: &Tracing) -> 
             None => assembly.sample(task.slab, task.to, ends),
         }
     }
-    assembly.kinds(with);
+    match now.apart {
+        true => assembly.alone(),
+        false => assembly.kinds(with),
+    }
     let Assembly {
         mut vertices,
         mut edges,
@@ -194,6 +197,13 @@ impl<'a> Assembly<'a> {
                 }) => self.edges[arc].samples.push(point.clone()),
                 _ => self.doubts.push(format!("a sample at {at:.6} was lost")),
             }
+        }
+    }
+
+    /// The real points of a curve that is not its own conjugate: its conjugate passes there, too.
+    fn alone(&mut self) {
+        for vertex in &mut self.vertices {
+            vertex.kind = VertexKind::Acnode;
         }
     }
 

@@ -42,6 +42,8 @@ pub(super) struct FibrePoint {
 /// The current component.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Tracing {
+    /// It is not its own conjugate: its real points are some of the critical ones, and no arc is real.
+    pub apart: bool,
     pub form: Vec<[i32; 2]>,
     /// Points on the slice of the level, then on all its forms.
     pub start: Vec<Vec<Complex64>>,
@@ -58,7 +60,7 @@ pub(super) struct Tracing {
 }
 
 /// The slice where the form has a value.
-pub(super) fn row_of(form: &[[i32; 2]], value: f64) -> Vec<Complex64> {
+pub(in crate::questions) fn row_of(form: &[[i32; 2]], value: f64) -> Vec<Complex64> {
     let coefficients = form
         .iter()
         .map(|&[re, im]| Complex64::new(f64::from(re), f64::from(im)));
@@ -68,7 +70,7 @@ pub(super) fn row_of(form: &[[i32; 2]], value: f64) -> Vec<Complex64> {
 }
 
 /// The form at a point.
-pub(super) fn value(form: &[[i32; 2]], point: &[Complex64]) -> f64 {
+pub(in crate::questions) fn value(form: &[[i32; 2]], point: &[Complex64]) -> f64 {
     let row = row_of(form, 0.0);
     let terms = row[1..].iter().zip(point).map(|(c, x)| (c * x).re);
     terms.sum()

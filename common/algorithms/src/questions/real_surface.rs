@@ -1,0 +1,892 @@
+//! Real surfaces: the real part of components of dimension 2 in space, triangulated.
+//!
+//! Two random real forms u and v show the surface on a plane. Its outline there, the curve where both are critical, and
+//! its singular curves are real curves; their points where u is critical are levels of u, between which sections of the
+//! surface are alike. A section is known by its fibres over the strips between its marks, the points on those curves
+//! ([`section`]); arcs of neighbouring sections with the same ends bound a face ([`mesh`]). (After Besana, Di Rocco,
+//! Hauenstein, Sommese, Wampler: Cell decomposition of almost smooth real algebraic surfaces, Numer. Algorithms 63, 2013;
+//! sheets are told by their order instead of by paths between sections, which takes one stage for all fibres.)
+
+mod equations;
+mod mesh;
+mod section;
+
+use super::real_curve::{RealCurves, row_of, sections, size_of, value};
+use super::{Context, Operand, QuestionSolve};
+use crate::decomposition::deflated::equal_ones_merged;
+use crate::decomposition::job::Job;
+use crate::decomposition::{DecompositionOptions, DecompositionSolve};
+use crate::progress::StageProgress;
+use crate::solve::{Next, Solve, StageNumbers};
+use cognate_continuation::bend::doubles_of;
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::work::StageId;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::real_curve::{CurveVertex, RealCurve, VertexKind};
+use cognate_solutions::witness::real_surface::{Mesh, RealSurface};
+use cognate_solutions::witness::{Answer, TrackedPaths, WitnessSet};
+use cognate_systems::system::System;
+use mesh::{Builder, links};
+use num_complex::Complex64;
+use section::{Fibre, Mark, Place, Section};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Forms that are tried until one leaves no doubt.
+const MOST_FORMS: u32 = 3;
+/// Levels nearer than this part of their range are one.
+const SAME_LEVEL: f64 = 1e-7;
+/// Marks of a level nearer than this, relative to their size, are one.
+const SAME_MARK: f64 = 1e-5;
+/// Values of u nearer than this part of the range are those of one section.
+const SAME_SECTION: f64 = 1e-6;
+/// Levels that are no nearer than this part of their range are two.
+const OTHER_LEVEL: f64 = 1e-5;
+/// Parts of a strip of a level at which sections beside it are compared.
+const LOOKS: [f64; 5] = [0.5, 0.25, 0.75, 0.1, 0.9];
+
+/// Points of fibres, which are known to 32 digits, are real below this imaginary part,
+const REAL: f64 = 1e-15;
+/// ... and not real above this.
+const NOT_REAL: f64 = 1e-12;
+
+/// What is being done with the current component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    Begin,
+    /// The outline is decomposed.
+    Outline,
+    /// The singular curves are.
+    Singular,
+    /// Where u is critical on the curves of this number.
+    Levels(usize),
+    /// The arcs of the curves of this number between all levels.
+    Arcs(usize),
+    /// All fibres.
+    Fibres,
+}
+
+/// A solve inside this one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Child {
+    Decomposition(Box<DecompositionSolve>),
+    Curves(Box<QuestionSolve>),
+}
+
+/// Curves on the surface, of one system.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Curves {
+    system: Arc<System>,
+    components: Vec<WitnessSet>,
+    singular: bool,
+    found: Vec<RealCurve>,
+}
+
+/// The current component.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Viewing {
+    /// u, v and the third form.
+    forms: [Vec<[i32; 2]>; 3],
+    curves: Vec<Curves>,
+    levels: Vec<f64>,
+    /// Degree of the multiple components of the outline: curves along which the surface is singular.
+    multiple: u64,
+    doubts: Vec<String>,
+}
+
+/// Component by component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct RealSurfaces {
+    /// Sections and fibres on either side of a middle.
+    samples: u32,
+    found: Vec<RealSurface>,
+    phase: Phase,
+    number: u32,
+    now: Viewing,
+    child: Option<Child>,
+    /// Paths of all children that are done.
+    paths: TrackedPaths,
+}
+
+/// All sections of a component, with what comes to the levels.
+struct Plan {
+    /// Sections by growing u; of levels and of slabs.
+    sections: Vec<Section>,
+    /// For each section the level that it is of.
+    levels: Vec<Option<usize>>,
+    /// For each level the mark to which each arc of critical points comes from below and from above.
+    limits: Vec<[BTreeMap<usize, usize>; 2]>,
+    /// For each level and side, for each strip: values of v at which the section beside it is looked at.
+    looks: Vec<[Vec<Vec<Fibre>>; 2]>,
+    /// Whether points are singular, by name of their arc.
+    singular: Vec<bool>,
+}
+
+/// The marks of all sections.
+struct Collected {
+    /// By slab and section.
+    marks: Vec<Vec<Vec<Mark>>>,
+    at_levels: Vec<Vec<Mark>>,
+    /// For each level the mark to which each arc of critical points comes from below and from above.
+    limits: Vec<[BTreeMap<usize, usize>; 2]>,
+    /// Whether points are singular, by name of their arc.
+    singular: Vec<bool>,
+}
+
+impl Collected {
+    fn new(values: &[Vec<f64>], levels: usize) -> Self {
+        Self {
+            marks: values.iter().map(|v| vec![Vec::new(); v.len()]).collect(),
+            at_levels: vec![Vec::new(); levels],
+            limits: vec![[BTreeMap::new(), BTreeMap::new()]; levels],
+            singular: Vec::new(),
+        }
+    }
+
+    /// The mark of a level at this place, by name.
+    fn at_level(&mut self, level: usize, place: Place, singular: bool) -> usize {
+        let marks = &mut self.at_levels[level];
+        if let Some(known) = marks.iter_mut().find(|m| near(&m.place, &place)) {
+            known.singular |= singular;
+            return known.name;
+        }
+        let name = marks.len();
+        marks.push(Mark {
+            place,
+            name,
+            singular,
+        });
+        name
+    }
+
+    /// A range of v with all marks well inside; `size`: the order of magnitude of v where there are none.
+    fn window(&self, size: f64) -> [f64; 2] {
+        let all = self.marks.iter().flatten().chain(&self.at_levels).flatten();
+        let limits = (f64::INFINITY, f64::NEG_INFINITY);
+        let values = all.map(|mark| mark.place[1]);
+        let (low, high) = values.fold(limits, |(low, high), v| (low.min(v), high.max(v)));
+        let margin = match high > low {
+            true => 0.4 * (high - low),
+            false => size,
+        };
+        match low <= high {
+            true => [low - margin, high + margin],
+            false => [-margin, margin],
+        }
+    }
+}
+
+impl RealSurfaces {
+    pub fn new(samples: u32) -> Self {
+        Self {
+            samples,
+            found: Vec::new(),
+            phase: Phase::Begin,
+            number: 0,
+            now: Viewing::default(),
+            child: None,
+            paths: TrackedPaths::default(),
+        }
+    }
+
+    pub fn take(&mut self) -> Vec<RealSurface> {
+        std::mem::take(&mut self.found)
+    }
+
+    /// Paths of all solves inside.
+    pub fn paths(&self) -> TrackedPaths {
+        self.paths
+    }
+
+    /// Whether a solve inside goes on.
+    pub fn has_child(&self) -> bool {
+        self.child.is_some()
+    }
+
+    /// What the solve inside wants next; it is done where that says so.
+    pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
+        match &mut self.child {
+            Some(Child::Decomposition(solve)) => solve.next(numbers),
+            Some(Child::Curves(solve)) => solve.next(numbers),
+            None => Next::Done,
+        }
+    }
+
+    pub fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+        match &mut self.child {
+            Some(Child::Decomposition(solve)) => solve.absorb(stage, results),
+            Some(Child::Curves(solve)) => solve.absorb(stage, results),
+            None => unreachable!("a stage is of a solve"),
+        }
+    }
+
+    /// What it does, in a few words.
+    pub fn description(&self) -> &'static str {
+        match self.phase {
+            Phase::Begin | Phase::Outline => "decomposing the outline of a surface",
+            Phase::Singular => "decomposing singular curves of a surface",
+            Phase::Levels(_) => "finding levels at which sections change",
+            Phase::Arcs(_) => "following curves on the surface between levels",
+            Phase::Fibres => "moving slices to all fibres",
+        }
+    }
+
+    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+        let mut done = done;
+        loop {
+            let operand = with.operands.get(self.found.len())?;
+            let phase = self.phase.clone();
+            let job = match (phase, self.child.take(), done.take()) {
+                (Phase::Begin, ..) => self.begin(with, operand),
+                (Phase::Outline, Some(child), _) => self.outlined(with, child),
+                (Phase::Singular, Some(child), _) => self.with_singular(with, child),
+                (Phase::Levels(k), Some(child), _) => self.levelled(with, k, child),
+                (Phase::Arcs(k), Some(child), _) => self.followed(with, operand, k, child),
+                (Phase::Fibres, _, Some(job)) => self.assemble(with, operand, job),
+                (phase, ..) => unreachable!("{phase:?} waits for something"),
+            };
+            if job.is_some() || self.child.is_some() {
+                return job;
+            }
+            if !self.now.doubts.is_empty() && self.number + 1 < MOST_FORMS && self.begun() {
+                self.number += 1;
+                self.now = Viewing::default();
+                self.phase = Phase::Begin;
+                continue;
+            }
+            if self.phase != Phase::Begin {
+                self.settle(operand, None);
+            }
+        }
+    }
+
+    fn begun(&self) -> bool {
+        !self.now.forms[0].is_empty()
+    }
+
+    /// Writes down what is known of the component.
+    fn settle(&mut self, operand: &Operand, surface: Option<RealSurface>) {
+        let now = std::mem::take(&mut self.now);
+        self.number = 0;
+        self.phase = Phase::Begin;
+        self.found.push(surface.unwrap_or(RealSurface {
+            id: operand.id,
+            degree: operand.degree() as u64,
+            compact: false,
+            euler: 0,
+            levels: now.levels,
+            mesh: Mesh::default(),
+            doubts: now.doubts,
+        }));
+    }
+
+    fn doubt<T>(&mut self, doubt: impl Into<String>) -> Option<T> {
+        self.now.doubts.push(doubt.into());
+        None
+    }
+
+    fn begin(&mut self, with: &Context<'_>, operand: &Operand) -> Option<Job> {
+        let n = with.problem.variables();
+        let refused = match (&with.problem.involution, operand.dimension()) {
+            (_, dimension) if dimension != 2 => {
+                Some(format!("it has dimension {dimension}; surfaces have 2"))
+            }
+            _ if n != 3 => Some(format!("{n} variables; surfaces are drawn in 3")),
+            _ if !operand.set.ranks.is_empty() => Some("it is multiple".into()),
+            (None, _) => Some("complex conjugation does not map solutions to solutions".into()),
+            (Some(i), _) if i.partner != [0, 1, 2] => {
+                Some("conjugation exchanges variables; surfaces are drawn in real ones".into())
+            }
+            _ => None,
+        };
+        if let Some(refused) = refused {
+            self.now.doubts.push(refused);
+            self.settle(operand, None);
+            return None;
+        }
+        self.now.forms = forms(with, self.number);
+        self.phase = Phase::Outline;
+        let [u, v, _] = &self.now.forms;
+        let system = equations::outline(with.problem, &[u.clone(), v.clone()]);
+        self.decompose(with, system)
+    }
+
+    /// Begins to decompose the curves of a system.
+    fn decompose(&mut self, with: &Context<'_>, system: System) -> Option<Job> {
+        let options = DecompositionOptions {
+            dimensions: Some(1..=1),
+            ..self.options(with)
+        };
+        self.now.curves.push(Curves {
+            singular: self.phase == Phase::Singular,
+            system: Arc::new(system),
+            components: Vec::new(),
+            found: Vec::new(),
+        });
+        let system = &self.now.curves[self.now.curves.len() - 1].system;
+        match DecompositionSolve::new(system, &options) {
+            Ok(solve) => {
+                self.child = Some(Child::Decomposition(Box::new(solve)));
+                None
+            }
+            Err(error) => self.doubt(error.to_string()),
+        }
+    }
+
+    fn options(&self, with: &Context<'_>) -> DecompositionOptions {
+        let tracking = &with.problem.tracking;
+        DecompositionOptions {
+            seed: tracking.seed,
+            settings: tracking.settings.clone(),
+            tolerances: tracking.tolerances.clone(),
+            max_retries: tracking.max_retries,
+            own_units: false,
+            ..DecompositionOptions::default()
+        }
+    }
+
+    /// The components of a system of curves, and the degree of those that are multiple.
+    fn components(&mut self, child: Child) -> Option<(Vec<WitnessSet>, u64)> {
+        let Child::Decomposition(solve) = child else {
+            unreachable!("curves are decomposed first")
+        };
+        let found = solve.decomposition().expect("it is done");
+        self.paths.add(&found.paths);
+        self.paths.add(&found.paths_of_loops);
+        let curves = found.components.iter().filter(|c| c.dimension() == 1);
+        let unsettled = curves.clone().any(|c| !c.settled());
+        if unsettled || found.dimensions.iter().any(|d| !d.doubts.is_empty()) {
+            return self.doubt("its critical or singular curves are not settled");
+        }
+        let (plain, multiple): (Vec<_>, Vec<_>) = curves.partition(|c| c.deflation.is_empty());
+        let degree = multiple.iter().map(|c| c.degree).sum();
+        Some((plain.into_iter().cloned().collect(), degree))
+    }
+
+    fn outlined(&mut self, with: &mut Context<'_>, child: Child) -> Option<Job> {
+        let (plain, multiple) = self.components(child)?;
+        self.now.curves[0].components = plain;
+        if multiple == 0 {
+            return self.next_levels(with, 0);
+        }
+        self.now.multiple = multiple;
+        self.phase = Phase::Singular;
+        let system = equations::singular(with.problem);
+        self.decompose(with, system)
+    }
+
+    fn with_singular(&mut self, with: &mut Context<'_>, child: Child) -> Option<Job> {
+        let (plain, multiple) = self.components(child)?;
+        if multiple > 0 {
+            return self.doubt("it is singular along a curve where its derivatives vanish twice");
+        }
+        if plain.iter().map(|c| c.degree).sum::<u64>() != self.now.multiple {
+            return self.doubt("its singular curves are not the multiple ones of its outline");
+        }
+        self.now.curves[1].components = plain;
+        self.next_levels(with, 0)
+    }
+
+    /// The stage of curves that comes first from this number on.
+    fn next_levels(&mut self, with: &mut Context<'_>, number: usize) -> Option<Job> {
+        let all = self.now.curves.iter().enumerate().skip(number);
+        let mut left = all.filter(|(_, curves)| !curves.components.is_empty());
+        match left.next() {
+            Some((k, _)) => {
+                self.phase = Phase::Levels(k);
+                self.curves(with, k, 1, Vec::new())
+            }
+            None => {
+                let values = |curve: &RealCurve| -> Vec<f64> {
+                    let own = curve.vertices.iter();
+                    let own = own.filter(|v| v.kind != VertexKind::Regular);
+                    own.map(|v| v.value).collect()
+                };
+                let all = self.now.curves.iter().flat_map(|curves| &curves.found);
+                self.now.levels = merged(all.flat_map(values).collect());
+                let levels = &self.now.levels;
+                let range = levels
+                    .last()
+                    .zip(levels.first())
+                    .map_or(0.0, |(b, a)| b - a);
+                if levels
+                    .windows(2)
+                    .any(|pair| pair[1] - pair[0] <= OTHER_LEVEL * range)
+                {
+                    return self.doubt("two levels are nearly the same");
+                }
+                self.next_arcs(with, 0)
+            }
+        }
+    }
+
+    fn curves(
+        &mut self,
+        with: &Context<'_>,
+        number: usize,
+        samples: u32,
+        levels: Vec<f64>,
+    ) -> Option<Job> {
+        let options = self.options(with);
+        let curves = &self.now.curves[number];
+        let form = self.now.forms[0].clone();
+        let size = size_of(&with.operands[self.found.len()], &form);
+        let along = RealCurves::along(samples, form, levels, size);
+        let solve = QuestionSolve::of_curves(&curves.system, &options, &curves.components, along);
+        match solve {
+            Ok(solve) => {
+                self.child = Some(Child::Curves(Box::new(solve)));
+                None
+            }
+            Err(error) => self.doubt(error.to_string()),
+        }
+    }
+
+    fn take_curves(&mut self, number: usize, child: Child) -> Option<()> {
+        let Child::Curves(solve) = child else {
+            unreachable!("curves are followed")
+        };
+        self.paths.add(&solve.paths());
+        if let Some(doubt) = solve.doubts().first() {
+            return self.doubt(format!("a curve on it: {doubt}"));
+        }
+        let Some(Answer::RealCurve(found)) = solve.answer() else {
+            unreachable!("real curves were asked")
+        };
+        self.now.curves[number].found = found.clone();
+        Some(())
+    }
+
+    fn levelled(&mut self, with: &mut Context<'_>, number: usize, child: Child) -> Option<Job> {
+        self.take_curves(number, child)?;
+        self.next_levels(with, number + 1)
+    }
+
+    fn next_arcs(&mut self, with: &mut Context<'_>, number: usize) -> Option<Job> {
+        let all = self.now.curves.iter().enumerate().skip(number);
+        let mut left = all.filter(|(_, curves)| !curves.components.is_empty());
+        if let Some((k, _)) = left.next() {
+            self.phase = Phase::Arcs(k);
+            return self.curves(with, k, self.samples, self.now.levels.clone());
+        }
+        let operand = &with.operands[self.found.len()];
+        let plan = self.plan(operand)?;
+        let targets = self.targets(&plan);
+        if targets.len() > operand.most_targets() {
+            return self.doubt(format!(
+                "{} fibres are too many; fewer samples take fewer",
+                targets.len()
+            ));
+        }
+        self.phase = Phase::Fibres;
+        Some(operand.moved_to(with.problem, with.deflations, targets))
+    }
+
+    fn followed(
+        &mut self,
+        with: &mut Context<'_>,
+        _: &Operand,
+        number: usize,
+        child: Child,
+    ) -> Option<Job> {
+        self.take_curves(number, child)?;
+        self.next_arcs(with, number + 1)
+    }
+
+    fn place(&self, point: &[Complex64]) -> Place {
+        [0, 1, 2].map(|k| value(&self.now.forms[k], point))
+    }
+
+    /// The marks of all sections and levels; a value of u over which some are missing. `values`: of the sections of each
+    /// slab.
+    fn collect(&self, values: &[Vec<f64>], range: f64) -> Result<Collected, f64> {
+        let levels = &self.now.levels;
+        let mut found = Collected::new(values, levels.len());
+        for curves in &self.now.curves {
+            for curve in &curves.found {
+                let vertex = |vertex: &CurveVertex| {
+                    let same = |l: &f64| (l - vertex.value).abs() <= SAME_SECTION * range;
+                    let level = levels.iter().position(same)?;
+                    Some((level, self.place(&vertex.point)))
+                };
+                let marks: Vec<Option<(usize, usize)>> = curve
+                    .vertices
+                    .iter()
+                    .map(|own| {
+                        let (level, place) = vertex(own)?;
+                        Some((level, found.at_level(level, place, curves.singular)))
+                    })
+                    .collect();
+                for edge in &curve.edges {
+                    let name = found.singular.len();
+                    found.singular.push(curves.singular);
+                    let places: Vec<Place> = edge.samples.iter().map(|p| self.place(p)).collect();
+                    let middle = places[places.len() / 2][0];
+                    let slab = levels.partition_point(|&level| level < middle);
+                    if places.len() != values[slab].len() {
+                        return Err(middle);
+                    }
+                    for (k, (&value, &place)) in values[slab].iter().zip(&places).enumerate() {
+                        if (value - place[0]).abs() > SAME_SECTION * range.max(value.abs()) {
+                            return Err(value);
+                        }
+                        found.marks[slab][k].push(Mark {
+                            place,
+                            name,
+                            singular: curves.singular,
+                        });
+                    }
+                    for (side, end) in edge.ends.iter().enumerate() {
+                        if let Some((level, mark)) = end.and_then(|end| marks[end]) {
+                            // The lower end of an arc is at a level that the arc reaches from above.
+                            found.limits[level][1 - side].insert(name, mark);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// All sections with their marks.
+    fn plan(&mut self, operand: &Operand) -> Option<Plan> {
+        let levels = self.now.levels.clone();
+        let size = size_of(operand, &self.now.forms[0]);
+        let range = match (levels.first(), levels.last()) {
+            (Some(first), Some(last)) if last > first => last - first,
+            _ => size,
+        };
+        let values = sections(&levels, size, self.samples);
+        let mut found = match self.collect(&values, range) {
+            Ok(found) => found,
+            Err(u) => {
+                return self.doubt(format!("points of a curve on it over {u:.6} are missing"));
+            }
+        };
+        let window = found.window(size_of(operand, &self.now.forms[1]));
+        let (mut sections, mut of_level) = (Vec::new(), Vec::new());
+        for (slab, (marks, values)) in found.marks.into_iter().zip(&values).enumerate() {
+            for (marks, &u) in marks.into_iter().zip(values) {
+                sections.push(Section::new(u, marks, window, self.samples));
+                of_level.push(None);
+            }
+            if slab < levels.len() {
+                let own = std::mem::take(&mut found.at_levels[slab]);
+                let section = Section::new(levels[slab], own, window, self.samples);
+                // Names become places in order of v.
+                for side in &mut found.limits[slab] {
+                    for mark in side.values_mut() {
+                        let is = |m: &Mark| m.name == *mark;
+                        let place = section.marks.iter().position(is);
+                        *mark = place.expect("it is one of them");
+                    }
+                }
+                sections.push(section);
+                of_level.push(Some(slab));
+            }
+        }
+        Some(Plan {
+            looks: looks(&sections, &of_level),
+            sections,
+            levels: of_level,
+            limits: found.limits,
+            singular: found.singular,
+        })
+    }
+
+    /// The slices of all fibres, in the order of [`Self::fill`].
+    fn targets(&self, plan: &Plan) -> Vec<Vec<Vec<Complex64>>> {
+        let row = |form: usize, value: f64| row_of(&self.now.forms[form], value);
+        let mut targets = Vec::new();
+        each_fibre(plan, &mut |u, v| targets.push(vec![row(0, u), row(1, v)]));
+        targets
+    }
+
+    /// Puts the real points of all fibres into the plan; `None` where some are not clear.
+    fn fill(
+        &mut self,
+        with: &mut Context<'_>,
+        operand: &Operand,
+        job: &Job,
+        plan: &mut Plan,
+    ) -> Option<()> {
+        let targets = self.targets(plan);
+        let ends = job.ends();
+        let mut fibres = Vec::with_capacity(targets.len());
+        for (rows, ends) in targets.iter().zip(ends.chunks(operand.degree())) {
+            let (u, v) = (-rows[0][0].re, -rows[1][0].re);
+            if ends.iter().any(|(_, d, _)| d.verdict != Verdict::Finite) {
+                return self.doubt(format!("points of the fibre at ({u:.6}, {v:.6}) were lost"));
+            }
+            let points: Vec<Vec<Complex64>> = ends.iter().map(|(_, _, v)| v.clone()).collect();
+            let refined = with
+                .deflations
+                .points_on(with.problem, (rows, &[]), &points);
+            let mut fibre = Fibre {
+                v,
+                ..Fibre::default()
+            };
+            let Some(refined) = refined.into_iter().collect::<Option<Vec<_>>>() else {
+                return self.doubt(format!("the fibre at ({u:.6}, {v:.6}) is not regular"));
+            };
+            let apart = refined.iter().map(|p| (p.clone(), 1)).collect();
+            if equal_ones_merged(apart).len() < operand.degree() {
+                return self.doubt(format!("two paths met in the fibre at ({u:.6}, {v:.6})"));
+            }
+            for refined in refined {
+                let point = doubles_of(&refined.point);
+                let apart = point.iter().map(|z| z.im.abs()).fold(0.0, f64::max);
+                if (REAL..NOT_REAL).contains(&apart) {
+                    return self.doubt("a point is neither clearly real nor clearly not");
+                }
+                let third = &self.now.forms[2];
+                let row = row_of(third, 0.0);
+                let value: Complex64 = row[1..].iter().zip(&point).map(|(c, x)| c * x).sum();
+                fibre.third.push([value.re, value.im]);
+                if apart < REAL {
+                    fibre.real.push([u, v, value.re]);
+                }
+            }
+            fibre.real.sort_by(|a, b| a[2].total_cmp(&b[2]));
+            fibres.push(fibre);
+        }
+        let mut fibres = fibres.into_iter();
+        let mut next = || fibres.next().expect("a fibre for each target");
+        for section in &mut plan.sections {
+            for fibre in section.strips.iter_mut().flat_map(|s| &mut s.fibres) {
+                *fibre = next();
+            }
+        }
+        for fibre in plan.looks.iter_mut().flatten().flatten().flatten() {
+            *fibre = next();
+        }
+        Some(())
+    }
+
+    /// Puts sections and triangles together.
+    fn assemble(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+        let mut plan = self.plan(operand)?;
+        self.fill(with, operand, job, &mut plan)?;
+        for section in &mut plan.sections {
+            if let Err(doubt) = section.connect() {
+                return self.doubt(doubt);
+            }
+        }
+        let built = match self.built(&plan) {
+            Ok(built) => built,
+            Err(doubt) => return self.doubt(doubt),
+        };
+        let inverse = inverse(&self.now.forms);
+        let mesh = built.finish(|place| {
+            let unknowns = inverse.map(|row| {
+                let sum: f64 = row.iter().zip(place).map(|(c, x)| c * x).sum();
+                Complex64::new(sum, 0.0)
+            });
+            let point = with.problem.to_variables(&unknowns);
+            [point[0].re, point[1].re, point[2].re]
+        });
+        let (euler, compact) = cells(&plan);
+        let mut surface = RealSurface {
+            id: operand.id,
+            degree: operand.degree() as u64,
+            compact,
+            euler,
+            levels: self.now.levels.clone(),
+            mesh,
+            doubts: Vec::new(),
+        };
+        surface.check();
+        if !surface.doubts.is_empty() {
+            self.now.doubts.append(&mut surface.doubts);
+            return None;
+        }
+        self.settle(operand, Some(surface));
+        None
+    }
+
+    /// All triangles.
+    fn built(&self, plan: &Plan) -> Result<Builder, String> {
+        let mut builder = Builder::default();
+        let section = |k: usize| (k, &plan.sections[k]);
+        for k in 0..plan.sections.len() {
+            let own = section(k);
+            for mark in (0..own.1.marks.len()).filter(|&m| own.1.on[m]) {
+                builder.mark(own, mark);
+            }
+            let Some(level) = plan.levels[k] else {
+                if k > 0 && plan.levels[k - 1].is_none() {
+                    builder.between(section(k - 1), own)?;
+                    curves(&mut builder, plan, [k - 1, k]);
+                }
+                continue;
+            };
+            for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
+                let looks = plan.looks[level][side].iter();
+                let looks: Vec<Vec<(f64, usize)>> = looks
+                    .map(|fibres| fibres.iter().map(|f| (f.v, f.real.len())).collect())
+                    .collect();
+                let limits = &plan.limits[level][side];
+                let links = links(own.1, &plan.sections[beside], &looks)?;
+                builder.at_level(own, section(beside), limits, &links)?;
+                let other = &plan.sections[beside];
+                for (m, mark) in other.marks.iter().enumerate() {
+                    let on = plan.singular[mark.name] && other.on[m];
+                    if let Some(&limit) = limits.get(&mark.name).filter(|_| on) {
+                        let ends = (builder.mark(own, limit), builder.mark(section(beside), m));
+                        builder.segment(ends.0, ends.1);
+                    }
+                }
+            }
+        }
+        Ok(builder)
+    }
+}
+
+/// Singular curves between two sections of one slab.
+fn curves(builder: &mut Builder, plan: &Plan, [a, b]: [usize; 2]) {
+    let (of_a, of_b) = (&plan.sections[a], &plan.sections[b]);
+    for (m, mark) in of_a.marks.iter().enumerate() {
+        let same = of_b.marks.iter().position(|other| other.name == mark.name);
+        if let Some(other) = same
+            && plan.singular[mark.name]
+            && of_a.on[m]
+        {
+            let ends = (builder.mark((a, of_a), m), builder.mark((b, of_b), other));
+            builder.segment(ends.0, ends.1);
+        }
+    }
+}
+
+/// Euler characteristic with compact support, and whether nothing goes to infinity.
+fn cells(plan: &Plan) -> (i64, bool) {
+    let mut euler = 0;
+    let mut compact = true;
+    let last = plan.sections.len() - 1;
+    let mut first_of_slab = true;
+    for (section, level) in plan.sections.iter().zip(&plan.levels) {
+        match level {
+            Some(_) => {
+                euler += section.euler();
+                first_of_slab = true;
+            }
+            None if first_of_slab => {
+                euler -= section.euler();
+                first_of_slab = false;
+            }
+            None => {}
+        }
+        compact &= section
+            .arcs
+            .iter()
+            .all(|arc| arc.ends.iter().all(Option::is_some));
+    }
+    let empty = |section: &Section| section.euler() == 0 && section.arcs.is_empty();
+    compact &= empty(&plan.sections[0]) && empty(&plan.sections[last]);
+    (euler, compact)
+}
+
+/// Values of v at which the sections beside a level are looked at, strip by strip.
+fn looks(sections: &[Section], levels: &[Option<usize>]) -> Vec<[Vec<Vec<Fibre>>; 2]> {
+    let own = sections
+        .iter()
+        .zip(levels)
+        .filter(|(_, level)| level.is_some());
+    own.map(|(section, _)| {
+        let strips = section.strips.iter().map(|strip| {
+            let fibre = |part: f64| Fibre {
+                v: strip.from + part * (strip.to - strip.from),
+                ..Fibre::default()
+            };
+            LOOKS.map(fibre).to_vec()
+        });
+        let strips: Vec<Vec<Fibre>> = strips.collect();
+        [strips.clone(), strips]
+    })
+    .collect()
+}
+
+/// Calls with u and v of each fibre: those of the sections, then those that are looked at beside levels.
+fn each_fibre(plan: &Plan, take: &mut dyn FnMut(f64, f64)) {
+    for section in &plan.sections {
+        for fibre in section.strips.iter().flat_map(|s| &s.fibres) {
+            take(section.u, fibre.v);
+        }
+    }
+    for (k, level) in plan.levels.iter().enumerate() {
+        let Some(level) = level else { continue };
+        for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
+            for fibre in plan.looks[*level][side].iter().flatten() {
+                take(plan.sections[beside].u, fibre.v);
+            }
+        }
+    }
+}
+
+/// Three random real forms.
+fn forms(with: &Context<'_>, number: u32) -> [Vec<[i32; 2]>; 3] {
+    let index = (1 << 51) | u64::from(number);
+    let mut random = RandomStream::new(with.problem.seed(), Purpose::Question, index);
+    let mut part = || {
+        let size = 200 + random.below(800) as i32;
+        if random.below(2) == 0 { size } else { -size }
+    };
+    loop {
+        let forms = [(); 3].map(|()| (0..3).map(|_| [part(), 0]).collect::<Vec<_>>());
+        // Not nearly dependent.
+        if determinant(&forms).abs() > 1.5e8 {
+            return forms;
+        }
+    }
+}
+
+fn determinant(forms: &[Vec<[i32; 2]>; 3]) -> f64 {
+    let at = |i: usize, j: usize| f64::from(forms[i][j % 3][0]);
+    let minors =
+        (0..3).map(|j| at(0, j) * (at(1, j + 1) * at(2, j + 2) - at(1, j + 2) * at(2, j + 1)));
+    minors.sum()
+}
+
+/// The unknowns by the values of the forms.
+fn inverse(forms: &[Vec<[i32; 2]>; 3]) -> [[f64; 3]; 3] {
+    let at = |i: usize, j: usize| f64::from(forms[i % 3][j % 3][0]);
+    let all = determinant(forms);
+    [0, 1, 2].map(|j| {
+        [0, 1, 2].map(|i| {
+            (at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1)) / all
+        })
+    })
+}
+
+/// Values by size, those that are one merged.
+fn merged(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    let range = match (values.first(), values.last()) {
+        (Some(first), Some(last)) => (last - first).max(1e-3 * first.abs().max(1.0)),
+        _ => 1.0,
+    };
+    values.dedup_by(|b, a| *b - *a <= SAME_LEVEL * range);
+    values
+}
+
+fn near(a: &Place, b: &Place) -> bool {
+    let apart = a
+        .iter()
+        .zip(b)
+        .map(|(x, y)| (x - y).abs())
+        .fold(0.0, f64::max);
+    let size = a.iter().map(|x| x.abs()).fold(1.0, f64::max);
+    apart <= SAME_MARK * size
+}
+
+/// The progress of a stage of a solve inside.
+pub(super) fn progress(stage: &cognate_continuation::work::Stage) -> StageProgress {
+    StageProgress {
+        id: stage.id,
+        work: stage.work,
+        attempt: stage.attempt,
+        items: stage.items().unwrap_or_default(),
+        absorbed: false,
+    }
+}

@@ -1,0 +1,243 @@
+//! The triangles between sections of a surface: arcs of neighbouring sections with the same ends belong together, and at
+//! a level, where sections change, each arc has a chain of arcs of the level's section as its limit.
+
+use super::section::{Place, Section};
+use cognate_solutions::witness::real_surface::Mesh;
+use std::collections::BTreeMap;
+
+/// A vertex of the mesh by where it is made: section, then a mark, or a strip, a fibre and a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Origin {
+    Mark([usize; 2]),
+    Sheet([usize; 4]),
+}
+
+/// Vertices with their values of v.
+type Line = Vec<(f64, u32)>;
+
+/// A mesh that grows; vertices are still in the three forms.
+#[derive(Default)]
+pub(super) struct Builder {
+    places: Vec<Place>,
+    known: BTreeMap<Origin, u32>,
+    triangles: Vec<[u32; 3]>,
+    segments: Vec<[u32; 2]>,
+}
+
+impl Builder {
+    /// The mesh with its vertices in the variables.
+    pub fn finish(self, to_variables: impl Fn(&Place) -> [f64; 3]) -> Mesh {
+        Mesh {
+            vertices: self.places.iter().map(to_variables).collect(),
+            triangles: self.triangles,
+            segments: self.segments,
+        }
+    }
+
+    fn vertex(&mut self, origin: Origin, place: Place) -> u32 {
+        let places = &mut self.places;
+        *self.known.entry(origin).or_insert_with(|| {
+            places.push(place);
+            (places.len() - 1) as u32
+        })
+    }
+
+    /// A mark of a section.
+    pub fn mark(&mut self, (number, section): (usize, &Section), mark: usize) -> u32 {
+        self.vertex(Origin::Mark([number, mark]), section.marks[mark].place)
+    }
+
+    /// The points of a sheet over a strip.
+    fn sheet(&mut self, (number, section): (usize, &Section), [strip, sheet]: [usize; 2]) -> Line {
+        let fibres = section.strips[strip].fibres.iter().enumerate();
+        fibres
+            .map(|(k, fibre)| {
+                let origin = Origin::Sheet([number, strip, k, sheet]);
+                (fibre.v, self.vertex(origin, fibre.real[sheet]))
+            })
+            .collect()
+    }
+
+    /// The points of an arc with its ends.
+    fn arc(&mut self, of: (usize, &Section), arc: usize) -> Line {
+        let section = of.1;
+        let [from, to] = section.arcs[arc].ends;
+        let mut line = Line::new();
+        line.extend(from.map(|m| (section.marks[m].place[1], self.mark(of, m))));
+        for &at in &section.arcs[arc].chain {
+            line.extend(self.sheet(of, at));
+        }
+        line.extend(to.map(|m| (section.marks[m].place[1], self.mark(of, m))));
+        line
+    }
+
+    /// A piece of a curve of marks.
+    pub fn segment(&mut self, a: u32, b: u32) {
+        if a != b {
+            self.segments.push([a.min(b), a.max(b)]);
+        }
+    }
+
+    /// Triangles between two lines, both by growing v.
+    fn stitch(&mut self, a: &Line, b: &Line) {
+        let part = |line: &Line, k: usize| {
+            let (first, last) = (line[0].0, line[line.len() - 1].0);
+            (line[k].0 - first) / (last - first).max(f64::MIN_POSITIVE)
+        };
+        let (mut i, mut j) = (0, 0);
+        while i + 1 < a.len() || j + 1 < b.len() {
+            let in_a = j + 1 == b.len() || (i + 1 < a.len() && part(a, i + 1) <= part(b, j + 1));
+            let triangle = match in_a {
+                true => [a[i].1, a[i + 1].1, b[j].1],
+                false => [a[i].1, b[j + 1].1, b[j].1],
+            };
+            let [x, y, z] = triangle;
+            if x != y && y != z && z != x {
+                self.triangles.push(triangle);
+            }
+            match in_a {
+                true => i += 1,
+                false => j += 1,
+            }
+        }
+    }
+
+    /// The triangles between two sections of one slab; what does not fit.
+    pub fn between(&mut self, a: (usize, &Section), b: (usize, &Section)) -> Result<(), String> {
+        let (of_a, of_b) = (a.1.keys(), b.1.keys());
+        let mut pairs = Vec::with_capacity(of_a.len());
+        for (k, key) in of_a.iter().enumerate() {
+            pairs.extend(of_b.iter().position(|other| other == key).map(|l| (k, l)));
+        }
+        if pairs.len() < of_a.len() || of_a.len() < of_b.len() {
+            return Err(format!(
+                "sections over {:.6} and {:.6} are not alike, though nothing lies between them",
+                a.1.u, b.1.u
+            ));
+        }
+        for (k, l) in pairs {
+            let (first, second) = (self.arc(a, k), self.arc(b, l));
+            self.stitch(&first, &second);
+        }
+        Ok(())
+    }
+
+    /// The triangles between the section of a level and the nearest one beside it. `limits`: the mark of the level to which
+    /// each arc of critical points comes; `links`: the arc of the section beside it that comes to each sheet of each
+    /// strip of the level.
+    pub fn at_level(
+        &mut self,
+        level: (usize, &Section),
+        beside: (usize, &Section),
+        limits: &BTreeMap<usize, usize>,
+        links: &[Vec<usize>],
+    ) -> Result<(), String> {
+        let unclear = |what: &str| format!("{what} at the level {:.6}", level.1.u);
+        let (section, other) = (level.1, beside.1);
+        let group_of = |mark: usize| {
+            let of = section.groups.iter().position(|g| g.contains(&mark));
+            of.expect("every mark is in a group")
+        };
+        let mut used = 0;
+        for (k, arc) in other.arcs.iter().enumerate() {
+            let limit = |end: Option<usize>| match end {
+                None => Ok(None),
+                Some(mark) => match limits.get(&other.marks[mark].name) {
+                    Some(&mark) => Ok(Some(mark)),
+                    None => Err(unclear("an arc of critical points ends nowhere")),
+                },
+            };
+            let [from, to] = [limit(arc.ends[0])?, limit(arc.ends[1])?];
+            let first = from.map_or(0, |mark| group_of(mark) + 1);
+            let after = to.map_or(section.strips.len(), |mark| group_of(mark) + 1);
+            let mut line = Line::new();
+            line.extend(from.map(|m| (section.marks[m].place[1], self.mark(level, m))));
+            let mut last: Option<usize> = None;
+            for strip in first..after {
+                let sheets = links[strip].iter();
+                let own: Vec<usize> = sheets
+                    .enumerate()
+                    .filter(|(_, arc)| **arc == k)
+                    .map(|(sheet, _)| sheet)
+                    .collect();
+                let &[sheet] = own.as_slice() else {
+                    return Err(unclear("which sheet an arc comes to is not clear"));
+                };
+                used += 1;
+                let of = section.arcs.iter();
+                let mut of = of.enumerate();
+                let here = of.find(|(_, a)| a.chain.contains(&[strip, sheet]));
+                let (here, arc) = here.expect("every sheet is on an arc");
+                // A mark of the level on the way.
+                if last != Some(here) {
+                    let begins = arc.ends[0].filter(|_| arc.chain[0] == [strip, sheet]);
+                    let expected = if last.is_none() { from } else { begins };
+                    if begins != expected || (last.is_some() && begins.is_none()) {
+                        return Err(unclear(
+                            "an arc does not begin where its critical point comes",
+                        ));
+                    }
+                    if last.is_some() {
+                        let mark = begins.expect("it is there");
+                        line.push((section.marks[mark].place[1], self.mark(level, mark)));
+                    }
+                }
+                last = Some(here);
+                line.extend(self.sheet(level, [strip, sheet]));
+            }
+            if let Some(here) = last
+                && section.arcs[here].ends[1] != to
+            {
+                return Err(unclear(
+                    "an arc does not end where its critical point comes",
+                ));
+            }
+            if from.is_none() || from != to {
+                line.extend(to.map(|m| (section.marks[m].place[1], self.mark(level, m))));
+            }
+            if line.is_empty() {
+                return Err(unclear("an arc has no limit"));
+            }
+            let own = self.arc(beside, k);
+            self.stitch(&own, &line);
+        }
+        let sheets: usize = links.iter().map(Vec::len).sum();
+        match used == sheets {
+            true => Ok(()),
+            false => Err(unclear("sheets are left over")),
+        }
+    }
+}
+
+/// The arc of a section that comes to each sheet of each strip of a level beside it. `looks`: for each strip some values of
+/// v, and how many real points the section has over each.
+pub(super) fn links(
+    level: &Section,
+    beside: &Section,
+    looks: &[Vec<(f64, usize)>],
+) -> Result<Vec<Vec<usize>>, String> {
+    let mut links = Vec::with_capacity(level.strips.len());
+    for (strip, looks) in looks.iter().enumerate() {
+        let sheets = level.sheets(strip);
+        let found = looks.iter().find_map(|&(v, count)| {
+            let other = beside.strip_at(v)?;
+            if beside.sheets(other) != sheets || count != sheets {
+                return None;
+            }
+            let arc_of = |sheet: usize| {
+                let of = beside.arcs.iter();
+                let mut of = of.enumerate();
+                let found = of.find(|(_, arc)| arc.chain.contains(&[other, sheet]));
+                found.map(|(k, _)| k)
+            };
+            (0..sheets).map(arc_of).collect::<Option<Vec<usize>>>()
+        });
+        links.push(found.ok_or_else(|| {
+            format!(
+                "the sections over {:.6} and {:.6} do not go together",
+                level.u, beside.u
+            )
+        })?);
+    }
+    Ok(links)
+}

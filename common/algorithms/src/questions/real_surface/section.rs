@@ -1,0 +1,292 @@
+//! Section: a surface in space over one value of a real form u, by its fibres over values of a second form v.
+//!
+//! Marks are the points of the section where v is critical or the surface singular. Between their values the sheets of
+//! the surface, ordered by a third form, do not meet. Beside a mark the sheets that come to it approach it faster than in
+//! proportion to the others, which go on to the next strip in their order.
+
+/// A real point in the three forms: u, v and the third.
+pub(super) type Place = [f64; 3];
+
+/// Part of the width of a strip from which the sheets beside a mark are looked at: a sheet that passes the mark nearer
+/// than this part would be taken for one that comes to it,
+pub(super) const BESIDE: f64 = 2e-5;
+/// ... beside one where the surface is singular, since there sheets come as near to one another,
+pub(super) const BESIDE_SINGULAR: f64 = 2e-3;
+/// ... and how much nearer the second look is.
+pub(super) const NEARER: f64 = 1.0 / 16.0;
+/// A sheet whose distance to the mark shrinks at least to this part comes to it: at a fold it shrinks to a quarter, at a
+/// cusp of the projection to 0.4,
+const COMES: f64 = 0.45;
+/// ... and one whose distance stays above this part does not.
+const STAYS: f64 = 0.55;
+/// Values nearer than this part of the range of v are one.
+const SAME: f64 = 1e-7;
+
+/// A point of the section where v is critical or the surface singular.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mark {
+    pub place: Place,
+    /// The arc of critical points that it is on, or its vertex.
+    pub name: usize,
+    /// Whether the surface is singular there.
+    pub singular: bool,
+}
+
+/// The fibre over a value of v.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Fibre {
+    pub v: f64,
+    /// The real points, by the third form.
+    pub real: Vec<Place>,
+    /// All points: v of u and v fixed, third forms as complex numbers.
+    pub third: Vec<[f64; 2]>,
+}
+
+/// A strip of values of v between those of marks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Strip {
+    /// At its ends; where no mark is, those of the window.
+    pub from: f64,
+    pub to: f64,
+    /// Fibres by growing v.
+    pub fibres: Vec<Fibre>,
+}
+
+/// A curve of the section on which v grows, between marks or to infinity.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Arc {
+    /// Marks at its ends, by place.
+    pub ends: [Option<usize>; 2],
+    /// Strips and sheets that it passes.
+    pub chain: Vec<[usize; 2]>,
+}
+
+/// The surface over one value of u.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Section {
+    pub u: f64,
+    /// By growing v.
+    pub marks: Vec<Mark>,
+    /// Marks with one value of v, by place in `marks`.
+    pub groups: Vec<Vec<usize>>,
+    pub strips: Vec<Strip>,
+    pub arcs: Vec<Arc>,
+    /// Marks that are on the surface.
+    pub on: Vec<bool>,
+}
+
+/// Parts of a strip at which fibres are taken; `ends`: how near to the marks at its ends, where some are.
+fn parts(samples: u32, ends: [Option<f64>; 2]) -> Vec<f64> {
+    let mut parts = vec![0.5];
+    let count = f64::from(samples + 1);
+    for k in 1..=samples {
+        let t = f64::from(k) / count;
+        // Denser near the ends, where arcs turn.
+        let part = 0.5 * t * (2.0 - t);
+        parts.extend([0.5 - part, 0.5 + part]);
+    }
+    match ends[0] {
+        Some(beside) => parts.extend([beside, beside * NEARER]),
+        None => parts.push(0.0),
+    }
+    match ends[1] {
+        Some(beside) => parts.extend([1.0 - beside, 1.0 - beside * NEARER]),
+        None => parts.push(1.0),
+    }
+    parts.sort_by(f64::total_cmp);
+    parts.dedup();
+    parts
+}
+
+impl Section {
+    /// The strips between these marks, in a window of v that holds all of them; fibres have no points yet.
+    pub fn new(u: f64, mut marks: Vec<Mark>, window: [f64; 2], samples: u32) -> Self {
+        marks.sort_by(|a, b| a.place[1].total_cmp(&b.place[1]));
+        let same = SAME * (window[1] - window[0]);
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for (k, mark) in marks.iter().enumerate() {
+            match groups.last_mut() {
+                Some(group) if mark.place[1] - marks[group[0]].place[1] <= same => group.push(k),
+                _ => groups.push(vec![k]),
+            }
+        }
+        let at = |group: &Vec<usize>| marks[group[0]].place[1];
+        let beside = |group: &Vec<usize>| match group.iter().any(|&m| marks[m].singular) {
+            true => BESIDE_SINGULAR,
+            false => BESIDE,
+        };
+        let mut strips = Vec::new();
+        for j in 0..=groups.len() {
+            let ends = [j.checked_sub(1).map(|j| &groups[j]), groups.get(j)];
+            let [before, after] = ends.map(|group| group.map(at));
+            let (from, to) = (before.unwrap_or(window[0]), after.unwrap_or(window[1]));
+            let values = parts(samples, ends.map(|group| group.map(beside)));
+            let fibre = |part: f64| Fibre {
+                v: from + part * (to - from),
+                ..Fibre::default()
+            };
+            strips.push(Strip {
+                from,
+                to,
+                fibres: values.into_iter().map(fibre).collect(),
+            });
+        }
+        Self {
+            u,
+            on: vec![true; marks.len()],
+            marks,
+            groups,
+            strips,
+            arcs: Vec::new(),
+        }
+    }
+
+    /// Number of sheets in a strip.
+    pub fn sheets(&self, strip: usize) -> usize {
+        self.strips[strip]
+            .fibres
+            .first()
+            .map_or(0, |f| f.real.len())
+    }
+
+    /// The strip that holds a value of v.
+    pub fn strip_at(&self, v: f64) -> Option<usize> {
+        self.strips.iter().position(|s| s.from < v && v < s.to)
+    }
+
+    /// Puts the arcs together; what does not fit.
+    pub fn connect(&mut self) -> Result<(), String> {
+        let u = self.u;
+        for strip in &self.strips {
+            let sheets = strip.fibres.first().map_or(0, |f| f.real.len());
+            if strip.fibres.iter().any(|f| f.real.len() != sheets) {
+                return Err(format!(
+                    "the number of real points changes between {:.6} and {:.6} over {u:.6}",
+                    strip.from, strip.to
+                ));
+            }
+        }
+        // Arcs under way, by sheet.
+        let mut open: Vec<usize> = Vec::new();
+        for sheet in 0..self.sheets(0) {
+            open.push(self.begin(None, [0, sheet]));
+        }
+        for j in 0..self.groups.len() {
+            let left = &self.strips[j].fibres;
+            let right = &self.strips[j + 1].fibres;
+            let (left, right) = (
+                [&left[left.len() - 2], &left[left.len() - 1]],
+                [&right[1], &right[0]],
+            );
+            let coming = self.coming(j, left)?;
+            let leaving = self.coming(j, right)?;
+            for &m in &self.groups[j].clone() {
+                let count = |of: &[Option<usize>]| of.iter().filter(|c| **c == Some(m)).count();
+                let (a, b) = (count(&coming), count(&leaving));
+                if (a + b) % 2 == 1 {
+                    let v = self.marks[m].place[1];
+                    return Err(format!(
+                        "{a} and {b} branches come to a critical point at ({u:.6}, {v:.6})"
+                    ));
+                }
+                self.on[m] = a + b > 0 || self.is_on(m, left);
+            }
+            let passing: Vec<usize> = coming
+                .iter()
+                .zip(&open)
+                .filter(|(mark, _)| mark.is_none())
+                .map(|(_, &arc)| arc)
+                .collect();
+            for (mark, &arc) in coming.iter().zip(&open) {
+                if mark.is_some() {
+                    self.arcs[arc].ends[1] = *mark;
+                }
+            }
+            let goes_on = leaving.iter().filter(|mark| mark.is_none()).count();
+            if goes_on != passing.len() {
+                let v = self.strips[j].to;
+                return Err(format!(
+                    "{} branches come past ({u:.6}, {v:.6}) and {goes_on} go on",
+                    passing.len()
+                ));
+            }
+            let mut passing = passing.into_iter();
+            let mut next = Vec::with_capacity(leaving.len());
+            for (sheet, mark) in leaving.iter().enumerate() {
+                let at = [j + 1, sheet];
+                next.push(match mark {
+                    Some(_) => self.begin(*mark, at),
+                    None => {
+                        let arc = passing.next().expect("as many go on as come");
+                        self.arcs[arc].chain.push(at);
+                        arc
+                    }
+                });
+            }
+            open = next;
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, mark: Option<usize>, at: [usize; 2]) -> usize {
+        self.arcs.push(Arc {
+            ends: [mark, None],
+            chain: vec![at],
+        });
+        self.arcs.len() - 1
+    }
+
+    /// The mark of a group to which each sheet comes, by a farther and a nearer fibre beside it.
+    fn coming(&self, group: usize, [far, near]: [&Fibre; 2]) -> Result<Vec<Option<usize>>, String> {
+        let mut coming = vec![None; near.real.len()];
+        for &m in &self.groups[group] {
+            let mark = &self.marks[m].place;
+            for (k, (far, near)) in far.real.iter().zip(&near.real).enumerate() {
+                let part =
+                    (near[2] - mark[2]).abs() / (far[2] - mark[2]).abs().max(f64::MIN_POSITIVE);
+                if part < COMES {
+                    coming[k] = Some(m);
+                } else if part < STAYS {
+                    let (u, v) = (self.u, mark[1]);
+                    return Err(format!(
+                        "whether a branch comes to the critical point at ({u:.6}, {v:.6}) is not clear"
+                    ));
+                }
+            }
+        }
+        Ok(coming)
+    }
+
+    /// Whether two complex points of fibres beside a mark, to which no real ones come, come to it.
+    fn is_on(&self, mark: usize, fibres: [&Fibre; 2]) -> bool {
+        let third = self.marks[mark].place[2];
+        let [far, near] = fibres.map(|fibre| {
+            let distance = |z: &[f64; 2]| ((z[0] - third).powi(2) + z[1].powi(2)).sqrt();
+            let mut distances: Vec<f64> = fibre.third.iter().map(distance).collect();
+            distances.sort_by(f64::total_cmp);
+            distances.get(1).copied()
+        });
+        far.zip(near).is_some_and(|(far, near)| near < COMES * far)
+    }
+
+    /// Places of the marks at the ends of each arc, by their names, and how many arcs with the same names begin before it,
+    /// in the order of the arcs.
+    pub fn keys(&self) -> Vec<(Option<usize>, Option<usize>, usize)> {
+        let mut order: Vec<usize> = (0..self.arcs.len()).collect();
+        order.sort_by_key(|&k| self.arcs[k].chain[0]);
+        let mut keys = vec![(None, None, 0); self.arcs.len()];
+        let mut seen: Vec<(Option<usize>, Option<usize>)> = Vec::new();
+        for k in order {
+            let [from, to] = self.arcs[k].ends.map(|end| end.map(|m| self.marks[m].name));
+            let rank = seen.iter().filter(|&&known| known == (from, to)).count();
+            seen.push((from, to));
+            keys[k] = (from, to, rank);
+        }
+        keys
+    }
+
+    /// Euler characteristic with compact support.
+    pub fn euler(&self) -> i64 {
+        self.on.iter().filter(|on| **on).count() as i64 - self.arcs.len() as i64
+    }
+}

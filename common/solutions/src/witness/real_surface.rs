@@ -1,0 +1,160 @@
+//! RealSurface: the real part of a component of dimension 2 in space, as a triangulation and by counts of its cells.
+
+use super::witness_set::ComponentId;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Triangles of a surface in a window, and curves and points on it that lie on no triangle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mesh {
+    /// Values of the three variables.
+    pub vertices: Vec<[f64; 3]>,
+    /// Vertices of triangles, by place.
+    pub triangles: Vec<[u32; 3]>,
+    /// Pieces of curves where the surface is singular, by their ends.
+    pub segments: Vec<[u32; 2]>,
+}
+
+/// What a mesh consists of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MeshCounts {
+    /// Connected parts.
+    pub parts: u64,
+    /// Vertices less edges plus triangles.
+    pub euler: i64,
+    /// Edges with one triangle: none where the surface is compact.
+    pub border: u64,
+    /// Edges with more than two triangles: where it crosses itself.
+    pub crossing: u64,
+}
+
+/// The real part of one component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RealSurface {
+    /// The component.
+    pub id: ComponentId,
+    /// Its degree.
+    pub degree: u64,
+    /// Whether it is bounded; else the mesh ends at the border of a window.
+    pub compact: bool,
+    /// Euler characteristic with compact support: the sum over its open cells of -1 to the power of their dimension.
+    pub euler: i64,
+    /// Values of a linear form at which the section changes.
+    pub levels: Vec<f64>,
+    /// How it is drawn.
+    pub mesh: Mesh,
+    /// What is not clear.
+    pub doubts: Vec<String>,
+}
+
+impl Mesh {
+    /// Parts, Euler characteristic, border.
+    pub fn counts(&self) -> MeshCounts {
+        let mut edges: BTreeMap<[u32; 2], u64> = BTreeMap::new();
+        let mut used = BTreeSet::new();
+        let mut part: Vec<u32> = (0..self.vertices.len() as u32).collect();
+        fn root(part: &mut [u32], mut k: u32) -> u32 {
+            while part[k as usize] != k {
+                part[k as usize] = part[part[k as usize] as usize];
+                k = part[k as usize];
+            }
+            k
+        }
+        let mut join = |a: u32, b: u32| {
+            let (a, b) = (root(&mut part, a), root(&mut part, b));
+            part[a.max(b) as usize] = a.min(b);
+        };
+        let ordered = |a: u32, b: u32| [a.min(b), a.max(b)];
+        for &[a, b, c] in &self.triangles {
+            for [a, b] in [[a, b], [b, c], [c, a]] {
+                *edges.entry(ordered(a, b)).or_default() += 1;
+                join(a, b);
+            }
+            used.extend([a, b, c]);
+        }
+        for &[a, b] in &self.segments {
+            edges.entry(ordered(a, b)).or_default();
+            join(a, b);
+            used.extend([a, b]);
+        }
+        let own = 0..self.vertices.len() as u32;
+        let parts = own.filter(|&k| root(&mut part, k) == k).count() as u64;
+        let (v, e, f) = (self.vertices.len(), edges.len(), self.triangles.len());
+        MeshCounts {
+            parts,
+            euler: v as i64 - e as i64 + f as i64,
+            border: edges.values().filter(|&&n| n == 1).count() as u64,
+            crossing: edges.values().filter(|&&n| n > 2).count() as u64,
+        }
+    }
+}
+
+impl RealSurface {
+    /// What does not fit together: a mesh of a bounded surface with a border or another Euler characteristic than its
+    /// cells.
+    pub fn check(&mut self) {
+        if !self.compact || !self.doubts.is_empty() {
+            return;
+        }
+        let counts = self.mesh.counts();
+        if counts.border > 0 {
+            let border = counts.border;
+            self.doubts.push(format!(
+                "the mesh has {border} edges with one triangle, though the surface is bounded"
+            ));
+        }
+        if counts.euler != self.euler {
+            self.doubts.push(format!(
+                "the mesh has Euler characteristic {}, the cells have {}",
+                counts.euler, self.euler
+            ));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tetrahedron() -> RealSurface {
+        let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        RealSurface {
+            id: ComponentId {
+                dimension: 2,
+                number: 1,
+            },
+            degree: 2,
+            compact: true,
+            euler: 2,
+            levels: Vec::new(),
+            mesh: Mesh {
+                vertices,
+                triangles: vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
+                segments: Vec::new(),
+            },
+            doubts: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_face_that_was_taken_away_is_found() {
+        let mut whole = tetrahedron();
+        whole.check();
+        assert!(whole.doubts.is_empty(), "{:?}", whole.doubts);
+        for lost in 0..4 {
+            let mut broken = tetrahedron();
+            broken.mesh.triangles.remove(lost);
+            broken.check();
+            assert_eq!(broken.doubts.len(), 2);
+        }
+    }
+
+    #[test]
+    fn parts_segments_and_points_are_counted() {
+        let mut mesh = tetrahedron().mesh;
+        mesh.vertices.extend([[5.0; 3], [6.0; 3], [7.0; 3]]);
+        mesh.segments.push([4, 5]);
+        let counts = mesh.counts();
+        assert_eq!((counts.parts, counts.euler), (3, 4));
+    }
+}

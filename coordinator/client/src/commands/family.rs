@@ -1,0 +1,185 @@
+//! A family at many values of its parameters: one decomposition at general values, from which components are followed
+//! to all others.
+
+use super::{submit, watch};
+use crate::arguments::{Decompose, Format};
+use crate::connection::{Connection, Target};
+use crate::embedded::Embedded;
+use crate::error::{ClientError, Exit};
+use crate::output::family::{Member, Sweep};
+use crate::output::progress::Progress;
+use crate::output::{self, decomposition, summary};
+use crate::problem::Prepared;
+use crate::sets::KnownSet;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_protocol::submission::Source;
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::witness::KnownComponents;
+use cognate_summary::AnySummary;
+use cognate_summary::decomposition::DecompositionSummary;
+use num_complex::Complex64;
+use std::path::Path;
+
+/// Seed of everything random where none is given.
+const SEED: u64 = 1;
+
+/// Decomposes at general values, then at all that were given, prints, stops everything that it started.
+pub async fn run(
+    a: &Decompose,
+    running: Option<&Target>,
+    prepared: Prepared,
+) -> Result<Exit, ClientError> {
+    let service = match running {
+        Some(_) => None,
+        None => Some(a.service.start().await?),
+    };
+    let own = service.as_ref().map(|s| Target::open_to_all(&s.address()));
+    let target = running.or(own.as_ref()).expect("one of them is there");
+    let Some(mut service) = service else {
+        return tokio::select! {
+            ended = sweep(a, target, prepared) => ended,
+            () = crate::interrupted() => Err(ClientError::Interrupted),
+        };
+    };
+    let ended = tokio::select! {
+        ended = sweep(a, target, prepared) => ended,
+        error = Embedded::abandoned(&mut service) => Err(error),
+        () = crate::interrupted() => Err(ClientError::Interrupted),
+    };
+    service.stop().await;
+    ended
+}
+
+async fn sweep(
+    a: &Decompose,
+    target: &Target,
+    mut prepared: Prepared,
+) -> Result<Exit, ClientError> {
+    let options = &mut prepared.submission.options;
+    let seed = *options.seed.get_or_insert(SEED);
+    let values = std::mem::take(&mut options.target_parameters);
+    let general = general_values(&values, seed);
+    let names = match &prepared.submission.source {
+        Source::System(system) => system.parameters.clone(),
+        Source::Text { .. } => Vec::new(),
+    };
+    let folder = a.output.as_deref();
+    let ask = Asking {
+        a,
+        target,
+        prepared: &prepared,
+    };
+    ask.say("decomposing at general values of the parameters");
+    let at = folder.map(|folder| folder.join("general"));
+    let (first, set) = ask.decompose(&general, None, at.as_deref()).await?;
+    let known = known(&ask, &first, &set, &general);
+    let mut found = Sweep {
+        name: prepared.name.clone(),
+        parameters: names,
+        general: Member::new(general, first),
+        members: Vec::with_capacity(values.len()),
+    };
+    for (k, values) in values.iter().enumerate() {
+        let at = folder.map(|folder| folder.join(format!("{:04}", k + 1)));
+        let (summary, _) = ask.decompose(values, known.as_ref(), at.as_deref()).await?;
+        found.members.push(Member::new(values.clone(), summary));
+    }
+    let text = match a.format {
+        Format::Json => found.json(),
+        Format::Table => found.table(folder),
+    };
+    if let Some(folder) = folder {
+        output::files::write_file(folder, "sweep.json", &found.json())?;
+    }
+    output::print(&text)?;
+    Ok(found.exit())
+}
+
+/// The components at general values, where they are a base for others.
+fn known(
+    ask: &Asking<'_>,
+    first: &DecompositionSummary,
+    set: &KnownSet,
+    general: &[Complex64],
+) -> Option<KnownComponents> {
+    let lowest = first.decomposition.by_dimension.first_key_value();
+    let whole = lowest.is_some_and(|(_, d)| d.complete == Completeness::Yes);
+    if !whole || ask.a.components.dimension.is_some() {
+        ask.say("no base for other values: the lowest dimension was not asked or is not settled");
+        return None;
+    }
+    let Source::System(system) = &ask.prepared.submission.source else {
+        return None;
+    };
+    Some(KnownComponents {
+        equations: u32::try_from(system.equations.len()).ok()?,
+        components: set.sets(),
+        parameters: general.to_vec(),
+    })
+}
+
+/// Random complex values, each of the size of those that are given.
+fn general_values(given: &[Vec<Complex64>], seed: u64) -> Vec<Complex64> {
+    let count = given.first().map_or(0, Vec::len);
+    let mut random = RandomStream::new(seed, Purpose::Question, 1 << 52);
+    let size = |place: usize| {
+        let sizes = given.iter().map(|values| values[place].norm_sqr().sqrt());
+        sizes.fold(0.0f64, f64::max)
+    };
+    let sizes: Vec<f64> = (0..count).map(size).collect();
+    let sizes = sizes
+        .into_iter()
+        .map(|size| if size > 0.0 { size } else { 1.0 });
+    sizes.map(|size| random.unit() * size).collect()
+}
+
+/// What all jobs of a sweep have in common.
+struct Asking<'a> {
+    a: &'a Decompose,
+    target: &'a Target,
+    prepared: &'a Prepared,
+}
+
+impl Asking<'_> {
+    fn say(&self, what: &str) {
+        let quiet = self.a.format == Format::Json;
+        Progress::of(self.a.progress.progress, quiet, std::time::Instant::now()).say(what);
+    }
+
+    /// One job: what it found, in words and as a set; files where a folder is named.
+    async fn decompose(
+        &self,
+        values: &[Complex64],
+        known: Option<&KnownComponents>,
+        folder: Option<&Path>,
+    ) -> Result<(DecompositionSummary, KnownSet), ClientError> {
+        let mut prepared = self.prepared.clone();
+        let options = &mut prepared.submission.options;
+        options.target_parameters = vec![values.to_vec()];
+        if let Some(wanted) = &mut options.decompose {
+            wanted.known = known.cloned();
+        }
+        let mut connection = Connection::open(self.target).await?;
+        let request = uuid::Uuid::new_v4().to_string();
+        let (job, _) = submit::send(&mut connection, &request, prepared).await?;
+        let mut progress = Progress::silent();
+        let (mut connection, last) = watch::follow(self.target, &job, &mut progress).await?;
+        match last.state() {
+            cognate_protocol::v1::JobState::Failed => {
+                return Err(ClientError::GaveUp(last.message));
+            }
+            cognate_protocol::v1::JobState::Cancelled => return Err(ClientError::Cancelled),
+            _ => {}
+        }
+        let text = connection.summary(&job).await?;
+        let AnySummary::Decomposition(found) = summary::read_any(&text)? else {
+            return Err(ClientError::GaveUp("its answer is no decomposition".into()));
+        };
+        if let Some(folder) = folder {
+            let components = connection.decomposition(&job).await?;
+            decomposition::write(folder, &text, components)?;
+        }
+        let set = KnownSet::of_job(&mut connection, &job).await?;
+        Ok((*found, set))
+    }
+}

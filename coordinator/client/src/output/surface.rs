@@ -1,0 +1,178 @@
+//! Real surfaces as files: JSON, OBJ and STL for other programs, a picture, and a page on which the surface can be turned.
+
+use super::files::{create, write_file};
+use crate::error::ClientError;
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Width and height of the picture.
+const SIZE: f64 = 640.0;
+/// The page; `DATA` stands for the surfaces.
+const PAGE: &str = include_str!("surface.html");
+/// The direction from which the picture is seen, and what is up in it: orthogonal vectors of length 1.
+const VIEW: [[f64; 3]; 3] = [
+    [-0.8, 0.6, 0.0],
+    [-0.288, -0.384, 0.877_268],
+    [0.526_361, 0.701_814, 0.48],
+];
+
+/// Triangles of a surface and curves on it.
+struct Mesh {
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[usize; 3]>,
+    segments: Vec<[usize; 2]>,
+}
+
+fn read(surface: &Value) -> Option<Mesh> {
+    let number = |v: &Value| v.as_f64();
+    let place = |v: &Value| v.as_u64().map(|k| k as usize);
+    fn all<const N: usize, T>(
+        list: &Value,
+        of: impl Fn(&Value) -> Option<T>,
+    ) -> Option<Vec<[T; N]>> {
+        let row = |row: &Value| -> Option<[T; N]> {
+            let row: Option<Vec<T>> = row.as_array()?.iter().map(&of).collect();
+            row?.try_into().ok()
+        };
+        list.as_array()?.iter().map(row).collect()
+    }
+    let mesh = Mesh {
+        vertices: all(&surface["vertices"], number)?,
+        triangles: all(&surface["triangles"], place)?,
+        segments: all(&surface["segments"], place)?,
+    };
+    let count = mesh.vertices.len();
+    let inside = mesh
+        .triangles
+        .iter()
+        .flatten()
+        .chain(mesh.segments.iter().flatten());
+    inside.copied().all(|k| k < count).then_some(mesh)
+}
+
+/// Writes all files.
+pub fn write(folder: &Path, surfaces: &[Value]) -> Result<(), ClientError> {
+    let strange = || ClientError::GaveUp("its triangles are not what was agreed".into());
+    let meshes: Option<Vec<Mesh>> = surfaces.iter().map(read).collect();
+    let meshes = meshes.ok_or_else(strange)?;
+    let list = Value::Array(surfaces.to_vec());
+    write_file(folder, "surface.json", &format!("{list}\n"))?;
+    let mut out = create(folder, "surface.obj")?;
+    let mut first = 1;
+    for (mesh, surface) in meshes.iter().zip(surfaces) {
+        out.write(&format!(
+            "o component {}\n",
+            surface["id"].as_str().unwrap_or("?")
+        ))?;
+        for [x, y, z] in &mesh.vertices {
+            out.write(&format!("v {x} {y} {z}\n"))?;
+        }
+        for [a, b, c] in &mesh.triangles {
+            out.write(&format!("f {} {} {}\n", a + first, b + first, c + first))?;
+        }
+        for [a, b] in &mesh.segments {
+            out.write(&format!("l {} {}\n", a + first, b + first))?;
+        }
+        first += mesh.vertices.len();
+    }
+    out.finish()?;
+    let mut out = create(folder, "surface.stl")?;
+    out.write("solid surface\n")?;
+    for mesh in &meshes {
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(|k| mesh.vertices[k]);
+            let [x, y, z] = normal(a, b, c);
+            out.write(&format!("facet normal {x} {y} {z}\n  outer loop\n"))?;
+            for [x, y, z] in [a, b, c] {
+                out.write(&format!("    vertex {x} {y} {z}\n"))?;
+            }
+            out.write("  endloop\nendfacet\n")?;
+        }
+    }
+    out.write("endsolid surface\n")?;
+    out.finish()?;
+    write_file(folder, "surface.svg", &picture(&meshes))?;
+    page(folder, "surface.html", surfaces)
+}
+
+/// A page on which surfaces, and curves as pieces of lines, can be turned by hand.
+pub fn page(folder: &Path, name: &str, surfaces: &[Value]) -> Result<(), ClientError> {
+    let list = Value::Array(surfaces.to_vec());
+    // Nothing in it can end the script.
+    let data = list.to_string().replace('<', "\\u003c");
+    write_file(folder, name, &PAGE.replace("DATA", &data))
+}
+
+/// The unit vector on a triangle; 0 where it has none.
+fn normal(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
+    let (p, q) = (
+        [0, 1, 2].map(|k| b[k] - a[k]),
+        [0, 1, 2].map(|k| c[k] - a[k]),
+    );
+    let n = [0, 1, 2].map(|k| p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]);
+    let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match length > 0.0 {
+        true => n.map(|x| x / length),
+        false => [0.0; 3],
+    }
+}
+
+/// The triangles from far to near, each as bright as it faces the light.
+fn picture(meshes: &[Mesh]) -> String {
+    let seen = |p: &[f64; 3]| VIEW.map(|row| row.iter().zip(p).map(|(a, b)| a * b).sum::<f64>());
+    let points = meshes.iter().flat_map(|mesh| &mesh.vertices).map(seen);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for point in points {
+        for k in 0..2 {
+            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
+        }
+    }
+    let range = (high[0] - low[0])
+        .max(high[1] - low[1])
+        .max(f64::MIN_POSITIVE);
+    let scale = 0.9 * SIZE / range;
+    let at = |p: [f64; 3]| {
+        let x = SIZE / 2.0 + (p[0] - (low[0] + high[0]) / 2.0) * scale;
+        let y = SIZE / 2.0 - (p[1] - (low[1] + high[1]) / 2.0) * scale;
+        format!("{x:.1},{y:.1}")
+    };
+    let mut parts: Vec<(f64, String)> = Vec::new();
+    for mesh in meshes {
+        for triangle in &mesh.triangles {
+            let corners = triangle.map(|k| seen(&mesh.vertices[k]));
+            let depth = corners.iter().map(|p| p[2]).sum::<f64>() / 3.0;
+            let n = normal(corners[0], corners[1], corners[2]);
+            // The light comes from the viewer, a little from above and from the left.
+            let light = (-0.3 * n[0] + 0.5 * n[1] + 0.8 * n[2]).abs().min(1.0);
+            let front = n[2] * (-0.3 * n[0] + 0.5 * n[1] + 0.8 * n[2]) >= 0.0;
+            let shade = 60.0 + 180.0 * if front { light } else { 0.7 * light };
+            let [r, g, b] = [0.55, 0.75, 1.0].map(|part| (shade * part) as u8);
+            let color = format!("#{r:02x}{g:02x}{b:02x}");
+            let corners = corners.map(at).join(" ");
+            parts.push((depth, format!(
+                "<polygon points=\"{corners}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.4\"/>\n"
+            )));
+        }
+        for segment in &mesh.segments {
+            let ends = segment.map(|k| seen(&mesh.vertices[k]));
+            let depth = (ends[0][2] + ends[1][2]) / 2.0 + 0.01 * range;
+            let ends = ends.map(at).join(" ");
+            parts.push((depth, format!(
+                "<polyline points=\"{ends}\" fill=\"none\" stroke=\"#b02020\" stroke-width=\"1.5\"/>\n"
+            )));
+        }
+    }
+    parts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {SIZE} {SIZE}\" width=\"{SIZE}\" height=\"{SIZE}\">\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
+    );
+    for (_, part) in parts {
+        text.push_str(&part);
+    }
+    text.push_str("</svg>\n");
+    text
+}
