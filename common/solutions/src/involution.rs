@@ -9,6 +9,7 @@
 use crate::field::{Field, ManyBits, PRIMES, PrimeField, evaluate};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_systems::expression::Node;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use rug::{Complex, Float};
@@ -86,8 +87,15 @@ impl Involution {
         let partner = partners(system)?;
         let involution = Self { partner };
         involution.check_groups(system)?;
+        if involution.exchanges_nothing() && is_real(system, parameters) {
+            return Ok(involution);
+        }
         involution.check_equations(system, parameters)?;
         Ok(involution)
+    }
+
+    fn exchanges_nothing(&self) -> bool {
+        self.partner.iter().enumerate().all(|(v, &p)| v == p)
     }
 
     /// The involution's image of a point given by the values of the variables.
@@ -266,6 +274,19 @@ impl Involution {
             size(value) <= largest * &small
         }))
     }
+}
+
+/// Whether all numbers are real and only joined by rational operations: then each equation is its own image, with
+/// nothing to be found out. With many targets this is asked of each.
+fn is_real(system: &System, parameters: &[Complex64]) -> bool {
+    let real = |node: &Node| match node {
+        Node::Constant(value) => value.is_real(),
+        // The root of a negative number is not real, nor need the value of a function be.
+        Node::Root(..) | Node::Function(..) => false,
+        _ => true,
+    };
+    let numbers = parameters.iter().all(|p| p.re.is_finite() && p.im == 0.0);
+    numbers && system.expressions.nodes().iter().all(real)
 }
 
 /// Past this many rows linear coefficients are not tried: elimination takes their cube.
@@ -519,6 +540,32 @@ mod tests {
         assert!(Involution::of(&s, &[Complex64::new(0.3, 0.0)]).is_ok());
         assert!(Involution::of(&s, &[Complex64::new(0.3, 1e-17)]).is_err());
         assert!(Involution::of(&s, &[Complex64::new(f64::NAN, 0.0)]).is_err());
+    }
+
+    /// What is seen at a glance, and what random values say, are one.
+    #[test]
+    fn real_numbers_need_no_values() {
+        let build = |im: i64| {
+            system(move |s| {
+                let e = &mut s.expressions;
+                let (x, y, p) = (e.variable(0), e.variable(1), e.parameter(0));
+                let c = e.constant(ComplexRational::new(3, im));
+                let (square, product) = (e.power(x, 2), e.multiply(c, p));
+                vec![e.subtract(square, product), e.subtract(y, x)]
+            })
+        };
+        for (im, p, expected) in [
+            (0, Complex64::new(0.3, 0.0), true),
+            (0, Complex64::new(0.3, 0.1), false),
+            (1, Complex64::new(0.3, 0.0), false),
+        ] {
+            let s = build(im);
+            assert_eq!(is_real(&s, &[p]), expected);
+            let involution = Involution {
+                partner: vec![0, 1],
+            };
+            assert_eq!(involution.check_equations(&s, &[p]).is_ok(), expected);
+        }
     }
 
     #[test]

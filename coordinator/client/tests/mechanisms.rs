@@ -2,7 +2,12 @@
 //!
 //! `meta.json` of each instance says what is expected and by which independent programs that was found.
 
-use cognate_client::mechanism::answer::{Answer, AnswerOptions, TargetAnswer, answer};
+use cognate_client::mechanism::answer::{Answer, answer};
+use cognate_client::mechanism::follow::samples::{Sample, samples};
+use cognate_client::mechanism::follow::{BranchEnd, Path, follow};
+use cognate_client::mechanism::preparation::AnswerOptions;
+use cognate_client::mechanism::solver::Solver;
+use cognate_client::mechanism::target_answer::TargetAnswer;
 use cognate_kinematics::compile::{Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, Space, read, targets};
@@ -47,7 +52,7 @@ fn check(
     for seed in SEEDS {
         let options = AnswerOptions {
             seed,
-            certify: false,
+            ..AnswerOptions::default()
         };
         let found =
             answer(mechanism, question, targets, &options).unwrap_or_else(|e| panic!("{e}"));
@@ -60,7 +65,7 @@ fn check(
             let all: Vec<_> = found.targets.iter().map(|t| &t.counts).collect();
             wrong += &format!(
                 "\n{name}, seed {seed}: {all:?} instead of {expected:?}; {:?} {}",
-                found.warnings, found.reason
+                found.warnings, found.preparation.reason
             );
         }
         for target in &found.targets {
@@ -435,10 +440,15 @@ fn inverse_of_forward_contains_the_start() {
             .collect();
         let options = AnswerOptions {
             seed,
-            certify: false,
+            ..AnswerOptions::default()
         };
         let found = answer(&arm, &question(Problem::Inverse), &targets, &options).unwrap();
-        assert_eq!(found.here, Some(16), "arm {seed}: {}", found.reason);
+        assert_eq!(
+            found.preparation.here,
+            Some(16),
+            "arm {seed}: {}",
+            found.preparation.reason
+        );
         assert!(found.settled, "arm {seed}: {:?}", found.warnings);
         for (start, target) in starts.iter().zip(&found.targets) {
             assert_eq!(target.counts.complex, 16, "arm {seed}: {:?}", target.counts);
@@ -503,7 +513,7 @@ fn two_rules_give_the_same_positions() {
     let targets = inputs("three_rrr", "inputs.json", &platform, &names);
     let options = AnswerOptions {
         seed: 1,
-        certify: false,
+        ..AnswerOptions::default()
     };
     let outputs = |mechanism: &Mechanism| -> Vec<[f64; 3]> {
         let found = answer(mechanism, &question(Problem::Forward), &targets, &options).unwrap();
@@ -557,7 +567,7 @@ fn chains_with_shifts_reach_their_poses() {
         let targets = [Target::Pose(chain.tool_pose(&values))];
         let options = AnswerOptions {
             seed,
-            certify: false,
+            ..AnswerOptions::default()
         };
         let asked = answer(&arm, &question(Problem::Inverse), &targets, &options);
         let found = match asked {
@@ -571,7 +581,7 @@ fn chains_with_shifts_reach_their_poses() {
             }
         };
         assert_eq!(
-            (found.here, found.settled),
+            (found.preparation.here, found.settled),
             (Some(expected), true),
             "{shifts:?}: {:?}",
             found.warnings
@@ -587,4 +597,161 @@ fn chains_with_shifts_reach_their_poses() {
             .fold(f64::INFINITY, f64::min);
         assert!(nearest < 1e-6, "{shifts:?}: {nearest}");
     }
+}
+
+/// What is kept is what was found, with all bits; a damaged entry is named and made again.
+#[test]
+fn a_prepared_mechanism_is_kept_and_checked() {
+    let instance = "arm_puma560";
+    let arm = mechanism(instance, "arm.json");
+    let targets = poses(instance, &arm);
+    let folder = tempfile::tempdir().unwrap();
+    let options = AnswerOptions {
+        seed: 3,
+        cache: Some(folder.path().to_owned()),
+        ..AnswerOptions::default()
+    };
+    let ask = || answer(&arm, &question(Problem::Inverse), &targets, &options).unwrap();
+    let first = ask();
+    assert!(!first.preparation.from_cache && first.warnings.is_empty());
+    let second = ask();
+    assert!(second.preparation.from_cache, "{:?}", second.warnings);
+    assert_eq!(first.targets, second.targets);
+    assert_eq!(first.preparation.reason, second.preparation.reason);
+    let entries: Vec<PathBuf> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    let [entry] = &entries[..] else {
+        panic!("one mechanism was prepared: {entries:?}");
+    };
+    let content = std::fs::read_to_string(entry).unwrap();
+    std::fs::write(entry, content.replacen("0.", "0.1", 1)).unwrap();
+    let third = ask();
+    assert!(!third.preparation.from_cache);
+    assert!(
+        third.warnings[0].contains("damaged"),
+        "{:?}",
+        third.warnings
+    );
+    assert_eq!(first.targets, third.targets);
+    assert!(ask().preparation.from_cache, "it was made again");
+    let other = AnswerOptions { seed: 4, ..options };
+    let other = answer(&arm, &question(Problem::Inverse), &targets, &other).unwrap();
+    assert!(
+        !other.preparation.from_cache,
+        "another seed has another member"
+    );
+}
+
+/// Neither threads nor neighbours enter what is said of a target.
+#[test]
+fn a_target_has_one_answer_in_any_company() {
+    let instance = "arm_generic";
+    let arm = mechanism(instance, "arm.json");
+    let seven = poses(instance, &arm);
+    let many: Vec<Target> = seven.iter().cycle().take(70).cloned().collect();
+    let ask = |targets: &[Target], threads: usize| {
+        let options = AnswerOptions {
+            seed: 1,
+            threads,
+            ..AnswerOptions::default()
+        };
+        answer(&arm, &question(Problem::Inverse), targets, &options).unwrap()
+    };
+    let together = ask(&many, 2);
+    for (k, target) in seven.iter().enumerate() {
+        let alone = ask(std::slice::from_ref(target), 1);
+        assert_eq!(alone.targets[0], together.targets[k], "pose {k}");
+        assert_eq!(alone.targets[0], together.targets[63 + k], "pose {k} again");
+    }
+}
+
+fn follow_path(mechanism: &Mechanism, problem: Problem, samples: Vec<Sample>) -> Path {
+    let options = AnswerOptions {
+        seed: 1,
+        ..AnswerOptions::default()
+    };
+    let asked = Question {
+        inputs: (problem == Problem::Forward).then(|| mechanism.inputs.clone()),
+        ..question(problem)
+    };
+    let solver = Solver::new(mechanism, &asked, &options).unwrap_or_else(|e| panic!("{e}"));
+    follow(&solver, samples).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Ground 4, crank 3, coupler and rocker 2.5 each: stretched where the crank stands upright, since 3, 4, 5 is a
+/// right-angled triangle. There both assemblies vanish, and come back on the way back.
+#[test]
+fn a_four_bar_folds_where_it_is_stretched() {
+    let text = r#"{"space": "planar", "angles": "rad", "links": ["ground", "crank", "coupler", "rocker"], "joints": [
+        {"name": "A0", "type": "R", "links": ["ground", "crank"], "in": {"ground": {"point": [0, 0]}, "crank": {"point": [0, 0]}}},
+        {"name": "A", "type": "R", "links": ["crank", "coupler"], "in": {"crank": {"point": [3, 0]}, "coupler": {"point": [0, 0]}}},
+        {"name": "B", "type": "R", "links": ["coupler", "rocker"], "in": {"coupler": {"point": [2.5, 0]}, "rocker": {"point": [2.5, 0]}}},
+        {"name": "B0", "type": "R", "links": ["rocker", "ground"], "in": {"rocker": {"point": [0, 0]}, "ground": {"point": [4, 0]}}}],
+        "inputs": ["A0"], "output": "coupler"}"#;
+    let linkage = read("four_bar.json", text.as_bytes(), &ReadOptions::default()).unwrap();
+    let keys = [0.5, 2.0, 0.5].map(|x| Target::Inputs(vec![x]));
+    let path = follow_path(
+        &linkage,
+        Problem::Forward,
+        samples(&keys, Some(41), 1.0, &[true]),
+    );
+    assert!(path.settled, "{:?}", path.warnings);
+    assert_eq!((path.branches.len(), path.folds.len()), (4, 2));
+    let at = 20.0 * (PI / 2.0 - 0.5) / 1.5;
+    for (fold, expected, vanish) in [(0, at, true), (1, 40.0 - at, false)] {
+        let fold = &path.folds[fold];
+        assert!((fold.at - expected).abs() < 1e-2, "{fold:?}, {expected}");
+        assert_eq!((fold.vanish, fold.branches.len()), (vanish, 2));
+    }
+    for branch in &path.branches {
+        let from_path = branch
+            .ends
+            .iter()
+            .filter(|e| **e == BranchEnd::Path)
+            .count();
+        assert_eq!(from_path, 1, "{branch:?}");
+    }
+}
+
+/// A path of a general arm and back: what ends does so at a proved fold, and each branch comes back as it went.
+#[test]
+fn branches_of_an_arm_end_at_proved_folds_only() {
+    let instance = "arm_generic";
+    let arm = mechanism(instance, "arm.json");
+    let seven = poses(instance, &arm);
+    let keys = [seven[1].clone(), seven[6].clone()];
+    let there = samples(&keys, Some(21), 1.0, &[]);
+    let back = there[..4].iter().rev();
+    let both: Vec<Sample> = there[..5].iter().chain(back).cloned().collect();
+    let path = follow_path(&arm, Problem::Inverse, both);
+    assert!(path.settled, "{:?}", path.warnings);
+    assert!(path.changes.is_empty(), "{:?}", path.changes);
+    assert_eq!(path.folds.len(), 2, "{:?}", path.folds);
+    assert!(path.folds.iter().all(|f| f.error.is_some_and(|e| e < 1e-6)));
+    let real = |k: usize| path.answers[k].counts.real as usize;
+    let mut through = vec![0; path.samples.len()];
+    for branch in &path.branches {
+        assert!(!branch.ends.contains(&BranchEnd::Unknown));
+        (branch.first..=branch.last()).for_each(|k| through[k] += 1);
+    }
+    for (k, through) in through.into_iter().enumerate() {
+        assert_eq!(
+            through,
+            real(k),
+            "each position is on one branch: sample {k}"
+        );
+    }
+    let whole = path.branches.iter().filter(|b| b.positions.len() == 9);
+    assert_eq!(whole.count(), 2);
+}
+
+#[test]
+fn loops_whose_rows_leap_are_not_followed() {
+    let arm = random_arm(&mut dice(5), &[]);
+    let asked = question(Problem::Forward);
+    let solver = Solver::new(&arm, &asked, &AnswerOptions::default()).unwrap();
+    let refused = follow(&solver, Vec::new()).unwrap_err().to_string();
+    assert!(refused.contains("closed form"), "{refused}");
 }

@@ -93,6 +93,23 @@ pub trait Formulation: Send + Sync {
     fn equations(&self) -> Option<&Equations>;
     /// The parameters at a target.
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String>;
+    /// How many of the first parameters belong to the mechanism: they are real, and the same at all its targets.
+    fn own_parameters(&self) -> usize {
+        0
+    }
+    /// Places of parameters that count up to a common factor, block by block: the half-tangents of angles, where a
+    /// formulation has no others. `None` where parameters do not follow a path of targets: then the way between those of
+    /// two neighbours leads through other mechanisms.
+    fn homogeneous_parameters(&self) -> Option<Vec<Vec<usize>>> {
+        let names = self.equations().map_or(&[][..], |e| &e.parameters);
+        let partner = |name: &str| name.strip_prefix("t_").map(|rest| format!("w_{rest}"));
+        let pair = |(t, name): (usize, &String)| {
+            let partner = partner(name)?;
+            let w = names.iter().position(|other| *other == partner)?;
+            Some(vec![t, w])
+        };
+        Some(names.iter().enumerate().filter_map(pair).collect())
+    }
     /// Parameters of this mechanism at a general complex target, by random numbers of modulus about 1;
     /// `None` where it has no such member but the targets themselves.
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>>;

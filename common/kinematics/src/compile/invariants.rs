@@ -347,6 +347,10 @@ impl Formulation for Shifted {
         Ok(values)
     }
 
+    fn homogeneous_parameters(&self) -> Option<Vec<Vec<usize>>> {
+        Some(vec![(0..4).collect()])
+    }
+
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
         let size = self.arm.size();
         let mut values: Vec<Complex64> = (0..4).map(|_| draw()).collect();

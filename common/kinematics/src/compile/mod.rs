@@ -3,6 +3,7 @@
 //! [`compile`] chooses a formulation by the rules of `kinematics/README.md`. A formulation gives equations with the
 //! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
 
+pub mod families;
 pub mod formulation;
 mod framework;
 mod invariants;
@@ -82,4 +83,17 @@ fn inputs(mechanism: &Mechanism, question: &Question) -> Result<Vec<String>, Mec
         }
     }
     Ok(wanted.clone())
+}
+
+/// A length of a mechanism, by which others are large or small.
+pub fn size(mechanism: &Mechanism) -> f64 {
+    match &mechanism.body {
+        Body::Chain(chain) => chain.size(),
+        Body::Platform(platform) => platform::size(platform),
+        Body::Linkage(linkage) => linkage_pose::size(linkage),
+        Body::Framework(framework) => {
+            let lengths = framework.bars.iter().map(|bar| bar.length.to_f64());
+            lengths.fold(0.0, f64::max)
+        }
+    }
 }

@@ -3,7 +3,8 @@
 //! Held joints become parts of their links, so that a redundant arm or a loop with driven joints is an arm of six.
 
 use super::formulation::{
-    Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target, turn_of,
+    CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target,
+    turn_of,
 };
 use super::postures::{position, turn_between};
 use super::text::Equations;
@@ -253,8 +254,19 @@ impl Formulation for SixRevolute {
         Ok(values)
     }
 
+    fn own_parameters(&self) -> usize {
+        let is_arm = self.driven.is_empty() && !self.chain.closed;
+        if is_arm { PARAMETERS_OF_ARM } else { 0 }
+    }
+
+    fn homogeneous_parameters(&self) -> Option<Vec<Vec<usize>>> {
+        // The rows of a loop with driven joints are made for each target, and may leap.
+        let direction = PARAMETERS_OF_ARM..PARAMETERS_OF_ARM + 3;
+        (self.own_parameters() > 0).then(|| vec![direction.collect()])
+    }
+
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
-        if !self.driven.is_empty() || self.chain.closed {
+        if self.own_parameters() == 0 {
             return None;
         }
         let (arm, _) = self.arm(&Target::Pose(Pose::IDENTITY)).ok()?;
@@ -275,22 +287,9 @@ impl Formulation for SixRevolute {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Lifted {
-        let at = |name: &str| {
-            let place = six_revolute::VARIABLES.iter().position(|v| *v == name);
-            place.map_or(Complex64::default(), |i| point[i])
+        let Some((turns, gap, growth)) = solved_turns(parameters, point) else {
+            return Lifted::Moving("joint 3");
         };
-        let mut turns = [(Complex64::default(), Complex64::default()); 6];
-        for (k, turn) in turns.iter_mut().enumerate() {
-            if k != 2 && k != 5 {
-                *turn = (at(&format!("c{}", k + 1)), at(&format!("s{}", k + 1)));
-            }
-        }
-        let member = Member::of(parameters);
-        match member.third_turn(&turns) {
-            Some(third) => turns[2] = third,
-            None => return Lifted::Moving("joint 3"),
-        }
-        let (gap, growth) = member.gap(&turns);
         let Some(target) = target else {
             let position = Configuration {
                 values: Vec::new(),
@@ -306,12 +305,7 @@ impl Formulation for SixRevolute {
 
 impl SixRevolute {
     /// The position by the file's joints, and how well its own product meets the target.
-    fn in_the_file(
-        &self,
-        target: &Target,
-        mut turns: [(Complex64, Complex64); 6],
-        growth: f64,
-    ) -> Configuration {
+    fn in_the_file(&self, target: &Target, mut turns: Turns, growth: f64) -> Configuration {
         let Ok((arm, pose)) = self.arm(target) else {
             return Configuration {
                 values: Vec::new(),
@@ -355,11 +349,41 @@ impl SixRevolute {
     }
 }
 
+/// Cosine and sine of six turns, of which the last is not known.
+type Turns = [(Complex64, Complex64); 6];
+
+/// The turns of a solution of the family's equations, their gap, and how large numbers grow along the chain; `None` where
+/// joint 3 may turn freely.
+fn solved_turns(parameters: &[Complex64], point: &[Complex64]) -> Option<(Turns, f64, f64)> {
+    let at = |name: &str| {
+        let place = six_revolute::VARIABLES.iter().position(|v| *v == name);
+        place.map_or(Complex64::default(), |i| point[i])
+    };
+    let mut turns = Turns::default();
+    for (k, turn) in turns.iter_mut().enumerate() {
+        if k != 2 && k != 5 {
+            *turn = (at(&format!("c{}", k + 1)), at(&format!("s{}", k + 1)));
+        }
+    }
+    let member = Member::of(parameters);
+    turns[2] = member.third_turn(&turns)?;
+    let (gap, growth) = member.gap(&turns);
+    Some((turns, gap, growth))
+}
+
+/// Whether a solution of the family's equations is a position: the equations have mirrored solutions besides.
+pub fn is_position(parameters: &[Complex64], point: &[Complex64]) -> bool {
+    solved_turns(parameters, point).is_some_and(|(_, gap, growth)| gap / growth < CLOSES)
+}
+
 /// The common normal of a row: Tx(a) Rx(alpha).
 fn link(joint: &ChainJoint) -> Pose {
     let [c, s] = joint.alpha.direction.map(Complex64::from);
     Pose::shift(joint.a, 0.0, 0.0).then(&Pose::about_x(c, s))
 }
+
+/// Half-tangents of five twists as two numbers each, five lengths, five offsets.
+const PARAMETERS_OF_ARM: usize = 20;
 
 /// Parameters that belong to the arm, lengths in units of `size`.
 fn arm_parameters(arm: &Chain, size: f64) -> Vec<Complex64> {
@@ -417,7 +441,7 @@ impl Member {
 
     /// Joint 3 from the others: it turns what the last joints make to what the first leave, in the plane
     /// across its axis; by least squares of direction and place. `None` where both are along the axis.
-    fn third_turn(&self, turns: &[(Complex64, Complex64); 6]) -> Option<(Complex64, Complex64)> {
+    fn third_turn(&self, turns: &Turns) -> Option<(Complex64, Complex64)> {
         let turn = |k: usize| Pose::about_z(turns[k].0, turns[k].1);
         let first = turn(0)
             .then(&self.links[0])
@@ -435,7 +459,7 @@ impl Member {
     }
 
     /// The gap of axis 6 and of the circles, and how large numbers grow along the chain.
-    fn gap(&self, turns: &[(Complex64, Complex64); 6]) -> (f64, f64) {
+    fn gap(&self, turns: &Turns) -> (f64, f64) {
         let mut product = Pose::IDENTITY;
         let mut growth = 1.0f64;
         for k in 0..5 {

@@ -48,6 +48,20 @@ impl Equations {
         }
     }
 
+    /// The same with numbers in the place of the first parameters, exactly these doubles.
+    #[must_use]
+    pub fn with_first_parameters(&self, values: &[f64]) -> Self {
+        let count = values.len().min(self.parameters.len());
+        let (fixed, free) = self.parameters.split_at(count);
+        let numbers = fixed.iter().cloned();
+        let numbers = numbers.zip(values.iter().map(|x| double_expression(*x)));
+        Self {
+            parameters: free.to_vec(),
+            definitions: numbers.chain(self.definitions.iter().cloned()).collect(),
+            ..self.clone()
+        }
+    }
+
     /// The variables in the order of the system.
     pub fn variables(&self) -> Vec<String> {
         self.groups.iter().flatten().cloned().collect()

@@ -5,6 +5,7 @@ pub mod chain;
 pub mod document;
 pub mod exact;
 pub mod graph;
+pub mod line;
 pub mod pose;
 pub mod read;
 mod read_bodies;

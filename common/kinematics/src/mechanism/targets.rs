@@ -60,20 +60,29 @@ pub fn inputs(
         tree: &tree,
         path: String::new(),
     })? {
-        let fields = entry.fields("an object of values by the names of inputs")?;
-        let mut values = Vec::new();
-        for (name, is_angle) in names {
-            let value = fields.required(name, "the value of this input")?;
-            values.push(if *is_angle {
-                value.angle(degrees, false)?.angle.radians
-            } else {
-                value.double()?
-            });
-        }
-        fields.finish()?;
-        found.push(values);
+        found.push(inputs_of_entry(&entry, names, degrees)?);
     }
     Ok(found)
+}
+
+/// Values of the inputs `names` from an object.
+pub(super) fn inputs_of_entry(
+    entry: &Entry<'_>,
+    names: &[(String, bool)],
+    degrees: bool,
+) -> Result<Vec<f64>, MechanismError> {
+    let fields = entry.fields("an object of values by the names of inputs")?;
+    let mut values = Vec::new();
+    for (name, is_angle) in names {
+        let value = fields.required(name, "the value of this input")?;
+        values.push(if *is_angle {
+            value.angle(degrees, false)?.angle.radians
+        } else {
+            value.double()?
+        });
+    }
+    fields.finish()?;
+    Ok(values)
 }
 
 /// One value of a joint, as typed.

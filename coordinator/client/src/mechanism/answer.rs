@@ -1,117 +1,19 @@
-//! Positions of a mechanism for targets, counted so that nothing is missing unsaid.
+//! The answer to a question about a mechanism for all targets.
 
-use super::prepare::{Prepared, in_order, lone_target, prepare, solve};
-use cognate_algorithms::SolveOptions;
-use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
-use cognate_continuation::start_points::StoredPoints;
-use cognate_kinematics::compile::{
-    CLOSES, Configuration, Family, Formulation, Lifted, Question, Target, compile,
-};
+use super::preparation::{AnswerOptions, Preparation};
+use super::solver::Solver;
+use super::target_answer::TargetAnswer;
+use cognate_kinematics::compile::{Question, Target};
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
-use cognate_solutions::solution::Solution;
-use cognate_solutions::solution_set::SolutionSet;
-use cognate_systems::system::System;
-use num_complex::Complex64;
-use std::sync::Arc;
-
-/// Imaginary parts below this are none, where the equations do not tell conjugates.
-const REAL: f64 = 1e-7;
-
-/// How targets are answered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct AnswerOptions {
-    /// Seed of everything random.
-    pub seed: u64,
-    /// Proofs of the solutions.
-    pub certify: bool,
-}
-
-/// Paths of one target, each counted once, and what is said of positions.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Regular positions, complex ones too.
-    pub complex: u64,
-    /// ... that are real.
-    pub real: u64,
-    /// ... that are proved to be real; `None` where that was not asked for.
-    pub certified_real: Option<u64>,
-    /// Real positions of which all joints are within their limits.
-    pub within_limits: u64,
-    /// Paths that end at isolated singular positions.
-    pub singular: u64,
-    /// Paths that end at infinity.
-    pub at_infinity: u64,
-    /// Paths that end on positive-dimensional sets.
-    pub positive_dimensional: u64,
-    /// Paths that end at solutions that are no positions.
-    pub degenerate: u64,
-    /// Paths whose end is not known.
-    pub failed: u64,
-}
-
-impl Counts {
-    /// All paths.
-    pub fn sum(&self) -> u64 {
-        self.complex
-            + self.singular
-            + self.at_infinity
-            + self.positive_dimensional
-            + self.degenerate
-            + self.failed
-    }
-}
-
-/// A position with what is known of it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Position {
-    /// Values of joints and poses of bodies.
-    pub configuration: Configuration,
-    /// Whether it is real.
-    pub is_real: bool,
-    /// Whether it is proved to be there; `None` where that was not asked for.
-    pub certified: Option<bool>,
-    /// Joints beyond their limits; empty for complex positions.
-    pub violated: Vec<String>,
-    /// Condition number of the equations.
-    pub condition: f64,
-    /// Whether the equations are singular there.
-    pub is_singular: bool,
-}
-
-impl Position {
-    /// Whether all joints are within their limits; `None` for complex positions.
-    pub fn within_limits(&self) -> Option<bool> {
-        self.is_real.then_some(self.violated.is_empty())
-    }
-}
-
-/// The answer for one target.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TargetAnswer {
-    /// The given joint values, or the given pose.
-    pub target: Target,
-    /// Paths of the solve, by how they ended.
-    pub counts: Counts,
-    /// Its positions: real ones first, in the order of their joint values.
-    pub positions: Vec<Position>,
-    /// Whether nothing is in doubt.
-    pub settled: bool,
-}
 
 /// The answer for all targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// The family, with the number of its general member.
-    pub family: Family,
-    /// Names of the inputs that targets give.
-    pub inputs: Vec<String>,
-    /// Positions of this mechanism at a general target; `None` where it was not prepared.
-    pub here: Option<u64>,
-    /// Why that is less than the family's number; empty where it is not.
-    pub reason: String,
+    /// What is known before the targets.
+    pub preparation: Preparation,
     /// The targets.
     pub targets: Vec<TargetAnswer>,
-    /// What a person should know.
+    /// What a person should know, of the mechanism and of its targets.
     pub warnings: Vec<String>,
     /// Whether every count is settled.
     pub settled: bool,
@@ -124,283 +26,30 @@ pub fn answer(
     targets: &[Target],
     options: &AnswerOptions,
 ) -> Result<Answer, MechanismError> {
-    let formulation = compile(mechanism, question)?;
-    let lone = [lone_target()];
+    let solver = Solver::new(mechanism, question, options)?;
+    let lone = [Target::Inputs(Vec::new())];
     let targets = if targets.is_empty() {
         &lone[..]
     } else {
         targets
     };
-    let mut answer = Answer {
-        family: formulation.family().clone(),
-        inputs: formulation.inputs().to_vec(),
-        here: None,
-        reason: String::new(),
-        targets: Vec::new(),
-        warnings: mechanism.snapping_warnings(),
-        settled: true,
-    };
-    answer.warnings.extend(mechanism.warnings.iter().cloned());
-    let failed = |message: String| mechanism.error(message);
-    let Some(equations) = formulation.equations() else {
-        for target in targets {
-            let positions = formulation.direct(target);
-            answer
-                .targets
-                .push(direct_answer(mechanism, target, positions));
-        }
-        return Ok(answer);
-    };
-    let system = equations.system(&mechanism.file)?;
-    let mut plan = SolveOptions {
-        seed: options.seed,
-        closings: ClosingOptions {
-            certify: options.certify,
-            ..ClosingOptions::default()
-        },
-        ..SolveOptions::default()
-    };
-    let mut parameters = Vec::new();
-    for target in targets {
-        parameters.push(formulation.parameters(target).map_err(failed)?);
-    }
-    let sets = if system.parameters.is_empty() {
-        solve(&system, &plan, None).map_err(failed)?
-    } else {
-        let prepared = prepare(&*formulation, &system, options.seed).map_err(failed)?;
-        answer.note(&prepared);
-        if prepared.count == 0 {
-            let others = if prepared.others.is_empty() {
-                "no path".into()
-            } else {
-                prepared.others.clone()
-            };
-            return Err(mechanism.error(format!(
-                "a general target of this mechanism has no isolated position ({others}): it cannot reach general targets"
-            )));
-        }
-        plan.method = SolveMethod::Given(KnownSolutions {
-            points: None,
-            parameters: Some(prepared.parameters),
-        });
-        plan.target_parameters.clone_from(&parameters);
-        let points = Arc::new(StoredPoints {
-            dimension: system.variables.len(),
-            coordinates: prepared.points,
-        });
-        solve(&system, &plan, Some(&points)).map_err(failed)?
-    };
-    for ((target, parameters), set) in targets.iter().zip(&parameters).zip(&sets) {
-        let found = of_set(
-            mechanism,
-            &*formulation,
-            &system,
-            (target, parameters),
-            set,
-            options.certify,
-        );
-        answer.targets.push(found);
-    }
-    answer.judge();
-    Ok(answer)
+    let found = solver.solve(targets)?;
+    Ok(Answer::of(solver.preparation(), found))
 }
 
 impl Answer {
-    /// Takes over what preparing has found.
-    fn note(&mut self, prepared: &Prepared) {
-        self.here = Some(prepared.count);
-        self.settled &= prepared.settled;
-        self.warnings.extend(prepared.warnings.iter().cloned());
-        if let Some(expected) = self.family.expected {
-            if prepared.count < expected {
-                let others = &prepared.others;
-                let rest = if others.is_empty() {
-                    String::new()
-                } else {
-                    format!(", {others}")
-                };
-                self.reason = format!("special: {} of {expected}{rest}", prepared.count);
-            } else if prepared.count > expected {
-                self.settled = false;
-                self.warnings.push(format!(
-                    "{} positions were found where the family has {expected} ({})",
-                    prepared.count, self.family.source
-                ));
-            }
+    /// The answer for targets of a prepared mechanism.
+    pub fn of(preparation: &Preparation, targets: Vec<TargetAnswer>) -> Self {
+        let mut warnings = preparation.warnings.clone();
+        for (i, target) in targets.iter().enumerate() {
+            let of_target = |warning: &String| format!("target {}: {warning}", i + 1);
+            warnings.extend(target.warnings.iter().map(of_target));
         }
-    }
-
-    /// Whether all targets are settled and none has lost a path.
-    fn judge(&mut self) {
-        for (i, target) in self.targets.iter_mut().enumerate() {
-            if let Some(here) = self.here
-                && target.counts.sum() != here
-            {
-                target.settled = false;
-                self.warnings.push(format!(
-                    "target {}: {} of {here} paths are accounted for",
-                    i + 1,
-                    target.counts.sum()
-                ));
-            }
-            self.settled &= target.settled;
+        Self {
+            settled: preparation.settled && targets.iter().all(|t| t.settled),
+            preparation: preparation.clone(),
+            targets,
+            warnings,
         }
-    }
-}
-
-/// Joints of a real position that are beyond their limits.
-fn violated(mechanism: &Mechanism, configuration: &Configuration) -> Vec<String> {
-    let kinds = mechanism.values();
-    let mut beyond = Vec::new();
-    for (name, value) in &configuration.values {
-        let Some([low, high]) = mechanism.limits_of(name) else {
-            continue;
-        };
-        let is_angle = kinds.iter().any(|(n, angle)| n == name && *angle);
-        let x = value.real();
-        // A bound is met up to rounding.
-        let slack = 1e-9 * (1.0 + low.abs().max(high.abs()));
-        let within = |x: f64| x >= low - slack && x <= high + slack;
-        let turn = 2.0 * std::f64::consts::PI;
-        // Angles come from (-pi, pi]; a joint with wider limits may stand a turn further.
-        let turns = if is_angle {
-            (high.abs().max(low.abs()) / turn).ceil().min(1000.0) as i64 + 1
-        } else {
-            0
-        };
-        if !(-turns..=turns).any(|k| within(x + k as f64 * turn)) {
-            beyond.push(name.clone());
-        }
-    }
-    beyond
-}
-
-fn direct_answer(
-    mechanism: &Mechanism,
-    target: &Target,
-    found: Vec<Configuration>,
-) -> TargetAnswer {
-    let position = |configuration: Configuration| Position {
-        violated: violated(mechanism, &configuration),
-        configuration,
-        is_real: true,
-        certified: None,
-        condition: 1.0,
-        is_singular: false,
-    };
-    let positions: Vec<Position> = found.into_iter().map(position).collect();
-    let count = positions.len() as u64;
-    TargetAnswer {
-        target: target.clone(),
-        counts: Counts {
-            complex: count,
-            real: count,
-            within_limits: positions.iter().filter(|p| p.violated.is_empty()).count() as u64,
-            ..Counts::default()
-        },
-        positions,
-        settled: true,
-    }
-}
-
-/// Whether a position is real: as the equations tell, else by its imaginary parts.
-fn is_real(solution: &Solution, configuration: &Configuration) -> bool {
-    solution.real.unwrap_or_else(|| {
-        let joints = configuration.values.iter().map(|(_, v)| v.imaginary());
-        let poses = configuration.bodies.iter().map(|(_, pose)| {
-            let entries = pose.rotation.iter().flatten().chain(&pose.position);
-            entries.map(|c| c.im.abs()).fold(0.0, f64::max)
-        });
-        joints.chain(poses).all(|imaginary| imaginary < REAL)
-    })
-}
-
-/// The answer for a target from the solutions of its equations.
-fn of_set(
-    mechanism: &Mechanism,
-    formulation: &dyn Formulation,
-    system: &System,
-    (target, parameters): (&Target, &[Complex64]),
-    set: &SolutionSet,
-    certify: bool,
-) -> TargetAnswer {
-    let mut counts = Counts {
-        singular: set.paths.singular,
-        at_infinity: set.paths.at_infinity,
-        positive_dimensional: set.paths.positive_dimensional.unwrap_or(0),
-        degenerate: set.paths.excess.unwrap_or(0),
-        failed: set.paths.failed + set.paths.undecided + set.paths.within_data_accuracy,
-        certified_real: certify.then_some(0),
-        ..Counts::default()
-    };
-    let mut positions = Vec::new();
-    let mut closes = true;
-    for solution in &set.solutions {
-        let point = in_order(solution, system);
-        let configuration = match formulation.lift(Some(target), parameters, &point) {
-            Lifted::Position(configuration) => *configuration,
-            Lifted::Degenerate(_) => {
-                counts.degenerate += u64::from(!solution.singular);
-                continue;
-            }
-            Lifted::Moving(_) => {
-                counts.positive_dimensional += u64::from(!solution.singular);
-                continue;
-            }
-        };
-        if configuration.residual.is_nan() || configuration.residual > CLOSES {
-            // What does not close is no position, and nobody knows why it was found.
-            closes = false;
-            counts.failed += u64::from(!solution.singular);
-            continue;
-        }
-        let is_real = is_real(solution, &configuration);
-        let certificate = solution.certificate.as_ref();
-        let violated = if is_real {
-            violated(mechanism, &configuration)
-        } else {
-            Vec::new()
-        };
-        if !solution.singular {
-            counts.complex += 1;
-            counts.real += u64::from(is_real);
-            counts.within_limits += u64::from(is_real && violated.is_empty());
-            let proved = certificate.is_some_and(|c| c.certified && c.real == Some(true));
-            counts.certified_real = counts.certified_real.map(|n| n + u64::from(proved));
-        }
-        positions.push(Position {
-            configuration,
-            is_real,
-            certified: certify.then(|| certificate.is_some_and(|c| c.certified)),
-            violated,
-            condition: solution.condition,
-            is_singular: solution.singular,
-        });
-    }
-    positions.sort_by(|a, b| {
-        let key = |p: &Position| (!p.is_real, p.is_singular);
-        let values = |p: &Position| -> Vec<f64> {
-            p.configuration
-                .values
-                .iter()
-                .map(|(_, v)| v.real())
-                .collect()
-        };
-        let by_value = || {
-            values(a)
-                .iter()
-                .zip(&values(b))
-                .map(|(x, y)| x.total_cmp(y))
-                .find(|o| o.is_ne())
-        };
-        key(a)
-            .cmp(&key(b))
-            .then_with(|| by_value().unwrap_or(std::cmp::Ordering::Equal))
-    });
-    TargetAnswer {
-        target: target.clone(),
-        settled: set.settled() && closes,
-        counts,
-        positions,
     }
 }

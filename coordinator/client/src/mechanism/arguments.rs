@@ -16,11 +16,29 @@ pub enum MechanismCommand {
     Inverse(MechanismInverse),
     /// Every position for given inputs
     Forward(MechanismForward),
+    /// Branches of positions along a path of poses or inputs: where they fold, where joints meet their limits
+    Follow(MechanismFollow),
+    /// A line of JSON for each pose or set of inputs that comes as a line, until the end of the input
+    Serve(MechanismServe),
+    /// The families that are solved already
+    Families(MechanismFamilies),
 }
 
 /// How answers about mechanisms are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum MechanismFormat {
+    /// A table for people
+    #[default]
+    Table,
+    /// One JSON object on standard output, nothing else there
+    Json,
+    /// A row for each position, with the names of columns in the first line
+    Csv,
+}
+
+/// How a mechanism is described.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum InfoFormat {
     /// A table for people
     #[default]
     Table,
@@ -69,15 +87,35 @@ pub struct MechanismAnswer {
     /// Also show complex positions (JSON)
     #[arg(long)]
     pub complex: bool,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solving: MechanismSolving,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: MechanismFormat,
+    /// Write summary.json, solutions.csv and configurations.jsonl into this folder
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+}
+
+/// How targets are solved, and where prepared mechanisms are kept.
+#[derive(Clone, Debug, Args)]
+pub struct MechanismSolving {
     /// Proofs of the solutions of the equations
     #[arg(long)]
     pub certify: bool,
     /// Seed of everything random; the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// How the answer is shown
-    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: MechanismFormat,
+    /// Threads side by side; the answer is the same [default: the cores]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub threads: usize,
+    /// Where prepared mechanisms are kept [default: below the user's cache folder]
+    #[arg(long, value_name = "DIR", conflicts_with = "no_cache")]
+    pub cache: Option<PathBuf>,
+    /// Keep nothing, and use nothing that was kept
+    #[arg(long)]
+    pub no_cache: bool,
 }
 
 /// `cognate mechanism info`.
@@ -88,7 +126,7 @@ pub struct MechanismInfo {
     pub mechanism: MechanismFile,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: MechanismFormat,
+    pub format: InfoFormat,
 }
 
 /// Which equations are wanted.
@@ -203,4 +241,107 @@ pub struct MechanismForward {
     /// How it is solved, and where the answer goes.
     #[command(flatten)]
     pub answer: MechanismAnswer,
+}
+
+/// `cognate mechanism follow`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate mechanism follow arm.urdf --poses path.csv --format csv
+  cognate mechanism follow platform.json --inputs path.csv --samples 200
+  cognate mechanism follow arm.urdf --poses path.csv --seed-angles \"0 30 -60 0 45 0\"")]
+pub struct MechanismFollow {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Poses along the path: JSON, or CSV with a header x,y,z,qw,qx,qy,qz; - is standard input
+    #[arg(
+        long,
+        value_name = "FILE",
+        required_unless_present = "inputs",
+        conflicts_with = "inputs"
+    )]
+    pub poses: Option<PathBuf>,
+    /// Values of the inputs along the path: JSON, or CSV with their names as header
+    #[arg(long, value_name = "FILE")]
+    pub inputs: Option<PathBuf>,
+    /// The joints that drive it, instead of the file's
+    #[arg(long, value_name = "JOINT", requires = "inputs")]
+    pub input: Vec<String>,
+    /// Samples in all, at least [default: neighbours within 0.1 radians and a hundredth of the size]
+    #[arg(long, value_name = "N")]
+    pub samples: Option<usize>,
+    /// Only the branch that passes nearest to these joint values at the first sample, in the file's order
+    #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
+    pub seed_angles: Option<String>,
+    /// Show only branches that stay within limits
+    #[arg(long)]
+    pub within_limits: bool,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solving: MechanismSolving,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: MechanismFormat,
+    /// Write summary.json and trajectory.csv into this folder
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+}
+
+/// `cognate mechanism serve`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+A line is a pose, {\"position\": [x, y, z], \"quaternion\": [w, x, y, z]}, or with --forward values of the inputs by
+name. An \"id\" beside them comes back with the answer. A line that cannot be read is answered by
+{\"error\": ..., \"line\": N, \"field\": ...}, and the next line is read.
+
+Examples:
+  cognate mechanism serve arm.urdf < poses.jsonl > postures.jsonl
+  cognate mechanism serve platform.json --forward")]
+pub struct MechanismServe {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Lines are values of the inputs, not poses of the output
+    #[arg(long)]
+    pub forward: bool,
+    /// The joints that drive it, instead of the file's
+    #[arg(long, value_name = "JOINT", requires = "forward")]
+    pub input: Vec<String>,
+    /// Answer only with positions within limits
+    #[arg(long)]
+    pub within_limits: bool,
+    /// Also answer with complex positions
+    #[arg(long)]
+    pub complex: bool,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solving: MechanismSolving,
+}
+
+/// `cognate mechanism families`.
+#[derive(Clone, Debug, Args)]
+pub struct MechanismFamilies {
+    /// What is done with a family; without this they are listed.
+    #[command(subcommand)]
+    pub action: Option<FamilyAction>,
+    /// How the list is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: InfoFormat,
+}
+
+/// What is done with a family.
+#[derive(Clone, Debug, Subcommand)]
+pub enum FamilyAction {
+    /// Solve its general member anew from a start system, and compare the number with the published one
+    Prepare {
+        /// The family's name
+        name: String,
+        /// Seed of everything random; the same seed gives the same bits
+        #[arg(long, value_name = "N", default_value_t = 1)]
+        seed: u64,
+        /// Write parameters.json and solutions.jsonl into this folder
+        #[arg(long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
 }

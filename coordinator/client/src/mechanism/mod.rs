@@ -2,4 +2,12 @@
 
 pub mod answer;
 pub mod arguments;
+pub mod cache;
+pub mod families;
+pub mod follow;
+mod parallel;
+pub mod preparation;
 mod prepare;
+pub mod serve;
+pub mod solver;
+pub mod target_answer;

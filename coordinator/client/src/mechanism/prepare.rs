@@ -1,12 +1,12 @@
-//! A mechanism at a general complex target, from which targets are reached: solved once an answer.
+//! A mechanism at a general complex target, from which targets are reached: solved once, and kept.
 
-use cognate_algorithms::plan::GivenStart;
-use cognate_algorithms::plan::{KnownSolutions, SolveMethod, TrackingOptions};
+use super::cache::{Cache, Entry, Kept, Key};
+use cognate_algorithms::plan::{GivenStart, KnownSolutions, SolveMethod, TrackingOptions};
 use cognate_algorithms::run_locally::run_locally;
 use cognate_algorithms::{SolveOptions, plan};
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::Preset;
-use cognate_kinematics::compile::{CLOSES, Formulation, Lifted, Target};
+use cognate_kinematics::compile::{CLOSES, Formulation, Lifted};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
@@ -32,6 +32,8 @@ pub struct Prepared {
     pub settled: bool,
     /// What a person should know.
     pub warnings: Vec<String>,
+    /// Whether this was found in the cache.
+    pub from_cache: bool,
 }
 
 /// Values of a solution's variables in the system's order.
@@ -85,13 +87,102 @@ fn positions(
     points
 }
 
-/// Prepares a formulation with parameters. A number that is not the family's is believed when two general
-/// members have it.
-pub fn prepare(
+/// A prepared formulation with parameters: from the cache, where it holds one that passes its check, or made now.
+pub fn prepared(
     formulation: &dyn Formulation,
     system: &System,
     seed: u64,
+    cache: Option<&Cache>,
 ) -> Result<Prepared, String> {
+    let (Some(cache), Some(member)) = (cache, general_member(formulation, seed, 0)) else {
+        return prepare(formulation, system, seed);
+    };
+    let key = Key::of(formulation, &member, seed);
+    let mut warnings = Vec::new();
+    match cache.find(&key) {
+        Entry::Absent => {}
+        Entry::Unusable(reason) => warnings.push(reason),
+        Entry::Found(kept) => {
+            let found = Prepared {
+                parameters: member.clone(),
+                count: (kept.points.len() / system.variables.len().max(1)) as u64,
+                points: kept.points,
+                others: kept.others,
+                settled: true,
+                warnings: Vec::new(),
+                from_cache: true,
+            };
+            match found.fault(formulation, system) {
+                None => return Ok(found),
+                Some(fault) => warnings.push(cache.unusable(&key, fault)),
+            }
+        }
+    }
+    let mut found = prepare(formulation, system, seed)?;
+    if found.settled && found.parameters == member {
+        let kept = Kept {
+            points: found.points.clone(),
+            others: found.others.clone(),
+        };
+        warnings.extend(cache.keep(&key, &kept));
+    }
+    found.warnings.extend(warnings);
+    Ok(found)
+}
+
+impl Prepared {
+    /// Why these are not the positions at the member's parameters; `None` where they are as far as each shows by itself.
+    /// That each is a solution is seen again when a path begins there.
+    fn fault(&self, formulation: &dyn Formulation, system: &System) -> Option<&'static str> {
+        let dimension = system.variables.len();
+        if self.points.is_empty() || !self.points.len().is_multiple_of(dimension) {
+            return Some("its points are not whole");
+        }
+        if formulation
+            .family()
+            .expected
+            .is_some_and(|n| self.count > n)
+        {
+            return Some("it has more positions than the family");
+        }
+        let points: Vec<&[Complex64]> = self.points.chunks(dimension).collect();
+        for (k, point) in points.iter().enumerate() {
+            match formulation.lift(None, &self.parameters, point) {
+                Lifted::Position(position) if position.residual < CLOSES => {}
+                _ => return Some("one of its points is no position"),
+            }
+            let near = |other: &&[Complex64]| {
+                let pairs = point.iter().zip(*other);
+                let (apart, size) = pairs.fold((0.0, 0.0), |(apart, size), (a, b)| {
+                    (apart + (a - b).norm_sqr(), size + a.norm_sqr())
+                });
+                apart <= 1e-16 * size
+            };
+            if points[..k].iter().any(near) {
+                return Some("two of its points are one");
+            }
+        }
+        None
+    }
+}
+
+/// Parameters of a general complex target of this mechanism; each number gives another one.
+fn general_member(formulation: &dyn Formulation, seed: u64, number: u64) -> Option<Vec<Complex64>> {
+    formulation.generic(&mut draw(seed, number))
+}
+
+/// Random numbers with moduli near 1, and none near 0: lengths and half-tangents of a general member.
+pub fn draw(seed: u64, number: u64) -> impl FnMut() -> Complex64 {
+    let mut random = RandomStream::new(seed, Purpose::Probe, 0x6d65_6368 + number);
+    move || {
+        let z = random.unit();
+        z * (0.6 + 0.6 * random.uniform())
+    }
+}
+
+/// Prepares a formulation with parameters. A number that is not the family's is believed when two general
+/// members have it.
+fn prepare(formulation: &dyn Formulation, system: &System, seed: u64) -> Result<Prepared, String> {
     let mut first = prepare_once(formulation, system, seed, 0)?;
     if Some(first.count) == formulation.family().expected {
         return Ok(first);
@@ -117,16 +208,10 @@ fn prepare_once(
     formulation: &dyn Formulation,
     system: &System,
     seed: u64,
-    member: u64,
+    number: u64,
 ) -> Result<Prepared, String> {
-    let mut random = RandomStream::new(seed, Purpose::Probe, 0x6d65_6368 + member);
-    // Moduli near 1, and no number near 0: lengths and half-tangents of a general member.
-    let mut draw = || {
-        let z = random.unit();
-        z * (0.6 + 0.6 * random.uniform())
-    };
     let known = formulation.known_member();
-    let member = formulation.generic(&mut draw);
+    let member = general_member(formulation, seed, number);
     let dimension = system.variables.len();
     let options = SolveOptions {
         seed,
@@ -149,6 +234,7 @@ fn prepare_once(
                 others: String::new(),
                 settled: true,
                 warnings: Vec::new(),
+                from_cache: false,
             });
         }
         (Some(known), Some(member)) => {
@@ -199,6 +285,7 @@ fn prepare_once(
         others: others(set, count),
         settled: set.settled() && set.counts.singular == 0,
         warnings,
+        from_cache: false,
     })
 }
 
@@ -230,9 +317,4 @@ fn others(set: &SolutionSet, positions: u64) -> String {
         .map(|(n, word)| format!("{n} {word}"))
         .collect();
     words.join(", ")
-}
-
-/// The targets of a formulation without parameters: one, with nothing given.
-pub fn lone_target() -> Target {
-    Target::Inputs(Vec::new())
 }

@@ -1,0 +1,103 @@
+//! What a mechanism is, its equations, and the same in another notation; nothing is solved.
+
+use super::read::{Read, described, some, wrong};
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::{
+    EquationsFormat, InfoFormat, MechanismConvert, MechanismEquations, MechanismInfo, Notation,
+    ProblemName,
+};
+use crate::output;
+use crate::output::mechanisms::info as shown;
+use crate::output::text::Look;
+use cognate_kinematics::compile::{Problem, Question, compile};
+use cognate_kinematics::mechanism::{MechanismError, write};
+use cognate_systems::formats;
+
+/// `cognate mechanism info`.
+pub fn info(a: &MechanismInfo) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    for warning in read
+        .mechanism
+        .snapping_warnings()
+        .iter()
+        .chain(&read.mechanism.warnings)
+    {
+        eprintln!("warning: {warning}");
+    }
+    let locks = read.locks(&a.mechanism)?;
+    let asked: Vec<(&str, Result<_, MechanismError>)> =
+        [("inverse", Problem::Inverse), ("forward", Problem::Forward)]
+            .into_iter()
+            .map(|(name, problem)| {
+                let question = Question {
+                    problem,
+                    inputs: None,
+                    locks: locks.clone(),
+                };
+                (name, compile(&read.mechanism, &question))
+            })
+            .collect();
+    let text = match a.format {
+        InfoFormat::Table => shown::table(&read.mechanism, &asked, Look::of_standard_output()),
+        InfoFormat::Json => shown::json(&read.mechanism, &read.content, &asked),
+    };
+    output::print(&text)?;
+    Ok(Exit::Solved)
+}
+
+/// `cognate mechanism equations`.
+pub fn equations(a: &MechanismEquations) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    let question = Question {
+        problem: match a.problem {
+            ProblemName::Forward => Problem::Forward,
+            ProblemName::Inverse => Problem::Inverse,
+            ProblemName::Motion => Problem::Motion,
+        },
+        inputs: some(&a.input),
+        locks: read.locks(&a.mechanism)?,
+    };
+    let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
+    let Some(equations) = formulation.equations() else {
+        return Err(wrong(
+            &read.mechanism.file,
+            "this question has a closed form and no equations",
+        ));
+    };
+    let format = match a.to {
+        EquationsFormat::Json => {
+            output::print(&equations.json())?;
+            return Ok(Exit::Solved);
+        }
+        EquationsFormat::Bertini => formats::Format::Bertini,
+        EquationsFormat::Phcpack => formats::Format::Phcpack,
+    };
+    let system = equations
+        .system(&read.mechanism.file)
+        .map_err(|e| described(&e))?;
+    let text = formats::write(format, &system, &formats::FileSettings::default())
+        .map_err(|e| wrong(&read.mechanism.file, e.to_string()))?;
+    output::print(&text)?;
+    Ok(Exit::Solved)
+}
+
+/// `cognate mechanism convert`.
+pub fn convert(a: &MechanismConvert) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    let text = match a.to {
+        Notation::Json => write::json(&read.mechanism, &read.content),
+        Notation::Table => {
+            if !write::table_is_whole(&read.mechanism) {
+                eprintln!(
+                    "warning: base and tool have no place in a table of rows; --to mechanism.json keeps them"
+                );
+            }
+            write::dh_csv(&read.mechanism)
+        }
+    };
+    for warning in read.mechanism.snapping_warnings() {
+        eprintln!("warning: {warning}");
+    }
+    output::print(&text.map_err(|e| described(&e))?)?;
+    Ok(Exit::Solved)
+}

@@ -1,0 +1,44 @@
+//! The families that are solved already, and their members solved anew.
+
+use super::read::wrong;
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::{FamilyAction, InfoFormat, MechanismFamilies};
+use crate::mechanism::families::solve_member;
+use crate::output;
+use crate::output::mechanisms::families as shown;
+use crate::output::text::Look;
+use cognate_kinematics::compile::families::SOLVED;
+
+/// `cognate mechanism families`.
+pub fn run(a: &MechanismFamilies) -> Result<Exit, ClientError> {
+    let Some(FamilyAction::Prepare {
+        name,
+        seed,
+        output: folder,
+    }) = &a.action
+    else {
+        output::print(&match a.format {
+            InfoFormat::Table => shown::table(Look::of_standard_output()),
+            InfoFormat::Json => shown::json(),
+        })?;
+        return Ok(Exit::Solved);
+    };
+    let Some(family) = SOLVED.iter().find(|family| family.name == name) else {
+        let names: Vec<&str> = SOLVED.iter().map(|family| family.name).collect();
+        let message = format!("there is no family {name}; there are {}", names.join(", "));
+        return Err(wrong("families prepare", message));
+    };
+    let found = solve_member(family, *seed).map_err(ClientError::Local)?;
+    for warning in &found.warnings {
+        eprintln!("warning: {warning}");
+    }
+    if let Some(folder) = folder {
+        shown::write(&found, folder)?;
+    }
+    output::print(&shown::prepared(family, &found))?;
+    Ok(if found.settled {
+        Exit::Solved
+    } else {
+        Exit::Unsettled
+    })
+}

@@ -1,0 +1,150 @@
+//! Branches of positions along a path of targets.
+
+use super::read::{Read, cpu_seconds, described, options, some, wrong};
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::{MechanismFollow, MechanismFormat};
+use crate::mechanism::follow::samples::samples;
+use crate::mechanism::follow::{Path, follow};
+use crate::mechanism::solver::Solver;
+use crate::output;
+use crate::output::mechanisms::path::{self, ShownPath};
+use crate::output::mechanisms::{View, folder};
+use crate::output::text::Look;
+use cognate_kinematics::compile::{Problem, Question, size};
+use cognate_kinematics::mechanism::targets::{self, MOST_TARGETS};
+use std::time::Instant;
+
+/// `cognate mechanism follow`.
+pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
+    let start = Instant::now();
+    let read = Read::of(&a.mechanism)?;
+    let degrees = read.degrees(&a.mechanism);
+    let question = Question {
+        problem: if a.inputs.is_some() {
+            Problem::Forward
+        } else {
+            Problem::Inverse
+        },
+        inputs: some(&a.input),
+        locks: read.locks(&a.mechanism)?,
+    };
+    let solver = Solver::new(&read.mechanism, &question, &options(&a.solving));
+    let solver = solver.map_err(|e| described(&e))?;
+    let preparation = solver.preparation();
+    let kinds = read.kinds(&preparation.inputs);
+    let targets = match (&a.poses, &a.inputs) {
+        (Some(file), _) => read.poses(file, degrees)?,
+        (None, Some(file)) => read.inputs(file, &kinds, degrees)?,
+        (None, None) => return Err(wrong("--poses", "expected a file, or --inputs")),
+    };
+    let angles: Vec<bool> = kinds.iter().map(|(_, angle)| *angle).collect();
+    let found = samples(&targets, a.samples, size(&read.mechanism), &angles);
+    if found.len() > MOST_TARGETS {
+        let message = format!(
+            "{} samples keep neighbours near; at most {MOST_TARGETS} are solved",
+            found.len()
+        );
+        return Err(wrong("--samples", message));
+    }
+    let followed = follow(&solver, found).map_err(|e| described(&e))?;
+    let seed = match &a.seed_angles {
+        Some(text) => Some(seed_angles(&read, text, degrees)?),
+        None => None,
+    };
+    let chosen = match seed {
+        Some(angles) => Some(nearest(&followed, &angles)?),
+        None => None,
+    };
+    let shown = ShownPath {
+        view: View {
+            mechanism: &read.mechanism,
+            problem: question.problem,
+            preparation,
+            degrees,
+            only_within_limits: a.within_limits,
+            complex: false,
+        },
+        path: &followed,
+        content: &read.content,
+        chosen,
+        wall_seconds: start.elapsed().as_secs_f64(),
+        cpu_seconds: cpu_seconds(),
+    };
+    let settled = followed.settled && preparation.settled;
+    for warning in preparation.warnings.iter().chain(&followed.warnings) {
+        eprintln!("warning: {warning}");
+    }
+    if let Some(path) = &a.output {
+        folder::write_path(&shown, path)?;
+    }
+    output::print(&match a.format {
+        MechanismFormat::Table => path::table(&shown, Look::of_standard_output()),
+        MechanismFormat::Json => path::json(&shown),
+        MechanismFormat::Csv => path::csv(&shown),
+    })?;
+    Ok(if settled {
+        Exit::Solved
+    } else {
+        Exit::Unsettled
+    })
+}
+
+/// Values of all joints, as typed.
+fn seed_angles(read: &Read, text: &str, degrees: bool) -> Result<Vec<(f64, bool)>, ClientError> {
+    let values = read.mechanism.values();
+    let words: Vec<&str> = text.split([' ', ',']).filter(|w| !w.is_empty()).collect();
+    if words.len() != values.len() {
+        let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
+        let message = format!(
+            "expected {} values ({}), found {}",
+            values.len(),
+            names.join(" "),
+            words.len()
+        );
+        return Err(wrong("--seed-angles", message));
+    }
+    let pairs = words.iter().zip(&values);
+    pairs
+        .map(|(word, (name, is_angle))| {
+            let value = targets::value(word, *is_angle, degrees);
+            let value = value.ok_or_else(|| {
+                wrong(
+                    "--seed-angles",
+                    format!("{name}: expected a number, found \"{word}\""),
+                )
+            });
+            Ok((value?, *is_angle))
+        })
+        .collect()
+}
+
+/// The branch that begins nearest to these joint values.
+fn nearest(path: &Path, angles: &[(f64, bool)]) -> Result<usize, ClientError> {
+    let far = |b: &usize| {
+        let position = &path.answers[0].positions[path.branches[*b].positions[0]];
+        let values = position.configuration.values.iter().zip(angles);
+        values
+            .map(|((_, value), (wanted, is_angle))| apart(value.real(), *wanted, *is_angle))
+            .fold(0.0, f64::max)
+    };
+    let begins = (0..path.branches.len()).filter(|b| path.branches[*b].first == 0);
+    begins
+        .min_by(|a, b| far(a).total_cmp(&far(b)))
+        .ok_or_else(|| {
+            wrong(
+                "--seed-angles",
+                "the first sample has no real position from which a branch begins",
+            )
+        })
+}
+
+/// How far two values of a joint are apart.
+fn apart(a: f64, b: f64, is_angle: bool) -> f64 {
+    let away = (a - b).abs();
+    if !is_angle {
+        return away;
+    }
+    let turn = 2.0 * std::f64::consts::PI;
+    let away = away.rem_euclid(turn);
+    away.min(turn - away)
+}

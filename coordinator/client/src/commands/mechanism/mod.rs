@@ -1,0 +1,25 @@
+//! `cognate mechanism`: from a mechanism's file to its equations, postures, positions and branches.
+
+mod describe;
+mod families;
+mod follow;
+mod read;
+mod serve;
+mod solve;
+
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::MechanismCommand;
+
+/// Runs one of the commands.
+pub fn run(command: &MechanismCommand) -> Result<Exit, ClientError> {
+    match command {
+        MechanismCommand::Info(a) => describe::info(a),
+        MechanismCommand::Equations(a) => describe::equations(a),
+        MechanismCommand::Convert(a) => describe::convert(a),
+        MechanismCommand::Inverse(a) => solve::inverse(a),
+        MechanismCommand::Forward(a) => solve::forward(a),
+        MechanismCommand::Follow(a) => follow::run(a),
+        MechanismCommand::Serve(a) => serve::run(a),
+        MechanismCommand::Families(a) => families::run(a),
+    }
+}

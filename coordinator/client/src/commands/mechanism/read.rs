@@ -1,0 +1,153 @@
+//! A mechanism from the file that is named, and what options say of its joints.
+
+use crate::error::ClientError;
+use crate::mechanism::arguments::{AngleUnit, MechanismFile, MechanismSolving};
+use crate::mechanism::cache::Cache;
+use crate::mechanism::preparation::AnswerOptions;
+use crate::problem::read_file;
+use cognate_kinematics::compile::Target;
+use cognate_kinematics::mechanism::read_options::ChainEnds;
+use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets};
+use std::path::Path;
+
+/// The error of a mechanism as one of the command line.
+pub fn described(error: &MechanismError) -> ClientError {
+    ClientError::Format(error.to_string())
+}
+
+/// An error about an option or a file.
+pub fn wrong(origin: &str, message: impl Into<String>) -> ClientError {
+    ClientError::Input {
+        origin: origin.into(),
+        message: message.into(),
+    }
+}
+
+/// A mechanism that was read, with the bytes of its file.
+pub struct Read {
+    /// The mechanism.
+    pub mechanism: Mechanism,
+    /// The bytes of its file.
+    pub content: Vec<u8>,
+}
+
+impl Read {
+    /// Reads the file that is named.
+    pub fn of(a: &MechanismFile) -> Result<Self, ClientError> {
+        let (name, content) = read_file(&a.file)?;
+        let options = ReadOptions {
+            no_snap: a.no_snap,
+            ends: ChainEnds {
+                base: a.base.clone(),
+                tip: a.tip.clone(),
+            },
+        };
+        let mechanism = mechanism::read(&name, &content, &options).map_err(|e| described(&e))?;
+        Ok(Self { mechanism, content })
+    }
+
+    /// Poses from a file.
+    pub fn poses(&self, path: &Path, degrees: bool) -> Result<Vec<Target>, ClientError> {
+        let (name, content) = read_file(path)?;
+        let poses = targets::poses(&name, &content, &self.mechanism, degrees);
+        let poses = poses.map_err(|e| described(&e))?;
+        Ok(poses.into_iter().map(Target::Pose).collect())
+    }
+
+    /// Values of inputs from a file.
+    pub fn inputs(
+        &self,
+        path: &Path,
+        names: &[(String, bool)],
+        degrees: bool,
+    ) -> Result<Vec<Target>, ClientError> {
+        let (name, content) = read_file(path)?;
+        let found = targets::inputs(&name, &content, names, degrees);
+        let found = found.map_err(|e| described(&e))?;
+        Ok(found.into_iter().map(Target::Inputs).collect())
+    }
+
+    /// Whether angles are typed and shown in degrees.
+    pub fn degrees(&self, a: &MechanismFile) -> bool {
+        match a.angles {
+            Some(unit) => unit == AngleUnit::Deg,
+            None => self.mechanism.degrees,
+        }
+    }
+
+    /// JOINT=VALUE pairs of an option.
+    pub fn pairs(
+        &self,
+        option: &str,
+        texts: &[String],
+        degrees: bool,
+    ) -> Result<Vec<(String, f64)>, ClientError> {
+        let values = self.mechanism.values();
+        let mut pairs: Vec<(String, f64)> = Vec::new();
+        for text in texts {
+            let Some((name, value)) = text.split_once('=') else {
+                return Err(wrong(
+                    option,
+                    format!("expected JOINT=VALUE, found \"{text}\""),
+                ));
+            };
+            let Some((_, is_angle)) = values.iter().find(|(n, _)| n == name) else {
+                let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
+                return Err(wrong(
+                    option,
+                    format!("there is no joint {name}; there are {}", names.join(", ")),
+                ));
+            };
+            if pairs.iter().any(|(n, _)| n == name) {
+                return Err(wrong(option, format!("{name} is given twice")));
+            }
+            let number = targets::value(value, *is_angle, degrees);
+            let number = number.ok_or_else(|| {
+                wrong(
+                    option,
+                    format!("{name}: expected a number, found \"{value}\""),
+                )
+            })?;
+            pairs.push((name.to_owned(), number));
+        }
+        Ok(pairs)
+    }
+
+    /// Names with whether each is of an angle.
+    pub fn kinds(&self, names: &[String]) -> Vec<(String, bool)> {
+        let values = self.mechanism.values();
+        let is_angle = |name: &String| values.iter().any(|(n, angle)| n == name && *angle);
+        let kind = |name: &String| (name.clone(), is_angle(name));
+        names.iter().map(kind).collect()
+    }
+
+    /// The joints that are held, with their values.
+    pub fn locks(&self, a: &MechanismFile) -> Result<Vec<(String, f64)>, ClientError> {
+        self.pairs("--lock", &a.lock, self.degrees(a))
+    }
+}
+
+/// What was typed, where something was.
+pub fn some(list: &[String]) -> Option<Vec<String>> {
+    (!list.is_empty()).then(|| list.to_vec())
+}
+
+/// How targets are answered, from what was typed.
+pub fn options(a: &MechanismSolving) -> AnswerOptions {
+    let usual = || {
+        let usual = Cache::usual_folder();
+        usual.filter(|_| !a.no_cache)
+    };
+    AnswerOptions {
+        seed: a.seed,
+        certify: a.certify,
+        cache: a.cache.clone().or_else(usual),
+        threads: a.threads,
+    }
+}
+
+/// What all threads of this process took so far, in seconds.
+pub fn cpu_seconds() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}

@@ -1,0 +1,142 @@
+//! Postures for poses, and positions for inputs.
+
+use super::read::{Read, cpu_seconds, described, options, some, wrong};
+use crate::error::{ClientError, Exit};
+use crate::mechanism::answer::{Answer, answer};
+use crate::mechanism::arguments::{
+    MechanismAnswer, MechanismFormat, MechanismForward, MechanismInverse,
+};
+use crate::output;
+use crate::output::mechanisms::{Shown, View, csv, folder, json, table};
+use crate::output::text::Look;
+use cognate_kinematics::compile::{Problem, Question, Target, compile};
+use cognate_kinematics::mechanism::targets;
+use std::time::Instant;
+
+/// `cognate mechanism inverse`.
+pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    let degrees = read.degrees(&a.mechanism);
+    let targets = match (&a.poses, &a.pose) {
+        (Some(path), _) => read.poses(path, degrees)?,
+        (None, Some(pose)) => {
+            let pose = targets::typed_pose(pose, &read.mechanism, degrees);
+            vec![Target::Pose(pose.map_err(|e| described(&e))?)]
+        }
+        (None, None) => return Err(wrong("--poses", "expected a file, or --pose")),
+    };
+    let question = Question {
+        problem: Problem::Inverse,
+        inputs: None,
+        locks: read.locks(&a.mechanism)?,
+    };
+    respond(&read, &question, &targets, &a.answer, degrees)
+}
+
+/// `cognate mechanism forward`.
+pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    let degrees = read.degrees(&a.mechanism);
+    let question = Question {
+        problem: Problem::Forward,
+        inputs: some(&a.input),
+        locks: read.locks(&a.mechanism)?,
+    };
+    let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
+    let names = read.kinds(formulation.inputs());
+    let list = || {
+        names
+            .iter()
+            .map(|(n, _)| n.as_str())
+            .collect::<Vec<&str>>()
+            .join(", ")
+    };
+    let targets: Vec<Target> = if let Some(path) = &a.inputs {
+        if names.is_empty() {
+            return Err(wrong(
+                "--inputs",
+                "nothing drives this mechanism; name its inputs with --input",
+            ));
+        }
+        read.inputs(path, &names, degrees)?
+    } else if !a.set.is_empty() {
+        let pairs = read.pairs("--set", &a.set, degrees)?;
+        if let Some((name, _)) = pairs
+            .iter()
+            .find(|(p, _)| !names.iter().any(|(n, _)| n == p))
+        {
+            return Err(wrong(
+                "--set",
+                format!("{name} is no input; the inputs are {}", list()),
+            ));
+        }
+        let mut values = Vec::new();
+        for (name, _) in &names {
+            let value = pairs.iter().find(|(p, _)| p == name).map(|(_, v)| *v);
+            values.push(value.ok_or_else(|| {
+                wrong(
+                    "--set",
+                    format!("{name} has no value; the inputs are {}", list()),
+                )
+            })?);
+        }
+        vec![Target::Inputs(values)]
+    } else if names.is_empty() {
+        Vec::new()
+    } else {
+        return Err(wrong(
+            "--inputs",
+            format!(
+                "expected values of {}: a file, or --set JOINT=VALUE",
+                list()
+            ),
+        ));
+    };
+    respond(&read, &question, &targets, &a.answer, degrees)
+}
+
+fn respond(
+    read: &Read,
+    question: &Question,
+    targets: &[Target],
+    a: &MechanismAnswer,
+    degrees: bool,
+) -> Result<Exit, ClientError> {
+    let start = Instant::now();
+    let options = options(&a.solving);
+    let found: Answer =
+        answer(&read.mechanism, question, targets, &options).map_err(|e| described(&e))?;
+    let shown = Shown {
+        view: View {
+            mechanism: &read.mechanism,
+            problem: question.problem,
+            preparation: &found.preparation,
+            degrees,
+            only_within_limits: a.within_limits,
+            complex: a.complex,
+        },
+        content: &read.content,
+        answer: &found,
+        wall_seconds: start.elapsed().as_secs_f64(),
+        cpu_seconds: cpu_seconds(),
+    };
+    if a.format != MechanismFormat::Json {
+        for warning in &found.warnings {
+            eprintln!("warning: {warning}");
+        }
+    }
+    let text = match a.format {
+        MechanismFormat::Table => table::table(&shown, Look::of_standard_output()),
+        MechanismFormat::Json => json::answer(&shown),
+        MechanismFormat::Csv => csv::positions(&shown.view, &found.targets),
+    };
+    if let Some(path) = &a.output {
+        folder::write(&shown, path)?;
+    }
+    output::print(&text)?;
+    Ok(if found.settled {
+        Exit::Solved
+    } else {
+        Exit::Unsettled
+    })
+}

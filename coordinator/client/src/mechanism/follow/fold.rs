@@ -1,0 +1,219 @@
+//! Folds: where two real solutions meet and vanish. There the Jacobian has a kernel: F(x, s) = 0, J(x, s) l = 0, a l = 1,
+//! as many equations as unknowns x, s, l.
+
+use super::curve::{Curve, Rectangle, around, contracted, exactly, larger, largest_part, times};
+use cognate_numeric::scalar::Interval;
+use cognate_systems::evaluation::Interpreter;
+use cognate_systems::expression::Node;
+use cognate_systems::expression::differentiate::directional;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+
+/// The equations of folds of a square system in a chart.
+pub struct FoldSystem {
+    program: Interpreter,
+    /// The variables that are free in the chart.
+    free: Vec<usize>,
+    variables: usize,
+}
+
+/// A fold on a segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fold {
+    /// Where on the segment, from 0 to 1.
+    pub s: f64,
+    /// The variables there.
+    pub point: Vec<Complex64>,
+    /// How far off s can be, where the fold is proved to be there.
+    pub error: Option<f64>,
+}
+
+impl FoldSystem {
+    /// For these free variables; the others are 1.
+    pub fn new(square: &System, free: &[usize]) -> Self {
+        let mut e = square.expressions.clone();
+        let variables = square.variables.len();
+        let index = |v: usize| u32::try_from(v).expect("variables are counted in 32 bits");
+        let kernel: Vec<_> = (0..free.len())
+            .map(|k| e.variable(index(variables + k)))
+            .collect();
+        let slopes = directional(&mut e, &square.equations, &mut |_, leaf| match leaf {
+            Node::Variable(v) => {
+                let place = free.iter().position(|f| index(*f) == *v);
+                place.map(|place| kernel[place])
+            }
+            _ => None,
+        });
+        let zero = e.integer(0);
+        let mut equations = square.equations.clone();
+        equations.extend(slopes.into_iter().map(|slope| slope.unwrap_or(zero)));
+        let mut scale = e.integer(-1);
+        for (k, l) in kernel.iter().enumerate() {
+            let weight = e.parameter(index(square.parameters.len() + k));
+            let term = e.multiply(weight, *l);
+            scale = e.add(scale, term);
+        }
+        equations.push(scale);
+        let count = variables + free.len();
+        let parameters = square.parameters.len() + free.len();
+        Self {
+            program: Interpreter::compile(&e, &equations, count, parameters),
+            free: free.to_vec(),
+            variables,
+        }
+    }
+
+    /// The fold near a point of a segment from `start` to `end`, where the Jacobian is nearly singular; `None` where
+    /// Newton's method finds none near it.
+    pub fn near(
+        &self,
+        curve: &mut Curve<'_>,
+        (start, end): (&[Complex64], &[Complex64]),
+        x: &[Complex64],
+        s: f64,
+    ) -> Option<Fold> {
+        let n = self.free.len();
+        let kernel = kernel(curve, x, s)?;
+        // Where l has length 1, its conjugate is a row with a l = 1.
+        let weights: Vec<Complex64> = kernel.iter().map(|z| z.conj()).collect();
+        let with_weights = |p: &[Complex64]| [p, &weights].concat();
+        let mut free = self.free.clone();
+        free.extend(self.variables..self.variables + n);
+        let (start, end) = (with_weights(start), with_weights(end));
+        let mut whole = Curve::new(&self.program, free, &start, &end);
+        let mut y = [x, &kernel].concat();
+        let mut at = s;
+        let mut last = f64::INFINITY;
+        for _ in 0..30 {
+            let approximate = whole.inverse(&y, at, 2 * n + 1)?;
+            let linear = whole.linear(&y, at);
+            let mut steps = Vec::new();
+            for i in 0..=2 * n {
+                let mut step = Complex64::default();
+                for j in 0..=2 * n {
+                    let (entry, value) = (approximate.at(i, j), linear.value(j));
+                    step += Complex64::new(entry.re, entry.im) * Complex64::new(value.re, value.im);
+                }
+                steps.push(step);
+            }
+            let size = steps.iter().map(|z| z.norm_sqr()).fold(0.0, larger);
+            if !size.is_finite() {
+                return None;
+            }
+            if size >= 0.25 * last && last < 1e-20 {
+                break;
+            }
+            last = size;
+            for (v, step) in whole.free.iter().zip(&steps) {
+                y[*v] -= step;
+            }
+            at -= steps[2 * n].re;
+        }
+        let size = y.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
+        if !(last < 1e-16 * size && (0.0..=1.0).contains(&at)) {
+            return None;
+        }
+        let error = prove(&mut whole, &y, at);
+        y.truncate(self.variables);
+        Some(Fold {
+            s: at,
+            point: y,
+            error,
+        })
+    }
+}
+
+/// A vector of length 1 that the Jacobian makes small.
+fn kernel(curve: &mut Curve<'_>, x: &[Complex64], s: f64) -> Option<Vec<Complex64>> {
+    let n = curve.free.len();
+    let approximate = curve.inverse(x, s, n)?;
+    let mut vector: Vec<Complex64> = (0..n)
+        .map(|k| Complex64::new(1.0 + 0.37 * k as f64, 0.0))
+        .collect();
+    for _ in 0..4 {
+        let mut next = vec![Complex64::default(); n];
+        for (i, sum) in next.iter_mut().enumerate() {
+            for (j, z) in vector.iter().enumerate() {
+                let entry = approximate.at(i, j);
+                *sum += Complex64::new(entry.re, entry.im) * z;
+            }
+        }
+        let length = next.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return None;
+        }
+        vector = next.into_iter().map(|z| z / length).collect();
+    }
+    Some(vector)
+}
+
+/// Krawczyk's test for real equations, by which s is real and all else: how far off s can be.
+fn prove(whole: &mut Curve<'_>, y: &[Complex64], s: f64) -> Option<f64> {
+    let m = whole.free.len() + 1;
+    if y.iter().any(|z| z.im != 0.0) {
+        return None;
+    }
+    let approximate = whole.inverse(y, s, m)?;
+    let middle: Vec<Rectangle> = y.iter().map(|z| exactly(*z)).collect();
+    let values = whole.enclosure(&middle, &Interval::point(&s));
+    let values: Vec<Rectangle> = (0..m).map(|i| values.value(i).clone()).collect();
+    let correction: Vec<f64> = times(&approximate, &values)
+        .iter()
+        .map(largest_part)
+        .collect();
+    let mut radius: Vec<f64> = correction.iter().map(|d| larger(16.0 * d, 1e-12)).collect();
+    for _ in 0..3 {
+        let mut boxes = middle.clone();
+        for (v, r) in whole.free.iter().zip(&radius) {
+            boxes[*v].re = around(y[*v].re, *r);
+        }
+        let slopes = whole.enclosure(&boxes, &around(s, radius[m - 1]));
+        let is_real = (0..m).all(|i| (0..m).all(|j| slopes.slope(i, j).im.magnitude() == 0.0));
+        if !is_real {
+            return None;
+        }
+        if let Some(error) = contracted(&approximate, &slopes, &correction, &radius) {
+            return error.last().copied();
+        }
+        for (r, d) in radius.iter_mut().zip(&correction) {
+            *r = larger(0.1 * *r, 2.0 * d);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_systems::formats::read;
+
+    #[test]
+    fn the_fold_of_a_circle_is_located_and_proved() {
+        // x^2 + y^2 = 25 and y = p + 2: x vanishes where p = 3, two thirds of the way from 1 to 4.
+        let text = r#"{"variables": ["x", "y"], "parameters": ["p"], "equations": ["x^2 + y^2 - 25", "y - p - 2"]}"#;
+        let system = read("test", text.as_bytes()).unwrap().system;
+        let program = Interpreter::compile(&system.expressions, &system.equations, 2, 1);
+        let real = |v: f64| Complex64::new(v, 0.0);
+        let (start, end) = ([real(1.0)], [real(4.0)]);
+        let mut curve = Curve::new(&program, vec![0, 1], &start, &end);
+        let folds = FoldSystem::new(&system, &[0, 1]);
+        let s = 0.66;
+        let y = 1.0 + 3.0 * s + 2.0;
+        let x = f64::sqrt(25.0 - y * y);
+        let fold = folds
+            .near(&mut curve, (&start, &end), &[real(x), real(y)], s)
+            .expect("it is near");
+        assert!((fold.s - 2.0 / 3.0).abs() < 1e-12, "{fold:?}");
+        assert!(
+            fold.point[0].norm_sqr() < 1e-20 && fold.error.is_some(),
+            "{fold:?}"
+        );
+        // Far from it, and on a segment without one.
+        let end = [real(2.0)];
+        let mut curve = Curve::new(&program, vec![0, 1], &start, &end);
+        assert_eq!(
+            folds.near(&mut curve, (&start, &end), &[real(4.0), real(3.0)], 0.0),
+            None
+        );
+    }
+}

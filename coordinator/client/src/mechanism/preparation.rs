@@ -1,0 +1,65 @@
+//! How targets are answered, and what is known of a mechanism before them.
+
+use super::prepare::Prepared;
+use cognate_kinematics::compile::Family;
+use std::path::PathBuf;
+
+/// How targets are answered.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct AnswerOptions {
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Proofs of the solutions.
+    pub certify: bool,
+    /// The folder of prepared mechanisms; nothing is kept without one.
+    pub cache: Option<PathBuf>,
+    /// Threads side by side; 0 stands for as many as there are cores. The answer does not depend on them.
+    pub threads: usize,
+}
+
+/// What is known of a mechanism before its targets, and what is in doubt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preparation {
+    /// The family, with the number of its general member.
+    pub family: Family,
+    /// Names of the inputs that targets give.
+    pub inputs: Vec<String>,
+    /// Positions of this mechanism at a general target; `None` where it was not prepared.
+    pub here: Option<u64>,
+    /// Why that is less than the family's number; empty where it is not.
+    pub reason: String,
+    /// Whether the prepared mechanism was found in the cache.
+    pub from_cache: bool,
+    /// What a person should know.
+    pub warnings: Vec<String>,
+    /// Whether the number of positions is settled.
+    pub settled: bool,
+}
+
+impl Preparation {
+    /// Takes over what preparing has found.
+    pub fn note(&mut self, prepared: &Prepared) {
+        self.here = Some(prepared.count);
+        self.from_cache = prepared.from_cache;
+        self.settled &= prepared.settled;
+        self.warnings.extend(prepared.warnings.iter().cloned());
+        let Some(expected) = self.family.expected else {
+            return;
+        };
+        if prepared.count < expected {
+            let others = &prepared.others;
+            let rest = if others.is_empty() {
+                String::new()
+            } else {
+                format!(", {others}")
+            };
+            self.reason = format!("special: {} of {expected}{rest}", prepared.count);
+        } else if prepared.count > expected {
+            self.settled = false;
+            self.warnings.push(format!(
+                "{} positions were found where the family has {expected} ({})",
+                prepared.count, self.family.source
+            ));
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Solver: a question about a mechanism, ready for targets. What belongs to the mechanism is done once.
+//!
+//! Targets are followed from the prepared mechanism in batches, a batch a thread. What is said of a target does not
+//! depend on its batch: one whose paths do not all end regularly at the first attempt is solved again alone.
+
+use super::cache::Cache;
+use super::parallel;
+use super::preparation::{AnswerOptions, Preparation};
+use super::prepare::{prepared, solve};
+use super::target_answer::{TargetAnswer, of_positions, of_set};
+use cognate_algorithms::SolveOptions;
+use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
+use cognate_continuation::start_points::StoredPoints;
+use cognate_kinematics::compile::{Formulation, Question, Target, compile};
+use cognate_kinematics::mechanism::{Mechanism, MechanismError};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Targets that are followed side by side: enough that the way to plan and compile is short against the paths, and few
+/// enough that some threads have something to do.
+const BATCH: usize = 64;
+
+/// A question about a mechanism, ready for targets.
+pub struct Solver<'m> {
+    mechanism: &'m Mechanism,
+    formulation: Box<dyn Formulation>,
+    preparation: Preparation,
+    /// The equations; `None` where an answer needs none.
+    equations: Option<Tracked>,
+    certify: bool,
+    threads: usize,
+}
+
+/// What is followed to targets.
+struct Tracked {
+    /// The equations of this mechanism; their parameters are the target.
+    system: System,
+    /// How many of the formulation's parameters are numbers in the system.
+    own: usize,
+    options: SolveOptions,
+    /// The solutions from which paths begin; `None` where a start system is wanted.
+    start: Option<Arc<StoredPoints>>,
+}
+
+/// The equations that are followed along a path of targets.
+pub struct PathEquations<'a> {
+    /// The equations; their parameters are the target.
+    pub system: &'a System,
+    /// The seed by which they are combined where there are more than unknowns.
+    pub seed: u64,
+    /// Places of parameters that count up to a common factor.
+    pub blocks: Vec<Vec<usize>>,
+}
+
+impl<'m> Solver<'m> {
+    /// Compiles and prepares.
+    pub fn new(
+        mechanism: &'m Mechanism,
+        question: &Question,
+        options: &AnswerOptions,
+    ) -> Result<Self, MechanismError> {
+        let formulation = compile(mechanism, question)?;
+        let mut preparation = Preparation {
+            family: formulation.family().clone(),
+            inputs: formulation.inputs().to_vec(),
+            here: None,
+            reason: String::new(),
+            from_cache: false,
+            warnings: mechanism.snapping_warnings(),
+            settled: true,
+        };
+        preparation
+            .warnings
+            .extend(mechanism.warnings.iter().cloned());
+        let equations = tracked(mechanism, &*formulation, options, &mut preparation)?;
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        Ok(Self {
+            mechanism,
+            formulation,
+            preparation,
+            equations,
+            certify: options.certify,
+            threads: if options.threads == 0 {
+                cores()
+            } else {
+                options.threads
+            },
+        })
+    }
+
+    /// What is known before the targets.
+    pub fn preparation(&self) -> &Preparation {
+        &self.preparation
+    }
+
+    /// Threads side by side.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// What is followed along a path of targets; an error where this cannot be.
+    pub fn path_equations(&self) -> Result<PathEquations<'_>, MechanismError> {
+        let refused = |message: &str| self.mechanism.error(message);
+        let Some(tracked) = &self.equations else {
+            return Err(refused(
+                "its positions have a closed form: there are no branches to follow",
+            ));
+        };
+        let blocks = self.formulation.homogeneous_parameters();
+        let Some(blocks) = blocks.filter(|_| tracked.start.is_some()) else {
+            return Err(refused(
+                "not in this version: a path of this mechanism; nothing is given, or its rows leap between targets",
+            ));
+        };
+        let own = tracked.own;
+        let blocks = blocks
+            .into_iter()
+            .filter(|block| block.iter().all(|place| *place >= own))
+            .map(|block| block.into_iter().map(|place| place - own).collect())
+            .collect();
+        Ok(PathEquations {
+            system: &tracked.system,
+            seed: tracked.options.seed,
+            blocks,
+        })
+    }
+
+    /// The parameters of the equations at a target.
+    pub fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, MechanismError> {
+        let own = self.equations.as_ref().map_or(0, |tracked| tracked.own);
+        let all = self.formulation.parameters(target);
+        let mut all = all.map_err(|message| self.mechanism.error(message))?;
+        Ok(all.split_off(own))
+    }
+
+    /// Answers targets, on as many threads as there are batches; in their order.
+    pub fn solve(&self, targets: &[Target]) -> Result<Vec<TargetAnswer>, MechanismError> {
+        let batches: Vec<&[Target]> = targets.chunks(BATCH).collect();
+        parallel::map(batches.len(), self.threads, |k| self.batch(batches[k]))
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()
+            .map(|found| found.concat())
+    }
+
+    /// Answers targets side by side in this thread.
+    fn batch(&self, targets: &[Target]) -> Result<Vec<TargetAnswer>, MechanismError> {
+        let Some(tracked) = &self.equations else {
+            let direct = |target: &Target| {
+                of_positions(self.mechanism, target, self.formulation.direct(target))
+            };
+            return Ok(targets.iter().map(direct).collect());
+        };
+        let failed = |message: String| self.mechanism.error(message);
+        let mut parameters = Vec::new();
+        for target in targets {
+            parameters.push(self.formulation.parameters(target).map_err(failed)?);
+        }
+        let own = tracked.own;
+        let given: Vec<Vec<Complex64>> = parameters.iter().map(|p| p[own..].to_vec()).collect();
+        let mut sets = tracked.sets(given.clone()).map_err(failed)?;
+        if sets.len() > 1 {
+            for (set, given) in sets.iter_mut().zip(given) {
+                if !is_plain(set) {
+                    let alone = tracked.sets(vec![given]).map_err(failed)?;
+                    *set = alone
+                        .into_iter()
+                        .next()
+                        .ok_or_else(no_set)
+                        .map_err(failed)?;
+                }
+            }
+        }
+        if sets.len() != targets.len() {
+            return Err(failed(no_set()));
+        }
+        let all = targets.iter().zip(&parameters).zip(&sets);
+        Ok(all
+            .map(|((target, parameters), set)| {
+                let mut answer = of_set(
+                    self.mechanism,
+                    &*self.formulation,
+                    &tracked.system,
+                    (target, parameters),
+                    set,
+                    self.certify,
+                );
+                answer.compare(self.preparation.here);
+                answer
+            })
+            .collect())
+    }
+}
+
+fn no_set() -> String {
+    "a target was not solved".into()
+}
+
+/// Whether each path ended at a regular point at the first attempt: then no path's result depends on another's.
+fn is_plain(set: &SolutionSet) -> bool {
+    set.paths.finite == set.paths.total && set.paths.retracked == 0
+}
+
+/// The equations of a mechanism and where paths to targets begin; prepares where that is needed.
+fn tracked(
+    mechanism: &Mechanism,
+    formulation: &dyn Formulation,
+    options: &AnswerOptions,
+    preparation: &mut Preparation,
+) -> Result<Option<Tracked>, MechanismError> {
+    let Some(equations) = formulation.equations() else {
+        return Ok(None);
+    };
+    let mut tracked = Tracked {
+        system: equations.system(&mechanism.file)?,
+        own: 0,
+        options: SolveOptions {
+            seed: options.seed,
+            closings: ClosingOptions {
+                certify: options.certify,
+                ..ClosingOptions::default()
+            },
+            ..SolveOptions::default()
+        },
+        start: None,
+    };
+    if tracked.system.parameters.is_empty() {
+        return Ok(Some(tracked));
+    }
+    let cache = options.cache.as_deref().map(Cache::new);
+    let found = prepared(formulation, &tracked.system, options.seed, cache.as_ref());
+    let found = found.map_err(|message| mechanism.error(message))?;
+    preparation.note(&found);
+    if found.count == 0 {
+        let others = if found.others.is_empty() {
+            "no path".into()
+        } else {
+            found.others.clone()
+        };
+        return Err(mechanism.error(format!(
+            "a general target of this mechanism has no isolated position ({others}): it cannot reach general targets"
+        )));
+    }
+    tracked.own = formulation.own_parameters();
+    if tracked.own > 0 {
+        let numbers = found.parameters.iter().take(tracked.own);
+        let numbers: Vec<f64> = numbers.map(|p| p.re).collect();
+        tracked.system = equations
+            .with_first_parameters(&numbers)
+            .system(&mechanism.file)?;
+    }
+    tracked.options.method = SolveMethod::Given(KnownSolutions {
+        points: None,
+        parameters: Some(found.parameters[tracked.own..].to_vec()),
+    });
+    tracked.start = Some(Arc::new(StoredPoints {
+        dimension: tracked.system.variables.len(),
+        coordinates: found.points,
+    }));
+    Ok(Some(tracked))
+}
+
+impl Tracked {
+    /// The solution sets at these values of the parameters.
+    fn sets(&self, targets: Vec<Vec<Complex64>>) -> Result<Vec<SolutionSet>, String> {
+        let mut options = self.options.clone();
+        if self.start.is_some() {
+            options.target_parameters = targets;
+        }
+        solve(&self.system, &options, self.start.as_ref())
+    }
+}

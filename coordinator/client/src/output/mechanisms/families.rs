@@ -1,0 +1,71 @@
+//! Families that are solved already, and a member that was solved anew.
+
+use crate::error::ClientError;
+use crate::mechanism::families::SolvedMember;
+use crate::output::files::{make_folder, write_file};
+use crate::output::text::{Columns, Look};
+use cognate_kinematics::compile::families::{SOLVED, SolvedFamily};
+use num_complex::Complex64;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// All families, for people.
+pub fn table(look: Look) -> String {
+    let mut columns = Columns::new(&["family", ">positions", "source", "members"]);
+    for family in SOLVED {
+        columns.row(vec![
+            family.name.into(),
+            family.number.to_string(),
+            family.source.into(),
+            family.members.into(),
+        ]);
+    }
+    columns.render(look)
+}
+
+/// All families, for programs.
+pub fn json() -> String {
+    let family = |family: SolvedFamily| {
+        let equations = (family.equations)();
+        json!({
+            "name": family.name,
+            "positions": family.number,
+            "source": family.source,
+            "members": family.members,
+            "unknowns": equations.unknowns(),
+            "parameters": equations.parameters,
+        })
+    };
+    let families: Vec<Value> = SOLVED.into_iter().map(family).collect();
+    format!("{:#}\n", json!({"families": families}))
+}
+
+/// What solving a member anew has found.
+pub fn prepared(family: &SolvedFamily, found: &SolvedMember) -> String {
+    format!(
+        "{}: {} positions of a general member by {} paths; published: {} ({}); {} solutions are no positions\n",
+        family.name,
+        found.positions.len(),
+        found.paths,
+        family.number,
+        family.source,
+        found.others
+    )
+}
+
+/// Writes `parameters.json` and `solutions.jsonl`, as they stand in `deploy/families`.
+pub fn write(found: &SolvedMember, folder: &Path) -> Result<(), ClientError> {
+    let pair = |z: &Complex64| json!([z.re, z.im]);
+    let named = found.parameters.iter();
+    let parameters: Map<String, Value> = named.map(|(n, z)| (n.clone(), pair(z))).collect();
+    let line = |point: &Vec<Complex64>| {
+        let values = found.variables.iter().zip(point);
+        let values: Map<String, Value> = values.map(|(n, z)| (n.clone(), pair(z))).collect();
+        format!("{}\n", json!({"variables": values}))
+    };
+    make_folder(folder)?;
+    let text = format!("{:#}\n", Value::Object(parameters));
+    write_file(folder, "parameters.json", &text)?;
+    let lines: String = found.positions.iter().map(line).collect();
+    write_file(folder, "solutions.jsonl", &lines)
+}

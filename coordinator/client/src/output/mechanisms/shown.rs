@@ -1,0 +1,90 @@
+//! Shown: an answer about a mechanism, and how it is shown.
+
+use crate::mechanism::answer::Answer;
+use crate::mechanism::preparation::Preparation;
+use crate::mechanism::target_answer::Position;
+use cognate_kinematics::compile::Problem;
+use cognate_kinematics::mechanism::chain::JointValue;
+use cognate_kinematics::mechanism::pose::Pose;
+use cognate_kinematics::mechanism::{Mechanism, Space};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+/// How positions of a mechanism are listed.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The mechanism.
+    pub mechanism: &'a Mechanism,
+    /// The question: forward or inverse kinematics, or all positions.
+    pub problem: Problem,
+    /// What is known of the mechanism before its targets.
+    pub preparation: &'a Preparation,
+    /// Angles are shown in degrees.
+    pub degrees: bool,
+    /// Only positions within limits are listed.
+    pub only_within_limits: bool,
+    /// Complex positions are listed, too.
+    pub complex: bool,
+}
+
+/// An answer and how it is shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// How its positions are listed.
+    pub view: View<'a>,
+    /// The answer.
+    pub answer: &'a Answer,
+    /// The bytes of the mechanism's file.
+    pub content: &'a [u8],
+    /// From reading the file to the answer, in seconds.
+    pub wall_seconds: f64,
+    /// What all threads took for it, in seconds.
+    pub cpu_seconds: f64,
+}
+
+impl View<'_> {
+    /// Whether a position is listed.
+    pub(super) fn lists(&self, position: &Position) -> bool {
+        (position.is_real || self.complex)
+            && (!self.only_within_limits || position.within_limits() == Some(true))
+    }
+
+    /// A joint's value in the unit that is shown.
+    pub(super) fn value(&self, value: &JointValue) -> f64 {
+        match value {
+            JointValue::Turn(..) if self.degrees => value.real() * (180.0 / PI),
+            _ => value.real(),
+        }
+    }
+}
+
+/// A pose as the numbers of its columns: place and quaternion, in the plane place and angle.
+pub(super) fn pose_numbers(view: &View<'_>, pose: &Pose) -> Vec<f64> {
+    let position = pose.position.map(|c| c.re);
+    if view.mechanism.space == Space::Planar {
+        let turn = JointValue::Turn(pose.rotation[0][0], pose.rotation[1][0]);
+        return vec![position[0], position[1], view.value(&turn)];
+    }
+    position.into_iter().chain(pose.quaternion()).collect()
+}
+
+/// A digest of a file.
+pub(super) fn digest(content: &[u8]) -> String {
+    blake3::hash(content).to_hex().to_string()
+}
+
+/// Angles that were taken as exact right angles.
+pub(super) fn snapped_json(mechanism: &Mechanism) -> Vec<Value> {
+    let snapped = mechanism.snapped.iter();
+    snapped
+        .map(|s| json!({"place": s.place, "digits": s.digits, "degrees": s.degrees}))
+        .collect()
+}
+
+/// Names of the columns of [`pose_numbers`].
+pub(super) fn pose_columns(view: &View<'_>) -> &'static [&'static str] {
+    match view.mechanism.space {
+        Space::Planar => &["x", "y", "angle"],
+        _ => &["x", "y", "z", "qw", "qx", "qy", "qz"],
+    }
+}
