@@ -129,6 +129,9 @@ step "the Python package, with the program that is built"
   --force-reinstall ./deploy/python
 "$python/bin/python" -m pytest -q tests/python
 
+step "the gallery, at a small size, into target/gallery"
+deploy/gallery/make.sh target/gallery --small
+
 step "chaos: two minutes of random kills, on either ledger and with two coordinators"
 # Built above with everything else; `cargo run` of one package would build half of it once more.
 "$built/chaos" --seconds 40 --seed 1
