@@ -96,6 +96,11 @@ if ! command -v phc >/dev/null && command -v apt-get >/dev/null; then
   install phcpack || true
 fi
 
+# For the tests of the page.
+if ! command -v chromium >/dev/null && command -v apt-get >/dev/null; then
+  install chromium || true
+fi
+
 step "a PostgreSQL server for tests"
 postgres=${TMPDIR:-/tmp}/cognate-pg-$$
 COGNATE_SKIPS=$(mktemp)

@@ -23,6 +23,8 @@ pub struct Config {
     pub security: Security,
     /// Where metrics are read by HTTP: host and port; `None`: nowhere.
     pub metrics: Option<String>,
+    /// Where the page for browsers is: host and port; `None`: nowhere.
+    pub page: Option<String>,
     /// Database or file of the ledger.
     pub ledger: LedgerPlace,
     /// The folder of the results and all other objects; `None`: in memory.
@@ -41,6 +43,7 @@ impl Default for Config {
             insecure: false,
             security: Security::default(),
             metrics: None,
+            page: None,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),
             results: Some("cognate-data/results".into()),
             shared_memory: Some(LEAST_FREE),

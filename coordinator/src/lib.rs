@@ -38,3 +38,5 @@ pub mod config;
 pub mod server;
 
 pub mod metrics;
+
+pub mod page;

@@ -37,6 +37,8 @@ pub struct ConfigFile {
     pub tls_client_ca: Option<PathBuf>,
     /// Address at which metrics are served.
     pub metrics: Option<String>,
+    /// Address of the page for browsers.
+    pub page: Option<String>,
     /// Workers on this host may use shared memory.
     pub shared_memory: Option<bool>,
     /// ... while so many MiB are free in /dev/shm.

@@ -111,10 +111,15 @@ impl Coordinator {
         receiver
     }
 
-    /// The latest jobs, newest first, each with its stages.
-    pub async fn jobs(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, CoordinatorError> {
+    /// The latest jobs but for the `skip` newest, newest first, each with its stages.
+    pub async fn jobs(
+        &self,
+        skip: u32,
+        limit: u32,
+    ) -> Result<Vec<(JobRow, Vec<StageRow>)>, CoordinatorError> {
         let mut jobs = Vec::new();
-        for row in self.ledger.jobs(limit).await?.into_iter().rev() {
+        let rows = self.ledger.jobs(skip.saturating_add(limit)).await?;
+        for row in rows.into_iter().rev().skip(skip as usize) {
             let stages = self.ledger.stages(row.job).await?;
             jobs.push((row, stages));
         }

@@ -13,6 +13,8 @@ pub mod mechanisms;
 pub mod parquet;
 pub mod paths;
 pub mod progress;
+pub mod rates;
+pub mod screen;
 pub mod summary;
 pub mod table;
 pub mod text;
