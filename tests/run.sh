@@ -96,6 +96,11 @@ if ! command -v phc >/dev/null && command -v apt-get >/dev/null; then
   install phcpack || true
 fi
 
+# For the tests of the page.
+if ! command -v chromium >/dev/null && command -v apt-get >/dev/null; then
+  install chromium || true
+fi
+
 step "a PostgreSQL server for tests"
 postgres=${TMPDIR:-/tmp}/cognate-pg-$$
 COGNATE_SKIPS=$(mktemp)
@@ -128,6 +133,9 @@ step "the Python package, with the program that is built"
 "$python/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation \
   --force-reinstall ./deploy/python
 "$python/bin/python" -m pytest -q tests/python
+
+step "the gallery, at a small size, into target/gallery"
+deploy/gallery/make.sh target/gallery --small
 
 step "chaos: two minutes of random kills, on either ledger and with two coordinators"
 # Built above with everything else; `cargo run` of one package would build half of it once more.

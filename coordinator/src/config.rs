@@ -25,6 +25,8 @@ pub struct Config {
     pub metrics: Option<String>,
     /// File of who submitted, cancelled, deleted, and was refused; `None`: only the log says it.
     pub audit_log: Option<PathBuf>,
+    /// Where the page for browsers is: host and port; `None`: nowhere.
+    pub page: Option<String>,
     /// Database or file of the ledger.
     pub ledger: LedgerPlace,
     /// The folder of the results and all other objects; `None`: in memory.
@@ -44,6 +46,7 @@ impl Default for Config {
             security: Security::default(),
             metrics: None,
             audit_log: None,
+            page: None,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),
             results: Some("cognate-data/results".into()),
             shared_memory: Some(LEAST_FREE),

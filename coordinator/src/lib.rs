@@ -44,3 +44,4 @@ pub mod measures;
 pub mod monitor;
 
 pub mod histogram;
+pub mod page;

@@ -19,6 +19,7 @@ use crate::ledger::sql::SqlLedger;
 use crate::ledger::{Ledger, LedgerError};
 use crate::measures::StorageMeasures;
 use crate::monitor::Monitor;
+use crate::page::PageListener;
 use crate::results::store::{Store, StoreError};
 use crate::transport::introduction::{Connections, raise_open_files};
 use crate::transport::shared_memory::SharedMemoryListener;
@@ -75,6 +76,8 @@ pub enum ServerError {
 pub struct RunningServer {
     /// Where it listens, with the ports that were free where port 0 was asked for.
     pub addresses: Vec<ListenAddress>,
+    /// Address of the page for browsers, where there is one.
+    pub page: Option<String>,
     context: Arc<Context>,
     memory: CancellationToken,
     tasks: JoinSet<()>,
@@ -121,6 +124,12 @@ impl Server {
                 })?)
             }
         };
+        let page = match &config.page {
+            None => None,
+            Some(address) => {
+                Some(PageListener::open(address, &config.security, config.insecure).await?)
+            }
+        };
         let clock = Arc::new(SystemClock::default());
         let mut database = None;
         let ledger: Arc<dyn Ledger> = match &config.ledger {
@@ -155,6 +164,7 @@ impl Server {
         let store = store.measured(Arc::clone(&measures));
         let mut running = Self::serve(
             listeners,
+            page,
             memory,
             security,
             ledger,
@@ -179,6 +189,7 @@ impl Server {
     /// Starts one on parts that are there already, behind these listeners.
     pub async fn serve(
         listeners: Vec<Listener>,
+        page: Option<PageListener>,
         memory: Option<SharedMemoryListener>,
         security: Security,
         ledger: Arc<dyn Ledger>,
@@ -215,6 +226,15 @@ impl Server {
                 context.clone(),
             ));
         }
+        let page_url = page.as_ref().map(PageListener::url);
+        if let Some(page) = page {
+            tasks.spawn(page.serve(
+                security,
+                admission.clone(),
+                routes.clone(),
+                stopping.clone(),
+            ));
+        }
         let memory_ends = stopping.child_token();
         if let Some(memory) = memory {
             let services = accounting.layer(admission.layer(routes));
@@ -227,6 +247,7 @@ impl Server {
         }
         RunningServer {
             addresses,
+            page: page_url,
             context,
             memory: memory_ends,
             tasks,
@@ -276,17 +297,14 @@ impl Drop for RunningServer {
 }
 
 /// Runs a coordinator until SIGTERM or SIGINT; SIGHUP reads the tokens again. `started` hears where it listens.
-pub async fn run(
-    config: Config,
-    started: impl FnOnce(&[ListenAddress]),
-) -> Result<(), ServerError> {
+pub async fn run(config: Config, started: impl FnOnce(&RunningServer)) -> Result<(), ServerError> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate()).map_err(ServerError::Signals)?;
     let mut interrupt = signal(SignalKind::interrupt()).map_err(ServerError::Signals)?;
     let mut hangup = signal(SignalKind::hangup()).map_err(ServerError::Signals)?;
     let tokens = config.security.tokens.clone();
     let server = Server::start(config).await?;
-    started(&server.addresses);
+    started(&server);
     loop {
         tokio::select! {
             _ = terminate.recv() => break,

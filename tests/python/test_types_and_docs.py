@@ -70,7 +70,9 @@ def test_examples_are_there() -> None:
     assert sum(len(t.examples) for m in modules for t in finder.find(m)) >= 25
 
 
-def test_examples_of_the_readme() -> None:
+def test_examples_of_the_readme(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Files are named from the root of the repository.
+    monkeypatch.chdir(REPOSITORY)
     failed, attempted = doctest.testfile(
         str(SOURCE / "README.md"),
         module_relative=False,

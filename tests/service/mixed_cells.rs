@@ -70,7 +70,7 @@ fn mixed_cells_are_counted_by_any_workers() {
 /// The job that a cluster had.
 fn lone_job(cluster: &Cluster) -> String {
     let jobs = cluster.client().call(|mut client| async move {
-        let request = v1::ListJobsRequest { limit: 1 };
+        let request = v1::ListJobsRequest { limit: 1, skip: 0 };
         client.list_jobs(request).await
     });
     let jobs = jobs.expect("the jobs").into_inner().jobs;

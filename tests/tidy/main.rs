@@ -185,6 +185,7 @@ fn only_the_edges_know_protobuf() {
         "coordinator/src/api/",
         "coordinator/client/",
         "coordinator/src/intake.rs",
+        "coordinator/src/page/",
         "coordinator/src/server.rs",
         "coordinator/src/transport/",
         "coordinator/tests/",

@@ -3,10 +3,11 @@
 //! [`v1`] is generated from `proto/`; [`from_proto`] checks every field on its
 //! way in, [`to_proto`] cannot fail. [`submission`] is what a client asks for, [`option_misfit`] what of it does not go together,
 //! [`file_settings`] what a file's settings mean for it,
-//! [`decoded_size`] what a message takes in memory, [`digest`] names a system by its content, [`records`] is the form in which
+//! [`client_json`] how clients show answers, [`decoded_size`] what a message takes in memory, [`digest`] names a system by its content, [`records`] is the form in which
 //! results are stored and hashed.
 #![forbid(unsafe_code)]
 
+pub mod client_json;
 pub mod decoded_size;
 pub mod digest;
 pub mod error;

@@ -4,21 +4,19 @@
 
 pub use super::common_arguments::{
     Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, ProgressForm,
+    ServiceArguments,
 };
-use super::connection::Target;
-use super::error::ClientError;
 use super::mechanism::arguments::MechanismCommand;
 use super::sets::arguments as sets;
+pub use super::shell_arguments::{Completions, Manual, Top};
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cognate_continuation::sharpening::MOST_DIGITS;
-use cognate_protocol::DEFAULT_ADDRESS;
 use cognate_protocol::file_settings::MOST_BITS;
 use cognate_protocol::option_misfit::any_of;
 use cognate_protocol::submission::{PrecisionChoice, StartKind};
 use cognate_solutions::witness::Method;
-use cognate_worker::transport::connect::CredentialFiles;
 use std::path::{Path, PathBuf};
 
 const STYLES: Styles = Styles::styled()
@@ -110,6 +108,12 @@ pub enum Command {
     Jobs(Listing),
     /// All workers of a coordinator
     Workers(Listing),
+    /// Jobs, workers and rates of a coordinator as they change; q ends it
+    Top(Top),
+    /// What a shell needs to complete commands and options
+    Completions(Completions),
+    /// The manual page, or those of all commands
+    Man(Manual),
     /// From points to all linkages that pass them
     #[command(subcommand)]
     Synthesize(Synthesize),
@@ -233,25 +237,6 @@ pub struct ProblemArguments {
     pub trace_test: bool,
 }
 
-/// Which coordinator is asked.
-#[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Service")]
-pub struct ServiceArguments {
-    /// The coordinator's address: http://HOST:PORT or unix:PATH; of several, with commas between, the first that answers
-    #[arg(long, value_name = "URL", env = "COGNATE_COORDINATOR", default_value_t = format!("http://{DEFAULT_ADDRESS}"))]
-    pub coordinator: String,
-    /// Token and certificates.
-    #[command(flatten)]
-    pub credentials: CredentialFiles,
-}
-
-impl ServiceArguments {
-    /// Where calls go, with what they show.
-    pub fn target(&self) -> Result<Target, ClientError> {
-        Target::read(&self.coordinator, &self.credentials)
-    }
-}
-
 /// `cognate solve`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
@@ -271,6 +256,9 @@ pub struct Solve {
     /// Threads of each worker [default: cores / workers]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
+    /// A page for browsers that shows this solve; the command then stays until it is interrupted
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
+    pub page: Option<String>,
     /// Files and format of the answer.
     #[command(flatten)]
     pub output: OutputArguments,
@@ -714,6 +702,9 @@ pub struct Coordinator {
     /// A file to which is added, as lines of JSON, who submitted, cancelled, deleted and was refused [default: none]
     #[arg(long, value_name = "FILE")]
     pub audit_log: Option<PathBuf>,
+    /// A page for browsers, with jobs, workers and results: HOST:PORT, such as 127.0.0.1:7655 [default: nowhere]
+    #[arg(long, value_name = "ADDR")]
+    pub page: Option<String>,
     /// A file with the own certificate chain (PEM): all TCP addresses then speak TLS
     #[arg(long, value_name = "FILE", requires = "tls_key")]
     pub tls_certificate: Option<PathBuf>,

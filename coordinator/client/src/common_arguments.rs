@@ -4,6 +4,7 @@ use super::connection::Target;
 use super::embedded::Embedded;
 use super::error::ClientError;
 use clap::{Args, ValueEnum};
+use cognate_protocol::DEFAULT_ADDRESS;
 use cognate_worker::transport::connect::CredentialFiles;
 use std::path::PathBuf;
 
@@ -84,6 +85,25 @@ impl OwnOrRunning {
     /// Starts one of its own.
     pub async fn start(&self) -> Result<Embedded, ClientError> {
         Embedded::start(self.workers, self.threads).await
+    }
+}
+
+/// Which coordinator is asked.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Service")]
+pub struct ServiceArguments {
+    /// The coordinator's address: http://HOST:PORT or unix:PATH; of several, with commas between, the first that answers
+    #[arg(long, value_name = "URL", env = "COGNATE_COORDINATOR", default_value_t = format!("http://{DEFAULT_ADDRESS}"))]
+    pub coordinator: String,
+    /// Token and certificates.
+    #[command(flatten)]
+    pub credentials: CredentialFiles,
+}
+
+impl ServiceArguments {
+    /// Where calls go, with what they show.
+    pub fn target(&self) -> Result<Target, ClientError> {
+        Target::read(&self.coordinator, &self.credentials)
     }
 }
 

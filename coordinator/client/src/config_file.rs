@@ -39,6 +39,8 @@ pub struct ConfigFile {
     pub metrics: Option<String>,
     /// File of who submitted, cancelled, deleted and was refused.
     pub audit_log: Option<PathBuf>,
+    /// Address of the page for browsers.
+    pub page: Option<String>,
     /// Workers on this host may use shared memory.
     pub shared_memory: Option<bool>,
     /// ... while so many MiB are free in /dev/shm.

@@ -274,10 +274,7 @@ impl Connection {
 
     /// The newest jobs.
     pub async fn jobs(&mut self) -> Result<Vec<v1::JobOverview>, ClientError> {
-        let answer = self
-            .client
-            .list_jobs(v1::ListJobsRequest { limit: 0 })
-            .await;
+        let answer = self.client.list_jobs(v1::ListJobsRequest::default()).await;
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().jobs)
     }
 

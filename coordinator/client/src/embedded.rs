@@ -42,6 +42,15 @@ const SWEPT_AFTER: Duration = Duration::from_secs(60);
 impl Embedded {
     /// Starts a coordinator on a socket in a new folder, and workers of the same program.
     pub async fn start(workers: u32, threads: Option<u32>) -> Result<Self, ClientError> {
+        Self::start_with_page(workers, threads, None).await
+    }
+
+    /// The same, with a page for browsers at this address.
+    pub async fn start_with_page(
+        workers: u32,
+        threads: Option<u32>,
+        page: Option<&str>,
+    ) -> Result<Self, ClientError> {
         sweep(&std::env::temp_dir());
         let folder = tempfile::Builder::new()
             .prefix(PREFIX)
@@ -49,6 +58,7 @@ impl Embedded {
             .map_err(|e| local("a temporary folder could not be made", &e))?;
         let config = Config {
             listen: vec![ListenAddress::Unix(socket(folder.path()))],
+            page: page.map(str::to_owned),
             ledger: LedgerPlace::Memory,
             results: None,
             rules: Rules {
@@ -103,6 +113,11 @@ impl Embedded {
     /// Where the coordinator listens.
     pub fn address(&self) -> String {
         format!("unix:{}", socket(self.folder.path()).display())
+    }
+
+    /// Address of the page for browsers, where one was asked for.
+    pub fn page(&self) -> Option<&str> {
+        self.server.page.as_deref()
     }
 
     /// Returns when no worker is left, with the end of the last one's log.

@@ -15,6 +15,7 @@ pub mod mechanism;
 pub mod output;
 pub mod problem;
 pub mod sets;
+pub mod shell_arguments;
 pub mod synthesis;
 
 use arguments::{Arguments, Command};
@@ -44,6 +45,8 @@ fn start(command: Command) -> Started {
         Command::Worker(a) => Ended(worker::run(a)),
         Command::Info(a) => Done(info::run(&a)),
         Command::Convert(a) => Done(convert::run(&a)),
+        Command::Completions(a) => Done(completions::completions(&a)),
+        Command::Man(a) => Done(completions::manual(&a)),
         Command::Path(a) => Done(path::run(&a)),
         Command::Mechanism(a) => Done(mechanism::run(&a)),
         Command::Coordinator(a) => Orderly(Box::pin(async move { coordinator::run(&a).await })),
@@ -77,6 +80,7 @@ fn start(command: Command) -> Started {
         Command::Delete(a) => Droppable(Box::pin(async move { delete::run(&a).await })),
         Command::Jobs(a) => Droppable(Box::pin(async move { jobs::run(&a).await })),
         Command::Workers(a) => Droppable(Box::pin(async move { workers::run(&a).await })),
+        Command::Top(a) => Droppable(Box::pin(async move { top::run(&a).await })),
         Command::Fleet(a) => Droppable(Box::pin(async move { fleet::run(&a).await })),
     }
 }

@@ -511,11 +511,13 @@ impl ClientApi for ClientService {
         request: Request<v1::ListJobsRequest>,
     ) -> Result<Response<v1::ListJobsResponse>, Status> {
         let tenant = Caller::of(&request).tenant;
-        let limit = match request.into_inner().limit {
+        let v1::ListJobsRequest { limit, skip } = request.into_inner();
+        let limit = match limit {
             0 => JOBS_LISTED,
             limit => limit.min(JOBS_LIMIT),
         };
-        let jobs = self.context.coordinator.jobs(limit, tenant.as_ref()).await;
+        let jobs = self.context.coordinator.jobs(skip, limit, tenant.as_ref());
+        let jobs = jobs.await;
         let jobs = jobs.map_err(ApiError::from)?;
         Ok(Response::new(v1::ListJobsResponse {
             jobs: jobs.into_iter().map(overview).collect(),

@@ -114,21 +114,23 @@ impl Coordinator {
         receiver
     }
 
-    /// The latest jobs, of all tenants or of one, newest first, each with its stages.
+    /// The latest jobs but for the `skip` newest, of all tenants or of one, newest first, each with its stages.
     pub async fn jobs(
         &self,
+        skip: u32,
         limit: u32,
         tenant: Option<&Tenant>,
     ) -> Result<Vec<(JobRow, Vec<StageRow>)>, CoordinatorError> {
         let mut jobs = Vec::new();
+        let wanted = skip.saturating_add(limit);
         // Those of one tenant may stand behind many of others.
         let looked = match tenant {
-            Some(_) => limit.max(LATEST_JOBS),
-            None => limit,
+            Some(_) => wanted.max(LATEST_JOBS),
+            None => wanted,
         };
         let rows = self.ledger.jobs(looked).await?.into_iter().rev();
         let own = rows.filter(|row| tenant.is_none_or(|tenant| row.asked.tenant == *tenant));
-        for row in own.take(limit as usize) {
+        for row in own.skip(skip as usize).take(limit as usize) {
             let stages = self.ledger.stages(row.job).await?;
             jobs.push((row, stages));
         }

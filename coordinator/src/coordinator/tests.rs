@@ -579,14 +579,12 @@ async fn what_cannot_be_solved_is_refused_at_the_door() {
         reused,
         CoordinatorError::Ledger(LedgerError::RequestReused(_))
     ));
-    assert_eq!(
-        cluster.coordinator(0).jobs(10, None).await.unwrap().len(),
-        1
-    );
+    let jobs = cluster.coordinator(0).jobs(0, 10, None).await.unwrap();
+    assert_eq!(jobs.len(), 1);
 }
 
 async fn coordinator_is_empty(coordinator: &Coordinator) -> bool {
-    coordinator.jobs(10, None).await.unwrap().is_empty()
+    coordinator.jobs(0, 10, None).await.unwrap().is_empty()
 }
 
 /// Results that no worker can have reported: a broken invariant, so that the algorithm panics.

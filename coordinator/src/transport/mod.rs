@@ -44,6 +44,15 @@ pub enum ListenError {
         /// The address that was to be listened at.
         address: ListenAddress,
     },
+    /// The page would be anybody's.
+    #[error(
+        "the page at {address} can be reached from other machines: give it --token-file with --tls-certificate \
+         and --tls-key; or say --insecure to ask nobody there who they are"
+    )]
+    PageBeyondLoopback {
+        /// The address that was to be listened at.
+        address: String,
+    },
     /// A listener with TLS and no certificate.
     #[error("{address} needs a certificate: --tls-certificate and --tls-key")]
     NoCertificate {

@@ -7,11 +7,13 @@ Every path is accounted for, and the counts add up, or a warning says what is no
 >>> len(found.solutions), len(found.real), found.settled
 (4, 4, True)
 
-In reading order: `solve` and `System`; `Options`; `Result`, `Solution` and `Certificate`; `Service` and `Job`
-for coordinators; `formats` for the files of other programs; errors and warnings.
+In reading order: `solve` and `System`; `Options`; `Result`, `Solution` and `Certificate`; `decompose` and
+`Decomposition` for components; `Mechanism` and `synthesize` for arms, platforms and linkages; `Service` and `Job` for
+coordinators; `formats` for the files of other programs; errors and warnings.
 """
 
 from . import formats
+from .components import Component, Decomposition, Membership, Sample, decompose
 from .errors import (
     Cancelled,
     CognateError,
@@ -25,12 +27,14 @@ from .errors import (
     Unsettled,
     UnsettledWarning,
 )
+from .mechanism import Mechanism, Pose, Position, Positions
 from .options import Options
 from .program import Progress
 from .result import PathCounts, Result, SolutionCounts, TargetResult
 from .service import Job, Service
 from .solution import Box, Certificate, Solution
 from .solving import solve, solve_async
+from .synthesis import Linkage, Synthesis, synthesize
 from .system import System
 
 __version__ = "0.1.0"
@@ -41,25 +45,37 @@ __all__ = [
     "Certificate",
     "CognateError",
     "CognateWarning",
+    "Component",
+    "Decomposition",
     "InputError",
     "Job",
+    "Linkage",
+    "Mechanism",
+    "Membership",
     "NotKnown",
     "Options",
     "PathCounts",
+    "Pose",
+    "Position",
+    "Positions",
     "ProgramNotFound",
     "Progress",
     "Result",
     "RoundedWarning",
+    "Sample",
     "Service",
     "ServiceError",
     "Solution",
     "SolutionCounts",
+    "Synthesis",
     "System",
     "TargetResult",
     "Unreachable",
     "Unsettled",
     "UnsettledWarning",
+    "decompose",
     "formats",
     "solve",
     "solve_async",
+    "synthesize",
 ]

@@ -10,10 +10,7 @@ import os
 import re
 import sys
 import warnings
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from .result import Result
+from typing import Any
 
 
 class CognateError(Exception):
@@ -73,13 +70,16 @@ class NotKnown(CognateError):
 
 
 class Unsettled(CognateError):
-    """Raised with `strict=True` where an answer is not settled; `result` is the answer as far as it goes."""
+    """Raised with `strict=True` where an answer is not settled; `result` is the answer as far as it goes.
 
-    def __init__(self, message: str, result: Result) -> None:
+    Of `solve` a `Result`, of `decompose` a `Decomposition`, of others what they would have given.
+    """
+
+    def __init__(self, message: str, result: Any) -> None:
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self) -> tuple[type[Unsettled], tuple[str, Result]]:
+    def __reduce__(self) -> tuple[type[Unsettled], tuple[str, Any]]:
         return type(self), (str(self), self.result)
 
 

@@ -13,6 +13,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import weakref
 from collections import deque
 from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -88,6 +89,14 @@ class Folder:
         path = self.path / name
         path.write_text(text, encoding="utf-8")
         return path
+
+
+class KeptFolder:
+    """A temporary folder that goes with the last object that holds it, or with the interpreter."""
+
+    def __init__(self) -> None:
+        self.path = Path(tempfile.mkdtemp(prefix="cognate-"))
+        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
 
 
 def find(*, search_path: bool = True) -> str:

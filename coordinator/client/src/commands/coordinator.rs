@@ -4,8 +4,8 @@ use crate::arguments::Coordinator;
 use crate::config_file::{ConfigFile, DAY, age_ms};
 use crate::error::{ClientError, Exit};
 use cognate_coordinator::api::security::{Tls, Tokens};
-use cognate_coordinator::config::{Config, ListenAddress};
-use cognate_coordinator::server::{self, ServerError};
+use cognate_coordinator::config::Config;
+use cognate_coordinator::server::{self, RunningServer, ServerError};
 use cognate_worker::transport::connect::CredentialError;
 
 /// Serves until somebody wants it to end; then lets running calls finish.
@@ -14,9 +14,12 @@ pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
     // Ledger, results and sockets are this user's: whoever reads them knows all problems and answers.
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let config = config(a)?;
-    let started = |addresses: &[ListenAddress]| {
-        for address in addresses {
+    let started = |server: &RunningServer| {
+        for address in &server.addresses {
             eprintln!("listening on {address}");
+        }
+        if let Some(url) = &server.page {
+            eprintln!("page at {url}");
         }
     };
     match server::run(config, started).await {
@@ -96,6 +99,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
     }
     config.metrics = a.metrics.clone().or(file.metrics);
     config.audit_log = a.audit_log.clone().or(file.audit_log);
+    config.page = a.page.clone().or(file.page);
     config.insecure = a.insecure || file.insecure.unwrap_or(false);
     Ok(config)
 }

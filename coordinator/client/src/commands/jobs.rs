@@ -46,7 +46,7 @@ pub fn table(jobs: &[JobOverview], now: f64, look: Look) -> String {
 }
 
 /// An age in whole units; clocks of two machines may differ by a little.
-fn age(s: f64) -> String {
+pub fn age(s: f64) -> String {
     match s.max(0.0) {
         s if s < 60.0 => format!("{} s", s as u64),
         s if s < 86_400.0 => seconds(s),

@@ -2,6 +2,7 @@
 
 pub mod backup;
 pub mod cancel;
+pub mod completions;
 pub mod convert;
 pub mod coordinator;
 pub mod decompose;
@@ -20,6 +21,7 @@ pub mod results;
 pub mod solve;
 pub mod submit;
 pub mod synthesize;
+pub mod top;
 pub mod watch;
 pub mod worker;
 pub mod workers;

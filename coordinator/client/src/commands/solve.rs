@@ -8,13 +8,30 @@ use crate::error::{ClientError, Exit};
 use crate::output::progress::Progress;
 use crate::problem::{self, Prepared};
 use cognate_protocol::v1::JobState;
+use std::io::IsTerminal;
+use std::process::Stdio;
 use std::time::Instant;
 
 /// Solves, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
     let prepared = problem::prepare(&a.problem)?;
-    let service = Embedded::start(a.workers, a.threads).await?;
+    let page = a.page.as_deref();
+    let service = Embedded::start_with_page(a.workers, a.threads, page).await?;
+    if let Some(url) = service.page() {
+        eprintln!("page at {url}");
+        show(url);
+    }
     embedded(&a.output, &a.progress, prepared, service).await
+}
+
+/// Opens a page in this user's browser, where there is one; its address was said in any case.
+fn show(url: &str) {
+    let has_windows = ["DISPLAY", "WAYLAND_DISPLAY"].map(std::env::var_os);
+    if std::io::stderr().is_terminal() && has_windows.iter().any(Option::is_some) {
+        let mut browser = std::process::Command::new("xdg-open");
+        browser.arg(url).stdin(Stdio::null()).stdout(Stdio::null());
+        let _ = browser.stderr(Stdio::null()).spawn();
+    }
 }
 
 /// Has a problem solved by the running coordinator that was named, or by one of the command's own.
@@ -47,6 +64,10 @@ async fn embedded(
         error = service.abandoned() => Err(error),
         () = crate::interrupted() => Err(ClientError::Interrupted),
     };
+    if let Some(url) = service.page().filter(|_| ended.is_ok()) {
+        eprintln!("the page stays at {url} until this command is interrupted (Ctrl-C)");
+        crate::interrupted().await;
+    }
     service.stop().await;
     ended
 }

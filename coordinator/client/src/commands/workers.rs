@@ -19,6 +19,17 @@ pub async fn run(a: &Listing) -> Result<Exit, ClientError> {
     Ok(Exit::Solved)
 }
 
+/// What a worker does, or why it gets nothing to do.
+pub fn state(w: &WorkerOverview) -> String {
+    if !w.refused.is_empty() {
+        format!("refused: {}", w.refused)
+    } else if w.leased_chunks > 0 {
+        "tracking".into()
+    } else {
+        format!("idle {}", seconds(w.idle_seconds))
+    }
+}
+
 /// The workers as a table.
 pub fn table(workers: &[WorkerOverview], look: Look) -> String {
     if workers.is_empty() {
@@ -28,13 +39,6 @@ pub fn table(workers: &[WorkerOverview], look: Look) -> String {
         "WORKER", "HOST", ">THREADS", "LANES", "VIA", ">CHUNKS", ">PATHS", "STATE",
     ]);
     for w in workers {
-        let state = if !w.refused.is_empty() {
-            format!("refused: {}", w.refused)
-        } else if w.leased_chunks > 0 {
-            "tracking".into()
-        } else {
-            format!("idle {}", seconds(w.idle_seconds))
-        };
         let lanes = match w.lane_width {
             0 => w.instruction_set.clone(),
             width => format!("{width} {}", w.instruction_set),
@@ -47,7 +51,7 @@ pub fn table(workers: &[WorkerOverview], look: Look) -> String {
             w.transport.clone(),
             count(w.accepted_chunks),
             count(w.accepted_paths),
-            state,
+            state(w),
         ]);
     }
     columns.render(look)

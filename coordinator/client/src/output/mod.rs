@@ -15,6 +15,8 @@ pub mod mechanisms;
 pub mod parquet;
 pub mod paths;
 pub mod progress;
+pub mod rates;
+pub mod screen;
 pub mod summary;
 pub mod surface;
 pub mod table;

@@ -1,0 +1,128 @@
+//! Page: a coordinator's jobs and workers in a browser, by HTTP on a listener of its own (`--page HOST:PORT`).
+//!
+//! One HTML file is the whole page. What it shows and does goes through the service for clients, in this process:
+//! behind the same guard of tokens, the same limits and the same rules of tenants as calls of `cognate`.
+
+mod access;
+mod answers;
+mod caller;
+mod events;
+mod points;
+mod request;
+
+use crate::api::admission::Admission;
+use crate::api::security::{Guard, Security};
+use crate::config::ListenAddress;
+use crate::transport::introduction::{ConnectionLimits, Connections};
+use crate::transport::{self, Callers, ListenError, tcp};
+use access::Access;
+use answers::Page;
+use std::convert::Infallible;
+use std::sync::Arc;
+use tokio::net::TcpListener;
+use tokio_util::sync::CancellationToken;
+use tonic::service::Routes;
+use tower::Layer;
+
+/// Connections of browsers: a few for each of some people, and never those that workers need.
+const CONNECTIONS: usize = 256;
+
+/// The page's listener, which is bound, and who may come in.
+#[derive(Debug)]
+pub struct PageListener {
+    listener: TcpListener,
+    callers: Callers,
+    /// The host as it was typed: browsers may name it so.
+    host: String,
+    asks_for_tokens: bool,
+    tls: bool,
+}
+
+impl PageListener {
+    /// Binds the address. Without TLS and tokens, or certificates of callers, only this user on this machine
+    /// comes in, unless `insecure`.
+    pub async fn open(
+        authority: &str,
+        security: &Security,
+        insecure: bool,
+    ) -> Result<Self, ListenError> {
+        let tls = security.tls.is_some();
+        // A token in the clear would be one for everybody.
+        let knows_callers = tls && security.knows_callers();
+        let open_to_all = knows_callers || insecure;
+        let bound = tcp::bind(authority, open_to_all).await;
+        let listener = bound.map_err(|error| match error {
+            ListenError::BeyondLoopback { .. } => ListenError::PageBeyondLoopback {
+                address: authority.to_owned(),
+            },
+            other => other,
+        })?;
+        Ok(Self {
+            listener,
+            callers: match open_to_all {
+                true => Callers::All,
+                false => Callers::SameUser,
+            },
+            host: authority
+                .rsplit_once(':')
+                .map_or(authority, |(host, _)| host)
+                .to_owned(),
+            asks_for_tokens: knows_callers && security.tokens.is_some(),
+            tls,
+        })
+    }
+
+    /// Where it is, as a browser takes it.
+    pub fn url(&self) -> String {
+        let address = self.listener.local_addr();
+        let address = address.map_or_else(|e| e.to_string(), |address| address.to_string());
+        let address = match self.tls {
+            true => ListenAddress::Tls(address),
+            false => ListenAddress::Tcp(address),
+        };
+        format!("{address}/")
+    }
+
+    /// Answers until the service stops.
+    pub async fn serve(
+        self,
+        security: Security,
+        admission: Admission,
+        routes: Routes,
+        stopping: CancellationToken,
+    ) {
+        let url = self.url();
+        tracing::info!(%url, "the page is there");
+        let tokens = security.tokens.filter(|_| self.asks_for_tokens);
+        let service = Guard(tokens).layer(admission.layer(routes));
+        let access = Access::new(&self.host, self.asks_for_tokens);
+        let page = Arc::new(Page::new(access, service, stopping.clone()));
+        let service = tower::service_fn(move |request| {
+            let page = Arc::clone(&page);
+            async move { Ok::<_, Infallible>(page.answer(request).await) }
+        });
+        let connections = Connections::new(ConnectionLimits {
+            most: CONNECTIONS,
+            ..ConnectionLimits::default()
+        });
+        let incoming = transport::tcp_connections(self.listener, self.callers, connections);
+        let server = tonic::transport::Server::builder().accept_http1(true);
+        let server = match security.tls {
+            Some(tls) => server.tls_config(tls.config()),
+            None => Ok(server),
+        };
+        let served = match server {
+            Ok(mut server) => {
+                let stopped = stopping.cancelled_owned();
+                server = server.http2_keepalive_interval(None);
+                server
+                    .serve_with_incoming_shutdown(service, incoming, stopped)
+                    .await
+            }
+            Err(error) => Err(error),
+        };
+        if let Err(error) = served {
+            tracing::error!(%url, %error, "the page has closed");
+        }
+    }
+}

@@ -1,0 +1,380 @@
+"""Components: all irreducible components of all dimensions, their witness points, and what can be asked of them."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import exact, expressions, program
+from .errors import CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .progress import Bar, Wanted
+from .system import problem_file
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import NDArray
+
+    from .service import Service
+
+Point = tuple[complex, ...]
+"""Coordinates in the order of the variables."""
+
+
+@dataclass(frozen=True)
+class Component:
+    """One irreducible component.
+
+    `id`: its name, such as `2.1`, dimension first. `degree`; `multiplicity`: None where it is not known.
+    `irreducible`: `yes`, `no` or `not known`. `self_conjugate`: conjugation maps it to itself, or None. `points`:
+    its witness points, as many as its degree. `count`: of how many components this stands for: isolated points of
+    one kind are listed together where there are very many, with their `points` in `Decomposition.witness_points`.
+    """
+
+    id: str
+    dimension: int
+    degree: int
+    multiplicity: int | None
+    irreducible: str
+    self_conjugate: bool | None
+    count: int
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class Membership:
+    """Where a point lies: `on`: ids of components. `solves`: whether it solves the equations.
+
+    `unsettled`: components of which it is not known.
+    """
+
+    index: int
+    on: tuple[str, ...]
+    solves: bool | None
+    unsettled: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Points of components: `points` by the components' ids."""
+
+    variables: tuple[str, ...]
+    points: Mapping[str, tuple[Point, ...]]
+    settled: bool
+    summary: Mapping[str, Any]
+
+    def array(self, component: str | None = None) -> NDArray[numpy.complex128]:
+        """The points of one component, or of all, as an array of shape (points, variables)."""
+        import numpy
+
+        chosen = self.points.values() if component is None else [self.points[component]]
+        rows = [point for points in chosen for point in points]
+        return numpy.array(rows, dtype=numpy.complex128).reshape(len(rows), len(self.variables))
+
+
+@dataclass(frozen=True, repr=False)
+class Decomposition:
+    """All irreducible components of all dimensions that were asked for.
+
+    `components`, the highest dimension first. `witness_points`: by id. `settled`: every claim is; `open_questions`
+    are the others in words. `summary`: the program's own. `folder`: what `member` and `sample` read.
+    """
+
+    variables: tuple[str, ...]
+    components: tuple[Component, ...]
+    witness_points: Mapping[str, tuple[Point, ...]]
+    settled: bool
+    open_questions: tuple[str, ...]
+    warnings: tuple[str, ...]
+    summary: Mapping[str, Any]
+    folder: Path
+    _where: tuple[str, ...] = ()
+    # A temporary folder, which goes with the last object that needs it.
+    _kept: object = field(default=None, compare=False)
+
+    def __repr__(self) -> str:
+        """Dimensions and degrees."""
+        shown = ", ".join(
+            f"{c.id} of degree {c.degree}" + (f" ({c.count} of them)" if c.count > 1 else "") for c in self.components
+        )
+        return f"<Decomposition: {shown or 'no components'}{'' if self.settled else ', not settled'}>"
+
+    def __iter__(self) -> Any:
+        """The components."""
+        return iter(self.components)
+
+    def __len__(self) -> int:
+        """Number of components."""
+        return sum(component.count for component in self.components)
+
+    def __getitem__(self, id: str) -> Component:
+        """The component of an id."""
+        for component in self.components:
+            if component.id == id:
+                return component
+        raise KeyError(id)
+
+    def of_dimension(self, dimension: int) -> list[Component]:
+        """The components of one dimension."""
+        return [c for c in self.components if c.dimension == dimension]
+
+    def array(self, id: str) -> NDArray[numpy.complex128]:
+        """The witness points of a component as an array of shape (degree, variables)."""
+        import numpy
+
+        rows = self.witness_points[id]
+        return numpy.array(rows, dtype=numpy.complex128).reshape(len(rows), len(self.variables))
+
+    def member(
+        self,
+        points: object,
+        *,
+        components: Iterable[str] = (),
+        accuracy: float | None = None,
+        strict: bool = False,
+        progress: Wanted = None,
+    ) -> list[Membership]:
+        """On which components points lie.
+
+        `points`: one or many; each a mapping by names, a solution, or coordinates in order. Exact numbers are
+        exact, floats as their digits say, unless `accuracy`, the error relative to the point's size, is given.
+
+        >>> import cognate as cg
+        >>> found = cg.decompose(["(x^2 + y^2 - 1)*(x - 2)", "(x^2 + y^2 - 1)*(y - 3)"], workers=1)
+        >>> [m.on for m in found.member([{"x": 1, "y": 0}, (2, 3), (5, 5)])]
+        [('1.1',), ('0.1',), ()]
+        """
+        more = [] if accuracy is None else [f"--accuracy={accuracy}"]
+        listed = _points(points, self.variables)
+        summary = self._ask("member", more, components, strict, progress, {"points": listed})
+        return [
+            Membership(
+                index=int(p["index"]),
+                on=tuple(_ids(p["on"])),
+                solves=p.get("solves"),
+                unsettled=tuple(_ids(p.get("unsettled") or [])),
+            )
+            for p in summary["points"]
+        ]
+
+    def sample(
+        self,
+        count: int,
+        *,
+        components: Iterable[str] = (),
+        real: bool = False,
+        near: object = None,
+        box: Sequence[tuple[float, float]] | Mapping[str, tuple[float, float]] | None = None,
+        strict: bool = False,
+        progress: Wanted = None,
+    ) -> Sample:
+        """Points of components: `count` of each. `real`: only real ones; `box`: only real ones between two numbers
+        for each variable; `near`: near a point.
+
+        >>> import cognate as cg
+        >>> circle = cg.decompose(["x^2 + y^2 - 1"], workers=1)
+        >>> found = circle.sample(5, real=True)
+        >>> found.array().shape, all(abs(x * x + y * y - 1) < 1e-12 for x, y in found.points["1.1"])
+        ((5, 2), True)
+        """
+        more = [f"--count={count}"]
+        if real:
+            more.append("--real")
+        if box is not None:
+            if isinstance(box, Mapping):
+                missing = [v for v in self.variables if v not in box]
+                if missing:
+                    raise InputError(f"expected a range for each variable, found none for {missing[0]}", field="box")
+                box = [box[v] for v in self.variables]
+            more.append("--box=" + ",".join(f"{float(low)!r}..{float(high)!r}" for low, high in box))
+        files = {} if near is None else {"near": _points([near], self.variables)}
+        summary = self._ask("sample", more, components, strict, progress, files)
+        rest = iter(summary["points"])
+        points = {
+            str(block["id"]): tuple(tuple(complex(re, im) for re, im in next(rest)) for _ in range(int(block["count"])))
+            for block in summary["components"]
+        }
+        return Sample(self.variables, points, bool(summary["settled"]), summary)
+
+    def _ask(
+        self,
+        question: str,
+        more: list[str],
+        components: Iterable[str],
+        strict: bool,
+        progress: Wanted,
+        files: Mapping[str, str],
+    ) -> dict[str, Any]:
+        """The summary of a question's answer."""
+        arguments = [question, "--format", "json", *self._where, *more]
+        # A text is iterable, too.
+        for id in [components] if isinstance(components, str) else components:
+            arguments.append(f"--component={id}")
+        with program.Folder() as folder, Bar(progress) as bar:
+            own: program.Own = {}
+            for name, text in files.items():
+                path = folder.write(name, text)
+                own[str(path)] = name
+                arguments += [f"--{name}", str(path)]
+            if bar.watcher is not None:
+                arguments += ["--progress", "json"]
+            finished = program.run([*arguments, "--", str(self.folder)], own=own, watcher=bar.watcher)
+        summary: dict[str, Any] = json.loads(finished.output)
+        if not summary["settled"]:
+            message = "not settled: " + "; ".join(summary["unsettled"] or [question])
+            if strict:
+                raise Unsettled(message, summary)
+            warn(message, UnsettledWarning)
+        return summary
+
+
+def decompose(
+    problem: object,
+    *,
+    dimension: int | tuple[int, int] | None = None,
+    method: str = "auto",
+    verify: bool = False,
+    certify: bool = False,
+    loops: int | None = None,
+    seed: int | None = None,
+    preset: str | None = None,
+    precision: str | int | None = None,
+    exact: bool = False,
+    service: Service | None = None,
+    workers: int = 2,
+    threads: int | None = None,
+    progress: Wanted = None,
+    strict: bool = False,
+    output: str | os.PathLike[str] | None = None,
+) -> Decomposition:
+    """All irreducible components of all dimensions, with degrees, multiplicities and witness points.
+
+    `problem`: as of `solve`. `dimension`: of the components wanted, or lowest and highest. `method`: `auto`,
+    `slices`, `cascade` or `equations`; `verify`: a second method is compared. `certify`: proofs of the witness
+    points. `service`: where it is done, instead of here. `output`: a folder for all files, among them Bertini's.
+
+    Warns with `UnsettledWarning` where a claim is not settled; `strict` raises `Unsettled` instead.
+
+    >>> import cognate as cg
+    >>> found = cg.decompose(["x*z - y^2", "y - z^2", "x - y*z"], workers=1)
+    >>> found
+    <Decomposition: 1.1 of degree 3>
+    >>> found["1.1"].multiplicity, len(found["1.1"].points), found.settled
+    (1, 3, True)
+    """
+    kept = program.KeptFolder() if output is None else None
+    folder = Path(output) if output is not None else kept.path / "set" if kept is not None else Path()
+    where = _place(service, workers, threads)
+    arguments = ["decompose", "--format", "json", "--output", str(folder), *where, f"--method={method}"]
+    if dimension is not None:
+        low, high = (dimension, dimension) if isinstance(dimension, int) else dimension
+        arguments.append(f"--dimension={low}..{high}")
+    for name, value in (("loops", loops), ("seed", seed), ("preset", preset), ("precision", precision)):
+        if value is not None:
+            arguments.append(f"--{name}={value}")
+    for name, wanted in (("verify", verify), ("certify", certify), ("exact", exact)):
+        if wanted:
+            arguments.append(f"--{name}")
+    with program.Folder() as given, Bar(progress) as bar:
+        file = problem_file(problem, given)
+        if bar.watcher is not None:
+            arguments += ["--progress", "json"]
+        finished = program.run([*arguments, "--", str(file.path)], own=file.own, watcher=bar.watcher)
+        summary = json.loads(finished.output)
+        summary["warnings"] = [in_the_users_words(w, file.own) for w in summary.get("warnings") or []]
+    found = _read(summary, folder, where, kept)
+    if strict and not found.settled:
+        raise Unsettled("not settled: " + "; ".join(found.open_questions), found)
+    for warning in found.warnings:
+        warn(warning, CognateWarning)
+    if not found.settled:
+        warn("not settled: " + "; ".join(found.open_questions), UnsettledWarning)
+    return found
+
+
+def _place(service: Service | None, workers: int, threads: int | None) -> tuple[str, ...]:
+    """The arguments that say who does it."""
+    if service is not None:
+        return tuple(service._where)
+    return ("--workers", str(workers), *(() if threads is None else ("--threads", str(threads))))
+
+
+def _read(summary: Mapping[str, Any], folder: Path, where: tuple[str, ...], kept: object) -> Decomposition:
+    """The answer in a folder that the program has written."""
+    points: dict[str, list[Point]] = {}
+    with (folder / "witness_points.jsonl").open(encoding="utf-8") as lines:
+        for line in lines:
+            found = json.loads(line)
+            values = found["variables"].values()
+            points.setdefault(str(found["component"]), []).append(
+                tuple(complex(float(re), float(im)) for re, im in values)
+            )
+    system = json.loads((folder / "system.json").read_text(encoding="utf-8"))
+    components = []
+    for block in summary["decomposition"]["components"]:
+        count = int(block["count"])
+        own = tuple(points.get(str(block["id"]), ())) if count == 1 else ()
+        components.append(
+            Component(
+                id=str(block["id"]),
+                dimension=int(block["dimension"]),
+                degree=int(block["degree"]),
+                multiplicity=block["multiplicity"],
+                irreducible=str(block["irreducible"]),
+                self_conjugate=block["self_conjugate"],
+                count=count,
+                points=own,
+            )
+        )
+    return Decomposition(
+        variables=tuple(system["variables"]),
+        components=tuple(components),
+        witness_points={id: tuple(own) for id, own in points.items()},
+        settled=bool(summary["settled"]),
+        open_questions=tuple(summary["decomposition"].get("unsettled") or ()),
+        warnings=tuple(summary["warnings"]),
+        summary=summary,
+        folder=folder,
+        _where=where,
+        _kept=kept,
+    )
+
+
+def _ids(listed: Sequence[Any]) -> list[str]:
+    """Ids in a list that may have more of each."""
+    return [str(entry["component"]) if isinstance(entry, Mapping) else str(entry) for entry in listed]
+
+
+def _number(value: object, place: str) -> str | list[str]:
+    """A number as the file of points has it; a fraction stays one."""
+    if isinstance(value, complex) or getattr(getattr(value, "dtype", None), "kind", "") == "c":
+        z = exact.double(value, place)
+        return [repr(z.real), repr(z.imag)]
+    return exact.text(value, place)
+
+
+def _points(points: object, variables: tuple[str, ...]) -> str:
+    """Points as lines of JSON, by names."""
+    if isinstance(points, Mapping):
+        points = [points]
+    elif not isinstance(points, Iterable) or isinstance(points, str):
+        raise InputError(f"expected a point, or a list or array of points, found {points!r}", field="points")
+    listed: list[Any] = list(points)
+    if listed and not any(isinstance(p, (Mapping, Sequence)) or getattr(p, "ndim", 0) > 0 for p in listed):
+        listed = [listed]
+    lines = []
+    for i, point in enumerate(listed):
+        place = f"points[{i}]"
+        if isinstance(point, Mapping):
+            values = {expressions.name(key, place): value for key, value in point.items()}
+        else:
+            values = dict(zip(variables, point, strict=False))
+            if len(values) != len(variables) or len(point) != len(variables):
+                raise InputError(f"expected {len(variables)} coordinates, found {len(point)}", field=place)
+        lines.append(json.dumps({name: _number(value, f"{place}.{name}") for name, value in values.items()}))
+    if not lines:
+        raise InputError("expected at least one point", field="points")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,167 @@
+"""Synthesis: every four-bar linkage that does what is asked of it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import program
+from .components import _place
+from .errors import CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .progress import Bar, Wanted
+
+if TYPE_CHECKING:
+    from .service import Service
+
+Numbers = Sequence[Sequence[float]]
+"""Rows of numbers: lists, or an array."""
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """One four-bar linkage.
+
+    `pivots`: the two points on the ground; `joints`: the two moving ones at the first position; `coupler_point`.
+    `grade`: how well it does what is asked, such as `one-circuit`. `kind`: its type by Grashof. `data`: everything
+    that the program says of it.
+    """
+
+    name: str
+    pivots: tuple[complex, complex]
+    joints: tuple[complex, complex]
+    coupler_point: complex
+    grade: str
+    kind: str
+    data: Mapping[str, Any]
+
+
+@dataclass(frozen=True, repr=False)
+class Synthesis(Sequence[Linkage]):
+    """All real linkages, the best first: a sequence of `Linkage`.
+
+    `settled`: all paths are accounted for. `summary`: the program's own answer.
+    """
+
+    linkages: tuple[Linkage, ...]
+    settled: bool
+    summary: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """How many there are."""
+        return f"<Synthesis: {len(self.linkages)} linkages{'' if self.settled else ', not settled'}>"
+
+    def __len__(self) -> int:
+        """Number of linkages."""
+        return len(self.linkages)
+
+    def __getitem__(self, index: Any) -> Any:
+        """One linkage, or some."""
+        return self.linkages[index]
+
+
+KINDS = {
+    "nine-point": ("x,y", 2),
+    "body-guidance": ("x,y,angle", 3),
+    "path-timing": ("x,y,angle", 3),
+    "function-generation": ("input,output", 2),
+    "poses-and-points": ("x,y,angle", 3),
+}
+"""What can be asked, with the columns of its rows."""
+
+
+def synthesize(
+    kind: str,
+    rows: Numbers | str | os.PathLike[str],
+    *,
+    certify: bool = False,
+    seed: int | None = None,
+    preset: str | None = None,
+    precision: str | int | None = None,
+    service: Service | None = None,
+    workers: int = 2,
+    threads: int | None = None,
+    progress: Wanted = None,
+    strict: bool = False,
+    output: str | os.PathLike[str] | None = None,
+) -> Synthesis:
+    """Every four-bar linkage that does what is asked, angles in degrees.
+
+    `kind` and `rows`: `nine-point` with nine points x, y of its coupler curve; `body-guidance` with five poses x, y,
+    angle; `path-timing` with five points and the crank's angle at each; `function-generation` with five pairs of
+    angles of crank and follower; `poses-and-points` with 2, 3 or 4 poses and 6, 4 or 2 points, whose angle is None.
+    `rows` may be a file, as of the command. `output`: a folder for drawings, tables and a page.
+
+    >>> import cognate as cg
+    >>> poses = [(0, 0, 0), (1, 0.5, 20), (2, 0.6, 40), (3, 0.2, 65), (3.5, -0.5, 90)]
+    >>> found = cg.synthesize("body-guidance", poses, workers=1)
+    >>> found.settled, found.summary["solutions"]["distinct"]
+    (True, 4)
+    """
+    if kind not in KINDS:
+        raise InputError(f"expected one of {', '.join(KINDS)}, found {kind!r}", field="kind")
+    arguments = ["synthesize", kind, "--format", "json", *_place(service, workers, threads)]
+    for name, value in (("seed", seed), ("preset", preset), ("precision", precision)):
+        if value is not None:
+            arguments.append(f"--{name}={value}")
+    if certify:
+        arguments.append("--certify")
+    if output is not None:
+        arguments += ["--output", os.fspath(output)]
+    with program.Folder() as folder, Bar(progress) as bar:
+        own: program.Own = {}
+        if isinstance(rows, (str, os.PathLike)):
+            file = Path(rows)
+        else:
+            file = folder.write("rows.csv", _table(kind, rows))
+            own[str(file)] = "rows"
+        if bar.watcher is not None:
+            arguments += ["--progress", "json"]
+        finished = program.run([*arguments, "--", str(file)], own=own, watcher=bar.watcher)
+    summary = json.loads(finished.output)
+    warnings = [in_the_users_words(w, own) for w in summary.get("warnings") or []]
+    listed = summary.get("linkages")
+    if listed is None:
+        # Nine points: three cognate linkages draw each curve.
+        listed = [linkage for curve in summary.get("curves") or [] for linkage in curve["linkages"]]
+    found = Synthesis(tuple(_linkage(linkage) for linkage in listed), bool(summary["settled"]), summary)
+    for warning in warnings:
+        warn(warning, CognateWarning)
+    if not found.settled:
+        if strict:
+            raise Unsettled("not settled: some linkages may be missing", found)
+        warn("not settled: some linkages may be missing", UnsettledWarning)
+    return found
+
+
+def _table(kind: str, rows: Numbers) -> str:
+    """Rows as a table."""
+    header, width = KINDS[kind]
+    lines = [header]
+    for i, row in enumerate(rows):
+        cells = list(row)
+        if kind == "poses-and-points" and len(cells) == 2:
+            cells.append(None)  # type: ignore[arg-type]
+        if len(cells) != width:
+            raise InputError(f"expected {width} numbers ({header}), found {len(cells)}", field=f"rows[{i}]")
+        lines.append(",".join("" if cell is None else repr(float(cell)) for cell in cells))
+    return "\n".join(lines) + "\n"
+
+
+def _linkage(found: Mapping[str, Any]) -> Linkage:
+    def points(name: str) -> tuple[complex, complex]:
+        first, second = (complex(x, y) for x, y in found[name])
+        return first, second
+
+    return Linkage(
+        name=str(found["name"]),
+        pivots=points("pivots"),
+        joints=points("joints"),
+        coupler_point=complex(*found["coupler_point"]),
+        grade=str(found.get("grade")),
+        kind=str(found.get("type")),
+        data=found,
+    )

@@ -1,0 +1,127 @@
+"""Mechanisms and synthesis: known numbers of positions, there and back, the units of angles, mistakes."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy
+import pytest
+
+import cognate as cg
+from conftest import EXAMPLES
+
+TURN_AND_LIFT = """<robot name="crane">
+ <link name="base"/><link name="upper"/><link name="lower"/><link name="hand"/>
+ <joint name="q1" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+  <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+ <joint name="q2" type="revolute"><parent link="upper"/><child link="lower"/><origin xyz="2 0 0"/><axis xyz="0 0 1"/>
+  <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+ <joint name="tool" type="fixed"><parent link="lower"/><child link="hand"/><origin xyz="1 0 0"/></joint>
+</robot>
+"""
+
+
+@pytest.fixture(scope="module")
+def arm() -> cg.Mechanism:
+    return cg.Mechanism.read(EXAMPLES / "arm_6r.json")
+
+
+def chain(theta: float, d: float, a: float, alpha: float) -> numpy.ndarray:
+    """A row of Denavit and Hartenberg as a matrix, by the textbook."""
+    c, s, ca, sa = math.cos(theta), math.sin(theta), math.cos(alpha), math.sin(alpha)
+    return numpy.array([[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, d], [0, 0, 0, 1]])
+
+
+def test_every_posture_of_an_arm_reaches_its_pose(arm: cg.Mechanism) -> None:
+    poses = json.loads((EXAMPLES / "arm_6r_poses.json").read_text())
+    found = arm.inverse(poses[:3])
+    assert [p.counts["complex"] for p in found] == [16, 16, 16]
+    rows = json.loads((EXAMPLES / "arm_6r.json").read_text())["serial"]["joints"]
+    for pose, postures in zip(poses, found, strict=False):
+        assert postures.settled and len(postures) == postures.counts["real"] > 0
+        wanted = numpy.eye(4)
+        wanted[:3, :3], wanted[:3, 3] = pose["rotation"], pose["position"]
+        for q in postures.array(["q1", "q2", "q3", "q4", "q5", "q6"]):
+            reached = numpy.eye(4)
+            for angle, row in zip(q, rows, strict=True):
+                reached = reached @ chain(angle + row.get("theta", 0), row["d"], row["a"], row["alpha"])
+            assert numpy.allclose(reached, wanted, atol=1e-7)
+        for posture in postures:
+            assert numpy.allclose(posture.output.matrix(), wanted, atol=1e-7)
+
+
+def test_a_matrix_is_a_pose(arm: cg.Mechanism) -> None:
+    pose = json.loads((EXAMPLES / "arm_6r_poses.json").read_text())[0]
+    matrix = numpy.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = pose["rotation"], pose["position"]
+    one = arm.inverse(matrix)
+    assert isinstance(one, cg.Positions) and numpy.asarray(one).shape == (len(one), 6)
+    several = arm.inverse(numpy.array([matrix, matrix]))
+    assert [len(p) for p in several] == [len(one)] * 2
+    again = arm.inverse(one[0].output)
+    assert numpy.allclose(sorted(again.array().tolist()), sorted(one.array().tolist()), atol=1e-6)
+
+
+def test_a_platform_has_forty_positions() -> None:
+    platform = cg.Mechanism.read(EXAMPLES / "hexapod.toml")
+    lengths = json.loads((EXAMPLES / "hexapod_lengths.json").read_text())[0]
+    found = platform.forward(**lengths)
+    assert (found.counts["complex"], found.counts["real"], found.settled) == (40, 4, True)
+    bodies = platform.info()
+    assert bodies["name"] == "hexapod"
+    assert len(platform.forward([lengths, lengths])) == 2
+
+
+def test_a_urdf_is_read_and_angles_are_radians(tmp_path: Path) -> None:
+    file = tmp_path / "crane.urdf"
+    file.write_text(TURN_AND_LIFT)
+    crane = cg.Mechanism.from_urdf(file)
+    assert [j["name"] for j in crane.info()["joints"]] == ["q1", "q2"]
+    with pytest.raises(cg.InputError, match="freedoms"):
+        crane.inverse(numpy.eye(4))
+
+
+def test_equations_are_a_system(arm: cg.Mechanism) -> None:
+    system = arm.equations("inverse")
+    assert len(system.variables) == 8 and system.parameters
+
+
+@pytest.mark.parametrize(
+    ("pose", "words"),
+    [
+        (numpy.ones((4, 4)), "last row"),
+        (numpy.eye(5), "homogeneous matrix"),
+        ({"position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 2]]}, "rotation"),
+    ],
+    ids=["row", "size", "rotation"],
+)
+def test_what_is_no_pose_is_refused(arm: cg.Mechanism, pose: object, words: str) -> None:
+    with pytest.raises(cg.InputError, match=words):
+        arm.inverse(pose)
+
+
+def test_linkages_for_five_poses() -> None:
+    # All four dyads of this example are real: six linkages (deploy/examples/five_poses.csv says so).
+    found = cg.synthesize("body-guidance", EXAMPLES / "five_poses.csv", workers=1)
+    assert len(found) == 6 and found.settled and repr(found) == "<Synthesis: 6 linkages>"
+    rows = [line.split(",") for line in (EXAMPLES / "five_poses.csv").read_text().splitlines()[2:]]
+    again = cg.synthesize("body-guidance", [[float(x) for x in row] for row in rows], workers=1)
+    assert sorted(abs(p) for linkage in again for p in linkage.pivots) == pytest.approx(
+        sorted(abs(p) for linkage in found for p in linkage.pivots)
+    )
+    for linkage in found:
+        first, second = linkage.pivots
+        lengths = linkage.data["lengths"]
+        assert abs(first - second) == pytest.approx(lengths["ground"])
+
+
+def test_mistakes_of_synthesis_are_named() -> None:
+    with pytest.raises(cg.InputError, match="expected one of nine-point"):
+        cg.synthesize("ten-point", [])
+    with pytest.raises(cg.InputError, match="expected 3 numbers") as raised:
+        cg.synthesize("body-guidance", [(0, 0, 0), (1, 2)])
+    assert raised.value.field == "rows[1]"
+    with pytest.raises(cg.InputError, match="five"):
+        cg.synthesize("body-guidance", [(0, 0, 0), (1, 2, 3)])

@@ -1,0 +1,209 @@
+"""The live page in a real browser: a job from a dropped file to its results, in two widths and two themes."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import PROGRAM, Browser
+
+from cognate import program
+from conftest import EXAMPLES
+
+pytestmark = pytest.mark.skipif(PROGRAM is None and not os.environ.get("CI"), reason="no Chromium is installed")
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where screenshots go: COGNATE_SCREENSHOTS, to be looked at."""
+    folder = Path(os.environ.get("COGNATE_SCREENSHOTS") or tmp_path_factory.mktemp("pictures"))
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A coordinator with a page and a worker; the page's address."""
+    folder = tmp_path_factory.mktemp("page")
+    socket = f"unix:{folder}/c.sock"
+    found = program.find()
+    places = ["--ledger", f"sqlite:{folder}/ledger.db", "--results", str(folder / "results")]
+    coordinator = subprocess.Popen(
+        [found, "coordinator", "--listen", socket, "--page", "127.0.0.1:0", *places],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    worker = None
+    try:
+        assert coordinator.stderr is not None
+        url = next(line.split()[-1] for line in coordinator.stderr if line.startswith("page at "))
+        worker = subprocess.Popen(
+            [found, "worker", "--coordinator", socket, "--threads", "1"], stderr=subprocess.DEVNULL
+        )
+        yield url
+    finally:
+        for process in filter(None, (worker, coordinator)):
+            process.terminate()
+            process.wait(30)
+        if coordinator.stderr is not None:
+            coordinator.stderr.close()
+
+
+def drop(name: str, content: str) -> str:
+    """A script that drops a file onto the page."""
+    return f"""(() => {{ const data = new DataTransfer();
+        data.items.add(new File([{json.dumps(content)}], {json.dumps(name)}));
+        dispatchEvent(new DragEvent('drop', {{ dataTransfer: data, bubbles: true, cancelable: true }})); }})()"""
+
+
+def shown(word: str) -> str:
+    return f"document.getElementById('main').innerText.includes({json.dumps(word)})"
+
+
+async def submitted(browser: Browser, file: Path) -> None:
+    """Drops an example, and follows its job to the end."""
+    await browser.run(drop(file.name, file.read_text()))
+    await browser.until("location.hash.startsWith('#job/')")
+    await browser.until(shown("Every path is accounted for"), 120)
+
+
+def test_a_job_from_a_dropped_file_to_its_results(page: str, pictures: Path) -> None:
+    async def look() -> None:
+        async with Browser() as browser:
+            await browser.size(1280, 900)
+            await browser.go(page)
+            await browser.until(shown("No jobs yet"))
+            await submitted(browser, EXAMPLES / "cyclic_5.bertini")
+            await browser.until(shown("Solutions 1 to 50"))
+            text = await browser.run("document.getElementById('main').innerText")
+            for words in ("70", "solutions.jsonl", "Solutions 1 to 50, and more follow", "all 70 solutions"):
+                assert words in text, text
+            await browser.picture(pictures / "job_wide.png")
+            await browser.run("document.getElementById('theme').click()")
+            await browser.picture(pictures / "job_wide_other_theme.png")
+            await browser.size(420, 900)
+            await asyncio.sleep(0.3)
+            assert await browser.run("document.documentElement.scrollWidth <= 420"), "nothing sticks out"
+            await browser.picture(pictures / "job_narrow.png")
+            for view in ("jobs", "workers", "submit"):
+                await browser.size(1280, 900)
+                await browser.run(f"location.hash = '#{view}'")
+                await browser.until(shown({"jobs": "cyclic_5", "workers": "1 workers", "submit": "Drop a file"}[view]))
+                await browser.picture(pictures / f"{view}_wide.png")
+                await browser.size(420, 900)
+                await browser.picture(pictures / f"{view}_narrow.png")
+                assert await browser.run("document.documentElement.scrollWidth <= 420"), view
+            assert browser.log == []
+
+    asyncio.run(look())
+
+
+def test_mistakes_are_shown_where_they_are_made(page: str) -> None:
+    async def look() -> None:
+        async with Browser() as browser:
+            await browser.go(page + "#submit")
+            await browser.until(shown("Drop a file"))
+            await browser.run(drop("wrong.bertini", "variable_group x; function f;\nf = x^2 - ;\nEND;\n"))
+            await browser.until(shown("wrong.bertini:2:11"))
+            await browser.run(drop("<img src=x onerror=alert(1)>.bertini", "nothing"))
+            await browser.until(shown("<img src=x onerror"))
+            assert await browser.run("document.querySelector('img') === null"), "names are no HTML"
+
+    asyncio.run(look())
+
+
+def test_the_page_is_used_by_keyboard_and_read_aloud(page: str) -> None:
+    async def look() -> None:
+        async with Browser() as browser:
+            await browser.go(page)
+            await browser.until("document.querySelectorAll('tbody tr').length > 0")
+            reached: list[str] = []
+            for _ in range(12):
+                for kind in ("keyDown", "keyUp"):
+                    await browser.call(
+                        "Input.dispatchKeyEvent", type=kind, key="Tab", code="Tab", windowsVirtualKeyCode=9
+                    )
+                reached.append(await browser.run("document.activeElement.textContent.trim().slice(0, 30)"))
+            for name in ("To the content", "Jobs", "Workers", "Submit", "cyclic_5.bertini"):
+                assert name in reached, reached
+            tree = await browser.call("Accessibility.getFullAXTree")
+            roles: dict[str, int] = {}
+            for node in tree["nodes"]:
+                role = node.get("role", {}).get("value", "")
+                roles[role] = roles.get(role, 0) + 1
+                if role in ("button", "link", "progressbar", "textbox", "combobox", "image"):
+                    assert node["name"]["value"], f"a {role} without a name"
+            for role in ("main", "navigation", "table", "columnheader", "progressbar", "heading", "status"):
+                assert roles.get(role), roles
+
+    asyncio.run(look())
+
+
+def test_long_lists_come_in_pages_and_do_not_stutter(page: str) -> None:
+    async def look() -> None:
+        import urllib.request
+
+        content = b"variable_group x; function f; f = x - 1; END;"
+        for k in range(250):
+            request = urllib.request.Request(
+                f"{page}api/jobs?name=many_{k}", data=content, headers={"X-Cognate": "page"}, method="POST"
+            )
+            with urllib.request.urlopen(request) as answer:
+                assert answer.status == 200
+        async with Browser() as browser:
+            await browser.go(page)
+            await browser.until("document.querySelectorAll('tbody tr').length === 100")
+            # The longest that the page was busy at once while lists come in, in milliseconds.
+            longest: Any = await browser.run(
+                """new Promise(done => { let last = performance.now(), longest = 0;
+                   const end = last + 4000;
+                   const look = () => {
+                     const now = performance.now(); longest = Math.max(longest, now - last); last = now;
+                     if (now < end) setTimeout(look, 0); else done(longest); };
+                   setTimeout(look, 0); })"""
+            )
+            assert longest < 500, longest
+            for _ in range(2):
+                await browser.run(
+                    "[...document.querySelectorAll('button')].find(b => b.textContent === 'Older').click()"
+                )
+                await asyncio.sleep(0.2)
+            await browser.until(shown("many_0"))
+            assert await browser.run(
+                "[...document.querySelectorAll('button')].find(b => b.textContent === 'Older').disabled"
+            )
+
+    asyncio.run(look())
+
+
+def test_a_solve_has_a_page(tmp_path: Path) -> None:
+    solve = subprocess.Popen(
+        [program.find(), "solve", str(EXAMPLES / "three_rpr.bertini"), "--workers", "1", "--page", "--format", "json"],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert solve.stderr is not None
+        url = next(line.split()[-1] for line in solve.stderr if line.startswith("page at "))
+
+        async def look() -> None:
+            async with Browser() as browser:
+                await browser.go(url)
+                await browser.until(shown("three_rpr"))
+                await browser.until(shown("solved"))
+
+        asyncio.run(look())
+    finally:
+        time.sleep(0.2)
+        solve.send_signal(2)
+        output, _ = solve.communicate(timeout=30)
+    assert json.loads(output)["solutions"]["distinct"] == 6
+    assert solve.returncode == 0
