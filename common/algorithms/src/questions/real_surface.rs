@@ -243,7 +243,7 @@ impl RealSurfaces {
                 (Phase::Outline, Some(child), _) => self.outlined(with, child),
                 (Phase::Singular, Some(child), _) => self.with_singular(with, child),
                 (Phase::Levels(k), Some(child), _) => self.levelled(with, k, child),
-                (Phase::Arcs(k), Some(child), _) => self.followed(with, operand, k, child),
+                (Phase::Arcs(k), Some(child), _) => self.followed(with, k, child),
                 (Phase::Fibres, _, Some(job)) => self.assemble(with, operand, job),
                 (phase, ..) => unreachable!("{phase:?} waits for something"),
             };
@@ -484,13 +484,7 @@ impl RealSurfaces {
         Some(operand.moved_to(with.problem, with.deflations, targets))
     }
 
-    fn followed(
-        &mut self,
-        with: &mut Context<'_>,
-        _: &Operand,
-        number: usize,
-        child: Child,
-    ) -> Option<Job> {
+    fn followed(&mut self, with: &mut Context<'_>, number: usize, child: Child) -> Option<Job> {
         self.take_curves(number, child)?;
         self.next_arcs(with, number + 1)
     }

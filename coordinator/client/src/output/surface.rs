@@ -124,8 +124,8 @@ fn picture(meshes: &[Mesh]) -> String {
     let points = meshes.iter().flat_map(|mesh| &mesh.vertices).map(seen);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for point in points {
-        for k in 0..2 {
-            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
+        for ((low, high), x) in low.iter_mut().zip(&mut high).zip(point) {
+            (*low, *high) = (low.min(x), high.max(x));
         }
     }
     let range = (high[0] - low[0])

@@ -49,8 +49,8 @@ pub(super) fn singular(problem: &Problem) -> System {
     let mut made = combined(problem);
     let root = made.equations[0];
     let e = &mut made.expressions;
-    let wanted = |node: &Node| matches!(node, Node::Variable(_));
-    let partials: Vec<_> = gradient(e, root, &mut { wanted }).into_values().collect();
+    let mut wanted = |node: &Node| matches!(node, Node::Variable(_));
+    let partials: Vec<_> = gradient(e, root, &mut wanted).into_values().collect();
     let count = partials.len();
     made.equations.extend(partials);
     with_others(problem, made, count)

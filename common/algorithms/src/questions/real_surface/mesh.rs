@@ -153,9 +153,9 @@ impl Builder {
             let mut line = Line::new();
             line.extend(from.map(|m| (section.marks[m].place[1], self.mark(level, m))));
             let mut last: Option<usize> = None;
-            for strip in first..after {
-                let sheets = links[strip].iter();
+            for (strip, sheets) in links.iter().enumerate().take(after).skip(first) {
                 let own: Vec<usize> = sheets
+                    .iter()
                     .enumerate()
                     .filter(|(_, arc)| **arc == k)
                     .map(|(sheet, _)| sheet)
