@@ -15,7 +15,7 @@ import pytest
 from browser import PROGRAM, Browser
 
 from cognate import program
-from conftest import EXAMPLES
+from conftest import EXAMPLES, until
 
 pytestmark = pytest.mark.skipif(PROGRAM is None and not os.environ.get("CI"), reason="no Chromium is installed")
 
@@ -35,15 +35,20 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     socket = f"unix:{folder}/c.sock"
     found = program.find()
     places = ["--ledger", f"sqlite:{folder}/ledger.db", "--results", str(folder / "results")]
-    coordinator = subprocess.Popen(
-        [found, "coordinator", "--listen", socket, "--page", "127.0.0.1:0", *places],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    # A file: a pipe that nobody reads would hold the coordinator up when it is full.
+    log = folder / "log"
+    with log.open("w") as stderr:
+        coordinator = subprocess.Popen(
+            [found, "coordinator", "--listen", socket, "--page", "127.0.0.1:0", *places], stderr=stderr
+        )
     worker = None
     try:
-        assert coordinator.stderr is not None
-        url = next(line.split()[-1] for line in coordinator.stderr if line.startswith("page at "))
+
+        def pages() -> list[str]:
+            return [line.split()[-1] for line in log.read_text().splitlines() if line.startswith("page at ")]
+
+        assert until(pages), log.read_text()
+        url = pages()[0]
         worker = subprocess.Popen(
             [found, "worker", "--coordinator", socket, "--threads", "1"], stderr=subprocess.DEVNULL
         )
@@ -52,8 +57,6 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         for process in filter(None, (worker, coordinator)):
             process.terminate()
             process.wait(30)
-        if coordinator.stderr is not None:
-            coordinator.stderr.close()
 
 
 def drop(name: str, content: str) -> str:
@@ -100,6 +103,8 @@ def test_a_job_from_a_dropped_file_to_its_results(page: str, pictures: Path) -> 
                 await browser.size(420, 900)
                 await browser.picture(pictures / f"{view}_narrow.png")
                 assert await browser.run("document.documentElement.scrollWidth <= 420"), view
+            for number, digits, words in ((4.9e-20, 2, "4.9e-20"), (100, 4, "100"), (1e10, 3, "10000000000")):
+                assert await browser.run(f"short({number}, {digits})") == words
             assert browser.log == []
 
     asyncio.run(look())
@@ -155,7 +160,7 @@ def test_long_lists_come_in_pages_and_do_not_stutter(page: str) -> None:
             request = urllib.request.Request(
                 f"{page}api/jobs?name=many_{k}", data=content, headers={"X-Cognate": "page"}, method="POST"
             )
-            with urllib.request.urlopen(request) as answer:
+            with urllib.request.urlopen(request, timeout=60) as answer:
                 assert answer.status == 200
         async with Browser() as browser:
             await browser.go(page)

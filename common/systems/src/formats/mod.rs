@@ -1,7 +1,8 @@
 //! Formats: what people already have, read and written.
 //!
-//! `read` takes a problem in Bertini-classic, PHCpack or our JSON, told apart
-//! by content, and gives a checked `System` with the settings of the file.
+//! `read` takes a problem in Bertini-classic, PHCpack, our JSON, or the notation of
+//! Macaulay2, Maple, Singular or msolve, told apart by content, and gives a checked
+//! `System` with the settings of the file.
 
 pub mod bertini;
 pub(crate) mod definitions;
@@ -10,12 +11,17 @@ pub mod error;
 pub mod json;
 pub mod json_value;
 pub mod limits;
+pub mod macaulay2;
+pub mod maple;
+pub mod msolve;
 pub mod options;
 pub mod phcpack;
 pub mod points;
+mod polynomial_list;
 pub(crate) mod scope;
 pub mod sets;
 mod sharing;
+pub mod singular;
 pub mod symmetry;
 
 pub use error::{FormatError, Place, Source};
@@ -41,6 +47,27 @@ pub enum Format {
     Phcpack,
     /// Our own JSON.
     Json,
+    /// Macaulay2.
+    Macaulay2,
+    /// Maple.
+    Maple,
+    /// Singular.
+    Singular,
+    /// msolve.
+    Msolve,
+}
+
+impl Format {
+    /// All notations.
+    pub const ALL: [Self; 7] = [
+        Self::Bertini,
+        Self::Phcpack,
+        Self::Json,
+        Self::Macaulay2,
+        Self::Maple,
+        Self::Singular,
+        Self::Msolve,
+    ];
 }
 
 impl fmt::Display for Format {
@@ -49,6 +76,10 @@ impl fmt::Display for Format {
             Format::Bertini => "Bertini-classic",
             Format::Phcpack => "PHCpack",
             Format::Json => "JSON",
+            Format::Macaulay2 => "Macaulay2",
+            Format::Maple => "Maple",
+            Format::Singular => "Singular",
+            Format::Msolve => "msolve",
         })
     }
 }
@@ -184,6 +215,10 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
         _ if bertini::later_config(text).is_some() => bertini::read(&source),
         Some('{') => json::read(&source),
         Some('0'..='9') => phcpack::read(&source),
+        _ if macaulay2::is(text) => macaulay2::read(&source),
+        _ if singular::is(text) => singular::read(&source),
+        _ if maple::is(text) => maple::read(&source),
+        _ if msolve::is(text) => msolve::read(&source),
         _ => bertini::read(&source),
     }?;
     let system = &problem.system;
@@ -244,6 +279,10 @@ pub fn write(
         Format::Bertini => bertini::write(system, settings),
         Format::Phcpack => phcpack::write(system),
         Format::Json => json::write(system),
+        Format::Macaulay2 => macaulay2::write(system),
+        Format::Maple => maple::write(system),
+        Format::Singular => singular::write(system),
+        Format::Msolve => msolve::write(system),
     }
 }
 

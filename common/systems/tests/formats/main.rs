@@ -1,6 +1,7 @@
 //! What the readers and writers of problem files promise.
 
 mod agreement;
+mod algebra;
 mod bad_input;
 mod bertini;
 mod json;

@@ -200,7 +200,7 @@ fn read_problem(text: &[u8]) -> bool {
         .system
         .check()
         .expect("readers promise a checked system");
-    for format in [Format::Bertini, Format::Json, Format::Phcpack] {
+    for format in Format::ALL {
         let Ok(written) = formats::write(format, &problem.system, &FileSettings::default()) else {
             continue;
         };
@@ -242,6 +242,35 @@ fn phcpack() {
         corpus.push(text.replace("(1/2)*E1 - E1 - ", "").into());
     }
     run("PHCpack", &corpus, read_problem);
+}
+
+#[test]
+fn notations_of_algebra() {
+    let mut corpus = Vec::new();
+    let notations = [
+        Format::Macaulay2,
+        Format::Maple,
+        Format::Singular,
+        Format::Msolve,
+    ];
+    for text in corpus_of_systems("system.bertini") {
+        let system = formats::read("corpus", &text)
+            .expect("a test system")
+            .system;
+        let written = notations.map(|n| formats::write(n, &system, &FileSettings::default()));
+        let short = written.into_iter().flatten().filter(|t| t.len() < 4000);
+        corpus.extend(short.map(String::into_bytes));
+    }
+    for text in [
+        "-- two conics\nR = QQ[a][x_1..x_3, MonomialOrder => Lex];\nI = ideal({x_1^2 - a*x_2, x_2*x_3 - 2/3});\ngens I",
+        "ring r = (0, a), (x, y), dp; // a comment\nideal i = x^2*y - a, /* and */ y^3 - x;\nstd(i);",
+        "ring r = (0,i),(x,y),dp; minpoly = i^2+1; ideal j = x^2 - i, y - x;",
+        "vars := [x, y]: # order\nsys := {x^2 = p*y, sqrt(2)*x - y[1]};",
+        "x,y\n0\nx^2+y^2-1,\nx-2/3*y\n",
+    ] {
+        corpus.push(text.into());
+    }
+    run("computer algebra", &corpus, read_problem);
 }
 
 #[test]

@@ -163,6 +163,43 @@ fn random_systems_come_back_the_same() {
     }
 }
 
+/// Notations that say less: what they take has the same values again, exactly.
+#[test]
+fn notations_of_algebra_give_the_same_values() {
+    let mut random = Random(3);
+    let mut written = [0; 4];
+    for round in 0..200 {
+        let system = random_system(&mut random, round % 2 == 0);
+        let point = random.point(system.variables.len());
+        let at = random.point(system.parameters.len());
+        let at: Vec<_> = at
+            .iter()
+            .map(|p| p.add(&ComplexRational::real(1000)))
+            .collect();
+        let notations = [
+            Format::Macaulay2,
+            Format::Maple,
+            Format::Singular,
+            Format::Msolve,
+        ];
+        for (count, format) in written.iter_mut().zip(notations) {
+            let Ok(text) = formats::write(format, &system, &FileSettings::default()) else {
+                continue;
+            };
+            *count += 1;
+            let again = read(&text);
+            assert_eq!(again.format, format, "{text}");
+            let again = again.system;
+            assert_eq!(again.variables, system.variables);
+            // A parameter that occurs nowhere need not come back.
+            let other_at = picked(&again.parameters, &system.parameters, &at);
+            let there = values(&again, &point, &other_at);
+            assert_eq!(values(&system, &point, &at), there, "{text}");
+        }
+    }
+    assert!(written.iter().all(|&count| count >= 20), "{written:?}");
+}
+
 #[test]
 fn the_test_systems_come_back_the_same() {
     let mut random = Random(2);
