@@ -1,6 +1,7 @@
 """Every real posture of arms: time a pose and postures found, by cognate and by programs that pip installs.
 
-Arguments: the program, the folder tests/mechanisms, and how many poses each arm gets. All get the same rows of
+Arguments: the program, the folder tests/mechanisms, how many poses each arm gets, how many in the batch that cognate is
+timed with, and after how many seconds another program is stopped. All get the same rows of
 Denavit-Hartenberg numbers and the same poses, which random joint angles reach. A posture counts when forward kinematics
 leads from it to the pose within 1e-6, and none that was counted is nearer than 1e-4 radians. Times are CPU time of one
 thread, but what is said to be by the wall.
@@ -18,7 +19,7 @@ from importlib import metadata
 
 import numpy as np
 
-LIMIT_SECONDS = 60
+LIMIT_SECONDS = int(sys.argv[5]) if len(sys.argv) > 5 else 60
 ARMS = [
     ("general 6R", "arm_generic/arm.json"),
     ("UR10e as calibrated", "arm_ur10e_calibrated/arm.urdf"),
