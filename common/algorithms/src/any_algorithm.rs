@@ -26,7 +26,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 21;
+const VERSION: u8 = 22;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -320,7 +320,7 @@ impl PathAlgorithm for AnyAlgorithm {
                 }
             }
             if let [set] = &mut found.sets[..] {
-                compare_with_exact_count(set, system);
+                compare_with_exact_count(set, system, self.solve.get().solution_count());
             }
         }
         Some(answer)
