@@ -320,7 +320,7 @@ impl PathAlgorithm for AnyAlgorithm {
                 }
             }
             if let [set] = &mut found.sets[..] {
-                compare_with_exact_count(set, system);
+                compare_with_exact_count(set, system, self.solve.get().solution_count());
             }
         }
         Some(answer)

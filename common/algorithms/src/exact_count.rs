@@ -14,14 +14,19 @@ const LEAST_OPERATIONS: u64 = 4_000_000;
 
 /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points or on
 /// sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
-pub(crate) fn compare_with_exact_count(set: &mut SolutionSet, system: &System) {
+/// `known`: the number, where it is known already.
+pub(crate) fn compare_with_exact_count(
+    set: &mut SolutionSet,
+    system: &System,
+    known: Option<SolutionCount>,
+) {
     let paths = &set.paths;
     if !set.settled() || paths.finite == paths.total || !paths.degenerate.is_empty() {
         return;
     }
     let operations = OPERATIONS_PER_PATH.saturating_mul(paths.total);
     let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
-    if let Some(count) = solution_count(system, operations) {
+    if let Some(count) = known.or_else(|| solution_count(system, operations)) {
         compare(set, count);
     }
 }

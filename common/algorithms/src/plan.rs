@@ -624,9 +624,8 @@ fn finish(
             first, &system, tolerances,
         )))
     } else {
-        AnyAlgorithm::from(AnySolve::ZeroDimensional(ZeroDimensionalSolve::new(
-            first, &system, tolerances,
-        )))
+        let solve = ZeroDimensionalSolve::new(first, &system, tolerances);
+        AnyAlgorithm::from(AnySolve::ZeroDimensional(solve.regular_ends_first(&system)))
     };
     Plan {
         system,

@@ -195,9 +195,10 @@ impl PolyhedralSolve {
                 outcome: match result.outcome {
                     PathOutcome::Failed(failure) => PathOutcome::Failed(failure),
                     // Where a generic system has no solution.
-                    PathOutcome::Regular | PathOutcome::Singular | PathOutcome::Diverging => {
-                        PathOutcome::Failed(Failure::EndgameUnsettled)
-                    }
+                    PathOutcome::Regular
+                    | PathOutcome::Singular
+                    | PathOutcome::Diverging
+                    | PathOutcome::PutAside => PathOutcome::Failed(Failure::EndgameUnsettled),
                 },
                 t: Complex64::new(1.0, 0.0),
                 ..result.clone()

@@ -167,9 +167,10 @@ impl RegenerationSolve {
         for lost in &self.lost {
             let failure = match lost.outcome {
                 PathOutcome::Failed(failure) => failure,
-                PathOutcome::Regular | PathOutcome::Singular | PathOutcome::Diverging => {
-                    Failure::EndgameUnsettled
-                }
+                PathOutcome::Regular
+                | PathOutcome::Singular
+                | PathOutcome::Diverging
+                | PathOutcome::PutAside => Failure::EndgameUnsettled,
             };
             results.push(PathResult {
                 origin: PathIndex(results.len() as u64),

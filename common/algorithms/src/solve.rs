@@ -10,6 +10,7 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
@@ -88,6 +89,10 @@ pub trait Solve: Send {
     /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
     /// say all that is known of that.
     fn completeness(&self) -> Option<CompletenessClaim> {
+        None
+    }
+    /// How many solutions the system has by an exact count, where that was asked on the way.
+    fn solution_count(&self) -> Option<SolutionCount> {
         None
     }
     /// Its finite endpoints when it is done; `None` where it does not say.

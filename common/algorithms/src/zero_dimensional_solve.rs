@@ -11,6 +11,7 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::streamed::PathFilter;
+use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,14 @@ impl ZeroDimensionalSolve {
             complete_start: homotopy.takes_all_paths(),
             paths: RetriedStage::new(first, system, tolerances, 1),
         }
+    }
+
+    /// The same, where paths that do not end regularly are followed to their ends only where the others leave solutions
+    /// of the system to be found.
+    #[must_use]
+    pub fn regular_ends_first(mut self, system: &System) -> Self {
+        self.paths = self.paths.regular_ends_first(system);
+        self
     }
 
     /// The same with another limit of repetitions.
@@ -99,6 +108,10 @@ impl Solve for ZeroDimensionalSolve {
 
     fn renumbered_results(&self) -> Option<Vec<PathResult>> {
         self.paths.results_with_images()
+    }
+
+    fn solution_count(&self) -> Option<SolutionCount> {
+        self.paths.solution_count()
     }
 }
 

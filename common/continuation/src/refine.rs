@@ -6,9 +6,20 @@ use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
 use cognate_numeric::linear_algebra::condition::condition_number;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::precision::{DOUBLE, unit_roundoff};
 use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
+
+/// The largest condition number that doubles tell: larger ones are found with the digits of the arithmetic.
+const CONDITION_BY_DOUBLES: f64 = 1e13;
+
+/// Newton's method has converged where a relative correction is at most this,
+const CONVERGED: f64 = 1e-8;
+/// and with more digits than doubles have also at most this part of the one before,
+const QUADRATIC: f64 = 1e-3;
+/// or at most this: beside a multiple point, or another solution, corrections are small and shrink slowly.
+const AT_REST: f64 = 1e-15;
 
 /// What is known of an endpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +28,8 @@ pub(crate) struct Report {
     pub residual: f64,
     /// Condition number of the Jacobian.
     pub condition: f64,
-    /// Estimated relative error.
+    /// Estimated relative error: the last correction, and where the condition number exceeds 1e13 at least what
+    /// rounding makes of it.
     pub accuracy: f64,
     /// Newton's method converged to rounding error.
     pub converged: bool,
@@ -82,6 +94,8 @@ pub(crate) struct Refiner<'a, S: Real> {
     context: S::Context,
     /// A relative correction this small is rounding error.
     finest: f64,
+    /// No accuracy better than this is claimed: of points that are rounded to doubles.
+    claimed: f64,
     /// Newton steps at most.
     rounds: u32,
     scratch: <Interpreter as Evaluate<S>>::Scratch,
@@ -99,7 +113,8 @@ impl<'a, S: Real> Refiner<'a, S> {
         Self {
             homotopy,
             context,
-            finest: f64::EPSILON,
+            finest: 2.0 * unit_roundoff(S::bits(context)),
+            claimed: f64::EPSILON,
             rounds: 6,
             scratch: Evaluate::<S>::scratch(homotopy.program(), context),
             matrix: Matrix::zeros(context, n, n + 2),
@@ -110,12 +125,11 @@ impl<'a, S: Real> Refiner<'a, S> {
         }
     }
 
-    /// The same, which goes on to relative corrections of `finest`, where the arithmetic has such digits.
-    pub(crate) fn until(self, finest: f64) -> Self {
-        let rounds = 2 * self.rounds;
+    /// The same, which claims the digits of this arithmetic: of [`Refiner::last`].
+    pub(crate) fn with_all_digits(self) -> Self {
         Self {
-            finest,
-            rounds,
+            claimed: self.finest,
+            rounds: 2 * self.rounds,
             ..self
         }
     }
@@ -226,6 +240,7 @@ impl<'a, S: Real> Refiner<'a, S> {
             }
         }
         let mut report = Report::unknown();
+        let in_doubles = S::bits(context) == DOUBLE;
         let mut last = f64::INFINITY;
         let mut round = 0;
         loop {
@@ -246,8 +261,10 @@ impl<'a, S: Real> Refiner<'a, S> {
             for i in 0..n {
                 self.x[i].sub(self.elimination.at(i, n));
             }
-            report.accuracy = correction.max(self.finest);
-            report.converged = correction <= 1e-8;
+            report.accuracy = correction.max(self.claimed);
+            let fast = last.is_finite() && correction <= QUADRATIC * last;
+            let at_rest = in_doubles || report.converged || fast || correction <= AT_REST;
+            report.converged = correction <= CONVERGED && at_rest;
             round += 1;
             if correction > 0.5 * last || correction <= self.finest {
                 round = most; // rounding error is reached
@@ -270,6 +287,11 @@ impl<'a, S: Real> Refiner<'a, S> {
             }
         }
         report.condition = condition_number(&rounded);
+        if report.condition > CONDITION_BY_DOUBLES {
+            report.condition = condition_number(&self.matrix);
+            let rounding = report.condition * unit_roundoff(S::bits(context));
+            report.accuracy = report.accuracy.max(rounding);
+        }
         report
     }
 }

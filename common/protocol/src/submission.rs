@@ -211,6 +211,7 @@ settings_choice! {
     endgame_tolerance: f64, 1e-300..=1.0;
     data_accuracy: f64, 0.0..=1.0;
     exact_data: bool, false..=true;
+    max_endgame_bits: u32, 0..=0xffff_ffff;
     precision_bits: u32, 53..=65_536;
     max_precision_bits: u32, 53..=65_536;
 }

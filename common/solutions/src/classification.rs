@@ -138,6 +138,14 @@ pub fn classify(result: &PathResult, shape: &PointShape, tolerances: &Tolerances
             return Decision::clear(Verdict::WithinDataAccuracy);
         }
         PathOutcome::Diverging => return Decision::clear(Verdict::AtInfinity),
+        // All solutions are known, or it would have been followed further: it has left for infinity, or for a solution of
+        // combinations of the equations only.
+        PathOutcome::PutAside => {
+            return Decision::clear(match result.asked {
+                Some(_) => Verdict::ExcessSolution,
+                None => Verdict::AtInfinity,
+            });
+        }
         // A result that holds no point is as good as none.
         _ if !shape.holds(point) => return Decision::clear(Verdict::Failed),
         _ if !solves(result, tolerances) => return Decision::clear(Verdict::Failed),

@@ -59,7 +59,7 @@ pub fn coincidences(
 pub fn boundary_key(result: &PathResult, verdict: Verdict) -> Option<BoundaryKey> {
     let kept = match result.outcome {
         PathOutcome::Singular | PathOutcome::Diverging => verdict != Verdict::Failed,
-        PathOutcome::Regular | PathOutcome::Failed(_) => false,
+        PathOutcome::Regular | PathOutcome::PutAside | PathOutcome::Failed(_) => false,
     };
     result.boundary.as_deref().copied().filter(|_| kept)
 }

@@ -331,6 +331,10 @@ impl<'a> Draft<'a> {
                 .count() as u64,
             degenerate: std::mem::take(&mut self.set.paths.degenerate),
             images: history.images,
+            decided_by_exact_count: {
+                let aside = |result: &&PathResult| result.outcome == PathOutcome::PutAside;
+                self.results.iter().filter(aside).count() as u64
+            },
             ..PathCounts::default()
         };
         for result in self.results {

@@ -49,6 +49,10 @@ pub struct PathCounts {
     /// Ends whose class would change within the accuracy of the decimals that were given.
     #[serde(default)]
     pub within_data_accuracy: u64,
+    /// How many of those at infinity, and of those that end at no solution of what was asked, were not followed to their
+    /// ends: all solutions are known, by an exact count.
+    #[serde(default)]
+    pub decided_by_exact_count: u64,
 }
 
 impl PathCounts {
@@ -163,7 +167,8 @@ mod tests {
              \"excess\":0,\"at_infinity\":0,\"failed\":0,\"retracked\":0,\"crossings_found\":0,\
              \"crossings_resolved\":0,\"decided_by_precision_limit\":0,\
              \"by_precision\":{\"53\":126,\"106\":2},\"highest_precision_bits\":0,\
-             \"degenerate\":{},\"images\":0,\"undecided\":0,\"within_data_accuracy\":0}"
+             \"degenerate\":{},\"images\":0,\"undecided\":0,\"within_data_accuracy\":0,\
+             \"decided_by_exact_count\":0}"
         );
         let back: PathCounts =
             serde_json::from_str(&serde_json::to_string(&paths).unwrap()).unwrap();

@@ -191,6 +191,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             images,
             undecided,
             within_data_accuracy,
+            decided_by_exact_count,
         } = &set.paths;
         paths.total += total;
         paths.finite += finite;
@@ -213,6 +214,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         paths.images += images;
         paths.undecided += undecided;
         paths.within_data_accuracy += within_data_accuracy;
+        paths.decided_by_exact_count += decided_by_exact_count;
         let SolutionCounts {
             distinct,
             nonsingular,

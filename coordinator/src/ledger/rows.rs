@@ -190,7 +190,7 @@ pub struct Count {
 pub struct Outcomes {
     /// At a regular endpoint.
     pub regular: u64,
-    /// At a singular endpoint, or at infinity without one that was settled.
+    /// At a singular endpoint, or at infinity without one that was settled, or not followed so far.
     pub singular: u64,
     /// Before the end.
     pub failed: u64,
@@ -203,7 +203,9 @@ impl Outcomes {
         for result in results.iter().filter_map(ItemResult::path) {
             match result.outcome {
                 PathOutcome::Regular => outcomes.regular += 1,
-                PathOutcome::Singular | PathOutcome::Diverging => outcomes.singular += 1,
+                PathOutcome::Singular | PathOutcome::Diverging | PathOutcome::PutAside => {
+                    outcomes.singular += 1;
+                }
                 PathOutcome::Failed(_) => outcomes.failed += 1,
             }
         }

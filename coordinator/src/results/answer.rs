@@ -9,10 +9,10 @@ use cognate_solutions::witness::{self, Decomposition};
 use serde::{Deserialize, Serialize};
 
 /// Solution sets as objects.
-const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL05");
+const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL06");
 
 /// Answers of large jobs as objects.
-const LARGE: RecordKind = RecordKind(b"CGNLRG04");
+const LARGE: RecordKind = RecordKind(b"CGNLRG05");
 
 /// Decompositions as objects.
 const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC06");

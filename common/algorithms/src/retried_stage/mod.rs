@@ -8,10 +8,13 @@
 mod criteria;
 mod path_store;
 mod phase;
+mod put_aside;
 mod singular_points;
 mod target_record;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_put_aside;
 
 use crate::finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
 use crate::opening::Opening;
@@ -26,11 +29,13 @@ use cognate_solutions::degenerate::DeclaredSets;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_solutions::streamed::StreamedCounts;
+use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::system::System;
 use criteria::Criteria;
 use num_complex::Complex64;
 use path_store::PathStore;
 use phase::Phase;
+use put_aside::PutAside;
 use serde::{Deserialize, Serialize};
 use singular_points::SingularPoints;
 use target_record::TargetRecord;
@@ -46,6 +51,8 @@ pub struct RetriedStage {
     max_retries: u16,
     /// Where it is of no interest whether singular endpoints are isolated.
     ends_only: bool,
+    /// What becomes of paths that do not end regularly.
+    put_aside: PutAside,
     phase: Phase,
     paths: PathStore,
     targets: Vec<TargetRecord>,
@@ -108,6 +115,7 @@ impl RetriedStage {
             },
             max_retries: MAX_RETRIES,
             ends_only: false,
+            put_aside: PutAside::Never,
             phase: Phase::Begins(first.objects),
             paths: PathStore::new(paths_per_target, targets),
             targets: vec![TargetRecord::default(); targets as usize],
@@ -121,6 +129,19 @@ impl RetriedStage {
     pub fn ends_only(mut self) -> Self {
         self.ends_only = true;
         self
+    }
+
+    /// The same, where paths that do not end regularly are followed to their ends only where the others leave solutions
+    /// of the system to be found.
+    #[must_use]
+    pub fn regular_ends_first(mut self, system: &System) -> Self {
+        self.put_aside = PutAside::of(system, &self.criteria);
+        self
+    }
+
+    /// How many solutions the system has, if that was asked on the way.
+    pub fn solution_count(&self) -> Option<SolutionCount> {
+        self.put_aside.count()
     }
 
     /// The same with another limit of repetitions.
@@ -176,7 +197,8 @@ impl RetriedStage {
 
     /// False where the ends of paths are compared with more than each other, so that all are held.
     pub fn can_leave_out(&self) -> bool {
-        self.criteria.lost == 0
+        self.put_aside == PutAside::Never
+            && self.criteria.lost == 0
             && self.criteria.first.work == Work::Track
             && self.criteria.exchange().is_none()
             && self.criteria.declared.names().next().is_none()
@@ -262,9 +284,12 @@ impl RetriedStage {
         let opening = match std::mem::replace(&mut self.phase, Phase::Waits) {
             Phase::Begins(objects) => Opening {
                 objects,
-                ..self.criteria.first.clone().into()
+                ..self
+                    .as_first(self.criteria.first.start_points.clone())
+                    .into()
             },
             Phase::Waits => return Next::Wait,
+            Phase::Follows(paths) => self.as_first(self.selected(paths)).into(),
             Phase::Repeats(paths) => self.repetition(paths).into(),
             Phase::Asks => {
                 (self.singular_points).opening(&self.paths, &self.targets, &self.criteria)
@@ -277,12 +302,30 @@ impl RetriedStage {
         numbers.open(opening, &mut self.stages)
     }
 
+    /// These of the paths.
+    fn selected(&self, indices: Vec<u64>) -> StartPoints {
+        StartPoints::Selected {
+            base: Box::new(self.criteria.first.start_points.clone()),
+            indices,
+        }
+    }
+
+    /// A stage of first attempts.
+    fn as_first(&self, start_points: StartPoints) -> Stage {
+        let first = self.criteria.first.clone();
+        Stage {
+            settings: self.put_aside.settings(first.settings.clone()),
+            start_points,
+            ..first
+        }
+    }
+
     /// The stage that tracks these paths again.
     fn repetition(&self, indices: Vec<u64>) -> Stage {
         let first = &self.criteria.first;
         let tracked = |stage: &&StageProgress| stage.work != Work::LocalDimension;
-        let attempt = self.stages.iter().filter(tracked).count() as u16;
-        let attempt = attempt.min(self.max_retries);
+        let attempts = self.stages.iter().filter(tracked).map(|s| s.attempt + 1);
+        let attempt = attempts.max().unwrap_or_default().min(self.max_retries);
         let tighter = first.settings.tightened(attempt);
         // Paths that met, or do not fit into their cycles, may have jumped; one that failed lacks steps
         // or digits, of which looking around takes more.
@@ -295,11 +338,8 @@ impl RetriedStage {
             false => tighter.robust(),
         };
         Stage {
-            start_points: StartPoints::Selected {
-                base: Box::new(first.start_points.clone()),
-                indices,
-            },
-            settings,
+            settings: self.put_aside.settings(settings),
+            start_points: self.selected(indices),
             attempt,
             ..first.clone()
         }
@@ -354,24 +394,29 @@ impl RetriedStage {
         stage: &StageProgress,
         results: &mut dyn Iterator<Item = ItemResult>,
     ) -> Phase {
+        let is_first = stage.id == self.first_id();
         let mut taken = 0;
         for result in results.map(ItemResult::into_path) {
             taken += 1;
-            if stage.attempt == 0 {
+            if is_first {
                 self.paths.begin(result);
-            } else {
-                let target = self.criteria.target_of(result.origin.0);
-                self.paths.replace(result);
-                self.targets[target as usize].retracked += 1;
+                continue;
             }
+            let target = self.criteria.target_of(result.origin.0);
+            self.paths.replace(result);
+            self.targets[target as usize].retracked += u64::from(stage.attempt > 0);
         }
-        if stage.attempt == 0 {
+        if is_first {
             taken = self.paths.known();
         }
         assert_eq!(taken, stage.items, "a stage is absorbed as a whole");
         let suspects = self.judge();
         if !suspects.is_empty() && stage.attempt < self.max_retries {
             return Phase::Repeats(suspects);
+        }
+        let unended = self.put_aside.close(&self.paths, &self.criteria);
+        if !unended.is_empty() {
+            return Phase::Follows(unended);
         }
         self.singular_points = SingularPoints::find(&self.paths, &self.criteria);
         // Some homotopies end at another system than the one that is asked.

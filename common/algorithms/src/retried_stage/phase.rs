@@ -11,6 +11,8 @@ pub(super) enum Phase {
     Begins(Vec<Arc<StoredPoints>>),
     /// The results of an open stage are awaited.
     Waits,
+    /// These paths, which were put aside, are to be followed to their ends, ascending.
+    Follows(Vec<u64>),
     /// These paths are to be tracked again, ascending.
     Repeats(Vec<u64>),
     /// Singular points are to be asked whether they are isolated.

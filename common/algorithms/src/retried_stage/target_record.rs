@@ -75,6 +75,9 @@ pub(crate) fn can_be_helped(outcome: PathOutcome) -> bool {
             Failure::InvalidStartPoint | Failure::KilledItsWorker => false,
         },
         // It failed by its result: damaged, or a crossing.
-        PathOutcome::Regular | PathOutcome::Singular | PathOutcome::Diverging => true,
+        PathOutcome::Regular
+        | PathOutcome::Singular
+        | PathOutcome::Diverging
+        | PathOutcome::PutAside => true,
     }
 }

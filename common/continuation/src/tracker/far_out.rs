@@ -8,7 +8,7 @@ use crate::chart::norm;
 use crate::endgames::cauchy::generic_form;
 use crate::homotopies::Homotopy;
 use crate::refine::{Refiner, Report};
-use cognate_numeric::precision::{DOUBLE_DOUBLE, rungs, unit_roundoff};
+use cognate_numeric::precision::{DOUBLE_DOUBLE, rungs};
 use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
 use num_complex::Complex64;
 
@@ -57,8 +57,8 @@ pub(super) fn resolve(
     }
     for bits in rungs(DOUBLE_DOUBLE, settings.max_precision_bits) {
         let found = match bits {
-            DOUBLE_DOUBLE => at::<DoubleDouble<f64>>(homotopy, (), bits, point, target),
-            _ => at::<MultiplePrecision>(homotopy, bits, bits, point, target),
+            DOUBLE_DOUBLE => at::<DoubleDouble<f64>>(homotopy, (), point, target),
+            _ => at::<MultiplePrecision>(homotopy, bits, point, target),
         };
         let Some((mut coordinates, accuracy)) = found else {
             continue;
@@ -101,8 +101,7 @@ pub(super) fn find_isolated(
         return None;
     }
     let mut point = mean.to_vec();
-    let mut refiner =
-        Refiner::<DoubleDouble<f64>>::new(homotopy, ()).until(unit_roundoff(DOUBLE_DOUBLE));
+    let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ()).with_all_digits();
     let report = refiner.refine(&mut point, target);
     let coordinates = homotopy.precise_endpoint((), refiner.last());
     let y0 = homotopy.smallest_homogenizing(&coordinates);
@@ -139,12 +138,11 @@ pub(super) fn unresolved(homotopy: &Homotopy, mut coordinates: Vec<Complex64>) -
 fn at<S: Real>(
     homotopy: &Homotopy,
     context: S::Context,
-    bits: u32,
     point: &[Complex64],
     target: u64,
 ) -> Option<(Vec<Complex64>, f64)> {
     let mut point = point.to_vec();
-    let mut refiner = Refiner::<S>::new(homotopy, context).until(unit_roundoff(bits));
+    let mut refiner = Refiner::<S>::new(homotopy, context).with_all_digits();
     let report = refiner.refine(&mut point, target);
     let coordinates = || homotopy.precise_endpoint(context, refiner.last());
     report.converged.then(|| (coordinates(), report.accuracy))

@@ -591,11 +591,16 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 let near = t.re <= radius && !passing;
                 let at_end = !reaches && (near || self.in_endgame_zone(lane, step, t));
                 let settings = &self.settings;
+                let far = self.tracking.projective && step.size > FAR;
                 if step.arrived {
                     self.series[lane] = None;
                     self.lanes[lane].phase = Phase::Arriving;
                     self.batch.refine(lane);
-                } else if self.tracking.projective && (step.size > FAR || at_end) {
+                } else if settings.max_endgame_bits < self.tracking.bits
+                    && (at_end || far && t.re <= settings.endgame_boundary)
+                {
+                    self.put_aside(lane, t);
+                } else if far || self.tracking.projective && at_end {
                     self.hand_off(lane, t, Handoff::Projective);
                 } else if step.accepted
                     && self.tracking.down
@@ -636,6 +641,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 }
                 // Back to the last point before 0, from where the turns begin.
                 let before = self.batch.step_back(lane);
+                if self.settings.max_endgame_bits < self.tracking.bits {
+                    return self.put_aside(lane, before);
+                }
                 if self.tracking.projective {
                     return self.hand_off(lane, before, Handoff::Projective);
                 }
@@ -750,6 +758,12 @@ impl<'a, R: Real> Lockstep<'a, R> {
 
     /// A path that cannot go on in this tracking context is handed to another one, or fails.
     pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
+        let most = self.settings.max_endgame_bits;
+        let more =
+            most < self.tracking.bits || most == self.tracking.bits && !self.tracking.projective;
+        if more && t.re <= self.settings.endgame_boundary {
+            return self.put_aside(lane, t);
+        }
         let helps = match self.probe {
             // Steps that looking around makes too short do not become longer with still more digits.
             Some(_) => self.tracking.bits < DOUBLE_DOUBLE,
@@ -868,6 +882,14 @@ impl<'a, R: Real> Lockstep<'a, R> {
         self.refill(lane);
     }
 
+    /// The path is not followed further than where it is.
+    pub(super) fn put_aside(&mut self, lane: usize, t: Complex64) {
+        self.batch
+            .read_here(lane, &mut self.point, &mut self.tangent);
+        self.stop(lane, t, PathOutcome::PutAside);
+        self.refill(lane);
+    }
+
     /// The path fails where it is.
     fn fail_and_refill(&mut self, lane: usize, t: Complex64, why: Failure) {
         self.batch
@@ -877,8 +899,13 @@ impl<'a, R: Real> Lockstep<'a, R> {
     }
 
     fn fail(&mut self, lane: usize, t: Complex64, why: Failure) {
+        self.stop(lane, t, PathOutcome::Failed(why));
+    }
+
+    /// The path's end is not known: it stops at `self.point`.
+    fn stop(&mut self, lane: usize, t: Complex64, outcome: PathOutcome) {
         let end = End {
-            outcome: PathOutcome::Failed(why),
+            outcome,
             t,
             report: Report::unknown(),
             winding_number: None,

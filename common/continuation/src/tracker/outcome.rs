@@ -12,6 +12,8 @@ pub enum PathOutcome {
     /// A homogenising coordinate goes to 0 like a positive power of t: the path goes to infinity.
     /// Where it ends there was not settled.
     Diverging,
+    /// Its endgame needs more digits than this stage gives it (`Settings::max_endgame_bits`), or is none of its matters.
+    PutAside,
     /// Stopped before that.
     Failed(Failure),
 }

@@ -43,6 +43,9 @@ pub struct Settings {
     pub data_accuracy: f64,
     /// Whether what depends on digits of the coefficients beyond that accuracy is followed nevertheless.
     pub exact_data: bool,
+    /// Paths whose endgame needs more bits are put aside, with 0 all that need an endgame: whether they must be followed
+    /// further depends on what the others find.
+    pub max_endgame_bits: u32,
     /// Bits of the arithmetic that a path begins in: 53 (double), 106 (double-double), or more.
     pub precision_bits: u32,
     /// A path that lacks digits goes up to at most this many bits.
@@ -69,6 +72,7 @@ impl Default for Settings {
             endgame_tolerance: 1e-8,
             data_accuracy: 0.0,
             exact_data: false,
+            max_endgame_bits: u32::MAX,
             precision_bits: 53,
             max_precision_bits: 1024,
         }

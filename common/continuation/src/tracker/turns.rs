@@ -25,6 +25,8 @@ const FIRM: f64 = 1e-10;
 const SOLVES: f64 = 1e-11;
 /// or so many times the end's estimated error.
 const SOLVES_WITHIN: f64 = 1e3;
+/// A regular end is known at least as well as Newton's method must converge.
+const BLURRED: f64 = 1e-8;
 /// Valuations are compared when t has become this part of what it was.
 const ZONE: f64 = 0.5;
 
@@ -163,6 +165,13 @@ impl<R: Real> Lockstep<'_, R> {
                     self.hand_off_from(lane, Complex64::new(radius, 0.0), point, Handoff::Up);
                     return;
                 }
+                // Newton's method converges, to what rounding makes of the equations.
+                if regular && report.accuracy > BLURRED {
+                    if self.tracking.up {
+                        return self.follow_endgame(lane, cauchy::Next::Finer);
+                    }
+                    return self.follow_endgame(lane, cauchy::Next::Unsettled);
+                }
                 let outcome = if regular {
                     PathOutcome::Regular
                 } else {
@@ -190,6 +199,10 @@ impl<R: Real> Lockstep<'_, R> {
                 power_sum,
             } => {
                 self.diverge(lane, winding_number, infinity_turns, power_sum);
+            }
+            cauchy::Next::Finer if self.settings.max_endgame_bits <= self.tracking.bits => {
+                let t = self.batch.t(lane);
+                self.put_aside(lane, t);
             }
             cauchy::Next::Finer => {
                 let path = &mut self.lanes[lane];

@@ -2,35 +2,35 @@
 
 use super::lu::eliminate_columns;
 use super::matrix::Matrix;
-use crate::scalar::Complex;
+use crate::scalar::{Complex, Real};
 
 /// `||A|| ||A^-1||` in the maximum norm of the n x n matrix in the first n columns of `a`;
 /// infinite for a singular one.
 ///
 /// Rows are not scaled: where a multiple solution makes a whole gradient vanish (x^2 = 0),
 /// scaling would hide it. The caller's equations have natural sizes of about 1.
-/// The inverse is made by one elimination: n^3 work, done once a path.
+/// The inverse is made by one elimination: n^3 work, done once a path. Beyond the inverse of the unit roundoff of
+/// `R` the result says no more than that.
 #[inline(always)]
-pub fn condition_number(a: &Matrix<f64>) -> f64 {
+pub fn condition_number<R: Real>(a: &Matrix<R>) -> f64 {
     let n = a.rows();
-    let mut work = Matrix::<f64>::zeros((), n, 2 * n);
+    let context = a.at(0, 0).re.context();
+    let modulus = |z: &Complex<R>| z.norm_sqr().lane(0).sqrt();
+    let mut work = Matrix::<R>::zeros(context, n, 2 * n);
     let mut of_matrix = 0.0;
     for i in 0..n {
         let mut sum = 0.0;
         for j in 0..n {
-            *work.at_mut(i, j) = *a.at(i, j);
-            sum += a.at(i, j).norm_sqr().sqrt();
+            work.at_mut(i, j).set(a.at(i, j));
+            sum += modulus(a.at(i, j));
         }
-        *work.at_mut(i, n + i) = Complex::from_f64((), 1.0, 0.0);
+        *work.at_mut(i, n + i) = Complex::from_f64(context, 1.0, 0.0);
         of_matrix = larger(of_matrix, sum);
     }
-    eliminate_columns(&mut work, n, &mut 0.0);
+    eliminate_columns(&mut work, n, &mut R::Control::from_f64((), 0.0));
     let mut of_inverse = 0.0;
     for i in 0..n {
-        let mut sum = 0.0;
-        for j in n..2 * n {
-            sum += work.at(i, j).norm_sqr().sqrt();
-        }
+        let sum = (n..2 * n).map(|j| modulus(work.at(i, j))).sum();
         of_inverse = larger(of_inverse, sum);
     }
     let condition: f64 = of_matrix * of_inverse;

@@ -634,6 +634,7 @@ fn outcome(outcome: i32) -> Result<PathOutcome, ProtocolError> {
         Ok(M::Regular) => PathOutcome::Regular,
         Ok(M::Singular) => PathOutcome::Singular,
         Ok(M::Diverging) => PathOutcome::Diverging,
+        Ok(M::PutAside) => PathOutcome::PutAside,
         Ok(M::InvalidStartPoint) => PathOutcome::Failed(Failure::InvalidStartPoint),
         Ok(M::StepTooSmall) => PathOutcome::Failed(Failure::StepTooSmall),
         Ok(M::TooManySteps) => PathOutcome::Failed(Failure::TooManySteps),

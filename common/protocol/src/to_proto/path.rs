@@ -309,6 +309,7 @@ fn outcome(outcome: PathOutcome) -> v1::PathOutcome {
         PathOutcome::Regular => M::Regular,
         PathOutcome::Singular => M::Singular,
         PathOutcome::Diverging => M::Diverging,
+        PathOutcome::PutAside => M::PutAside,
         PathOutcome::Failed(Failure::InvalidStartPoint) => M::InvalidStartPoint,
         PathOutcome::Failed(Failure::StepTooSmall) => M::StepTooSmall,
         PathOutcome::Failed(Failure::TooManySteps) => M::TooManySteps,

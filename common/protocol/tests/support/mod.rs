@@ -278,6 +278,7 @@ impl Draw {
             endgame_tolerance: 1e-8,
             data_accuracy: 0.0,
             exact_data: false,
+            max_endgame_bits: u32::MAX,
             precision_bits: [53, 106, 212][self.below(3)],
             max_precision_bits: [53, 1024][self.below(2)],
         }

@@ -277,6 +277,10 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
             note,
         );
     }
+    if p.decided_by_exact_count > 0 {
+        let note = "not followed to their ends: all solutions are known";
+        lines.line("by exact count", &count(p.decided_by_exact_count), note);
+    }
     if p.by_precision.len() > 1 {
         let words: Vec<String> = p
             .by_precision
