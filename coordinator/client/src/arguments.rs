@@ -625,6 +625,30 @@ pub enum Notation {
     Phcpack,
     /// Our own JSON
     Json,
+    /// Macaulay2: a ring and an ideal
+    Macaulay2,
+    /// Maple: lists of variables and of polynomials
+    Maple,
+    /// Singular: a ring and an ideal
+    Singular,
+    /// msolve: variables, characteristic, polynomials, multiplied out
+    Msolve,
+}
+
+impl Notation {
+    /// The notation itself.
+    pub fn format(self) -> cognate_systems::formats::Format {
+        use cognate_systems::formats::Format;
+        match self {
+            Self::Bertini => Format::Bertini,
+            Self::Phcpack => Format::Phcpack,
+            Self::Json => Format::Json,
+            Self::Macaulay2 => Format::Macaulay2,
+            Self::Maple => Format::Maple,
+            Self::Singular => Format::Singular,
+            Self::Msolve => Format::Msolve,
+        }
+    }
 }
 
 /// `cognate convert`.
@@ -637,11 +661,21 @@ Examples:
 What a notation has no words for is refused, or named in a warning where it is only left out.
 Numbers are written as exact fractions.")]
 pub struct Convert {
-    /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
-    pub file: PathBuf,
+    /// A system: Bertini-classic input, PHCpack format, JSON, Macaulay2, Maple, Singular or msolve, told apart by
+    /// content; - is standard input
+    #[arg(required_unless_present = "schema")]
+    pub file: Option<PathBuf>,
     /// The notation that is written to standard output
-    #[arg(long, value_enum, value_name = "NOTATION")]
-    pub to: Notation,
+    #[arg(
+        long,
+        value_enum,
+        value_name = "NOTATION",
+        required_unless_present = "schema"
+    )]
+    pub to: Option<Notation>,
+    /// Print the JSON Schema of our JSON instead
+    #[arg(long, conflicts_with_all = ["file", "to"])]
+    pub schema: bool,
 }
 
 /// `cognate path`.

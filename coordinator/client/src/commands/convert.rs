@@ -6,27 +6,37 @@ use crate::output;
 use crate::problem;
 use cognate_systems::formats::{self, Problem};
 use cognate_systems::system::System;
+use std::path::Path;
+
+/// The JSON Schema of our JSON, for editors and other programs.
+const SCHEMA: &str = include_str!("problem.schema.json");
 
 /// Reads, checks and writes; solves nothing.
 pub fn run(a: &Convert) -> Result<Exit, ClientError> {
-    let read = problem::read_system(&a.file, None)?;
+    match (&a.file, a.to) {
+        (Some(file), Some(to)) => convert(file, to),
+        _ => {
+            output::print(SCHEMA)?;
+            Ok(Exit::Solved)
+        }
+    }
+}
+
+fn convert(file: &Path, to: Notation) -> Result<Exit, ClientError> {
+    let read = problem::read_system(file, None)?;
     for warning in &read.warnings {
         eprintln!("warning: {warning}");
     }
-    let name = problem::short_name(&a.file);
+    let name = problem::short_name(file);
     let Problem {
         system, settings, ..
     } = &read;
-    let written = match a.to {
-        Notation::Bertini => formats::bertini::write(system, settings),
-        Notation::Phcpack => formats::phcpack::write(system),
-        Notation::Json => formats::json::write(system),
-    };
+    let written = formats::write(to.format(), system, settings);
     let text = written.map_err(|e| ClientError::Input {
         origin: name.clone(),
         message: e.to_string(),
     })?;
-    for what in left_out(system, a.to) {
+    for what in left_out(system, to) {
         eprintln!("warning: {name}: {what} left out, for which this notation has no words");
     }
     if settings.data_accuracy > 0.0 {
@@ -46,7 +56,7 @@ fn left_out(system: &System, notation: Notation) -> Vec<&'static str> {
     let only_json = notation != Notation::Json;
     let parts = [
         (
-            grouped && notation == Notation::Phcpack,
+            grouped && !matches!(notation, Notation::Bertini | Notation::Json),
             "variable groups are",
         ),
         (

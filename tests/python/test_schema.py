@@ -1,0 +1,68 @@
+"""The JSON Schema of our JSON: what the program reads is valid, and what is misspelt is not."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from typing import Any
+
+import jsonschema
+import pytest
+
+import cognate as cg
+from cognate import program
+from conftest import EXAMPLES, REPOSITORY
+
+
+def ran(*arguments: str) -> str:
+    return subprocess.run([program.find(), *arguments], capture_output=True, text=True, check=True).stdout
+
+
+@pytest.fixture(scope="module")
+def schema() -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(ran("convert", "--schema"))
+    jsonschema.Draft202012Validator.check_schema(found)
+    return found
+
+
+SYSTEMS = [*sorted(EXAMPLES.glob("*.bertini")), *sorted(REPOSITORY.glob("tests/systems/*/system.bertini"))]
+
+
+@pytest.mark.parametrize("file", SYSTEMS, ids=lambda p: p.parent.name + p.stem)
+def test_what_the_program_writes_is_valid(schema: dict[str, Any], file: Any) -> None:
+    jsonschema.validate(json.loads(ran("convert", str(file), "--to", "json")), schema)
+
+
+def test_everything_that_can_be_said_is_valid(schema: dict[str, Any]) -> None:
+    system = cg.System(
+        ["x*y - t", "x^2 - q"],
+        "x y",
+        parameters="t q",
+        groups=[["y"], ["x"]],
+        homogeneous=[True, False],
+        definitions={"b": "x + 1"},
+        conjugates=[("x", "y")],
+        degenerate={"a": {"nonzero": "x"}, "c": {"equations": ["x", "y"]}},
+        symmetry=[{"permutation": {"x": "y", "y": "x"}}, {"map": {"x": "1/x"}}],
+        path_variable="t",
+    )
+    jsonschema.validate(json.loads(system.to_json()), schema)
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        {"variables": ["x"]},
+        {"variables": [], "equations": ["x"]},
+        {"variables": ["x"], "equations": ["x"], "paramters": ["p"]},
+        {"variables": ["2x"], "equations": ["x"]},
+        {"variables": ["x"], "equations": [["x"]]},
+        {"variables": ["x"], "equations": ["x"], "conjugates": [["x"]]},
+        {"variables": ["x"], "equations": ["x"], "degenerate": {"a": {}}},
+    ],
+)
+def test_mistakes_are_not(schema: dict[str, Any], problem: dict[str, Any]) -> None:
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(problem, schema)
+    with pytest.raises(cg.InputError):
+        cg.solve(problem)
