@@ -106,6 +106,12 @@ impl Server {
         for address in &config.listen {
             listeners.push(Listener::open(address, &config.security, config.insecure).await?);
         }
+        let page = match &config.page {
+            None => None,
+            Some(address) => {
+                Some(PageListener::open(address, &config.security, config.insecure).await?)
+            }
+        };
         let mut security = config.security;
         if let Some(path) = &config.audit_log {
             let opened = AuditLog::to_file(path);
@@ -122,12 +128,6 @@ impl Server {
                     address: ListenAddress::Tcp(address.clone()),
                     source,
                 })?)
-            }
-        };
-        let page = match &config.page {
-            None => None,
-            Some(address) => {
-                Some(PageListener::open(address, &config.security, config.insecure).await?)
             }
         };
         let clock = Arc::new(SystemClock::default());

@@ -141,8 +141,8 @@ async fn a_tenant_sees_and_touches_its_own_jobs_only() {
     let other = submit(&mut bob, "c", "gears", FOUR_POINTS).await;
     let other = other.unwrap_err();
     assert_eq!(other.code(), Code::PermissionDenied, "{other}");
-    assert_eq!(jobs(&mut ada).await, [own.clone()]);
-    assert_eq!(jobs(&mut bob).await, [arms.clone()]);
+    assert_eq!(jobs(&mut ada).await, std::slice::from_ref(&own));
+    assert_eq!(jobs(&mut bob).await, std::slice::from_ref(&arms));
     assert_eq!(jobs(&mut operator).await, [arms.clone(), own.clone()]);
     // Of another tenant's job one hears as of one that never was.
     let job = own.clone();

@@ -397,11 +397,12 @@ async fn beyond_this_machine_the_page_needs_tokens_and_tls() {
         Security::default(),
         Security {
             tokens: tokens(),
-            tls: None,
+            ..Security::default()
         },
         Security {
             tokens: None,
             tls: Some(tls(folder.path())),
+            ..Security::default()
         },
     ] {
         let refused = start(security, false).await.map(|_| ());
@@ -416,6 +417,7 @@ async fn beyond_this_machine_the_page_needs_tokens_and_tls() {
     let both = Security {
         tokens: tokens(),
         tls: Some(tls(folder.path())),
+        ..Security::default()
     };
     let server = start(both, false).await.unwrap();
     assert!(
@@ -445,6 +447,7 @@ async fn a_token_opens_the_page_by_a_cookie() {
         security: Security {
             tokens: Some(Tokens::read(&file).unwrap()),
             tls: Some(tls(folder.path())),
+            ..Security::default()
         },
         ..durable_config(folder.path())
     };

@@ -94,7 +94,11 @@ impl PageListener {
         let url = self.url();
         tracing::info!(%url, "the page is there");
         let tokens = security.tokens.filter(|_| self.asks_for_tokens);
-        let service = Guard(tokens).layer(admission.layer(routes));
+        let guard = Guard {
+            tokens,
+            audit: security.audit,
+        };
+        let service = guard.layer(admission.layer(routes));
         let access = Access::new(&self.host, self.asks_for_tokens);
         let page = Arc::new(Page::new(access, service, stopping.clone()));
         let service = tower::service_fn(move |request| {

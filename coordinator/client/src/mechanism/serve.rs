@@ -228,7 +228,7 @@ fn with_id(mut value: Value, id: Option<&LineId>) -> Value {
         // As it came; a number that would come back in other digits goes as text.
         Some(LineId::Number(text)) => serde_json::from_str(text)
             .ok()
-            .filter(|number: &Value| number.to_string() == *text)
+            .filter(|number: &Value| format!("{number}") == *text)
             .unwrap_or_else(|| json!(text)),
     };
     value["id"] = id;

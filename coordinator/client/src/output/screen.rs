@@ -51,7 +51,7 @@ impl Screen {
         frame.push_str(REST_OF_SCREEN);
         // A terminal that is gone ends the command by its own signal.
         let _ = (&self.term).write_all(frame.as_bytes());
-        let _ = (&self.term).flush();
+        let _ = self.term.flush();
     }
 
     /// The key that was typed since the last look, if one was.
