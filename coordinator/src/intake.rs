@@ -4,7 +4,7 @@
 //! the seed are named, start solutions are an object.
 
 use crate::api::error::ApiError;
-use crate::api::visible;
+use crate::api::visible::visible;
 use crate::coordinator::NewProblem;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_numeric::precision::DOUBLE;

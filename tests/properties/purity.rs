@@ -71,6 +71,11 @@ work_conformance! {
     double_root, Work::Track, Subject::of(&double_root_system(), SolveOptions::default(), &|_| true);
     cyclic_5_polyhedral, Work::Track,
         first(SolveMethod::Polyhedral, &example("cyclic_5.bertini"));
+    // As paths are tracked first: without endgames, then with those for which doubles suffice.
+    no_endgames_cyclic_5, Work::Track,
+        first(SolveMethod::TotalDegree, &example("cyclic_5.bertini")).with_endgame_bits(0);
+    endgames_in_doubles_cyclic_5, Work::Track,
+        first(SolveMethod::TotalDegree, &example("cyclic_5.bertini")).with_endgame_bits(53);
     // As every path is tracked again that met another: by Taylor series, then with more digits.
     robust_cyclic_5, Work::Track, robust(1, &example("cyclic_5.bertini"));
     robust_stewart_gough, Work::Track, robust(1, &example("stewart_gough_dietmaier.bertini"));

@@ -100,11 +100,20 @@ impl Subject {
         });
         assert_eq!(ended, Err(()), "the solve has no such stage");
         let (system, stage) = found.expect("it ended there");
-        Self {
+        let subject = Self {
             system,
             stage,
             points,
-        }
+        };
+        // Solves put paths aside at first: here their endgames are wanted.
+        subject.with_endgame_bits(u32::MAX)
+    }
+
+    /// The same, where paths whose endgame needs more bits are put aside.
+    #[must_use]
+    pub fn with_endgame_bits(mut self, most: u32) -> Self {
+        self.stage.settings.max_endgame_bits = most;
+        self
     }
 
     fn prepare(&self) -> Result<PreparedWork, PrepareError> {

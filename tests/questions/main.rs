@@ -393,8 +393,7 @@ macro_rules! real_surfaces {
     )*};
 }
 
-// Euler characteristics by hand: a sphere has 2, a torus 0, a plane 1, a cylinder 0; at a cone's apex two planes meet; a
-// sphere with five handles has 2 - 2 * 5.
+// Euler characteristics by hand: a sphere has 2, a torus 0, a plane 1, a cylinder 0; at a cone's apex two planes meet.
 real_surfaces! {
     surface_sphere: "x^2 + y^2 + z^2 - 1", (2, true, 1);
     surface_ellipsoid: "x^2 + 4*y^2 + 9*z^2 - 2*x - 5", (2, true, 1);
@@ -407,20 +406,42 @@ real_surfaces! {
     surface_empty: "x^2 + y^2 + z^2 + 1", (0, true, 0);
     surface_point: "x^2 + 2*y^2 + 3*z^2", (1, true, 1);
     surface_quartic_ball: "x^4 + y^4 + z^4 - 1", (2, true, 1);
-    surface_tangle: "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 59/5", (-8, true, 1);
+}
+
+/// What is said of a surface without doubt: its Euler characteristic, and whether it is bounded.
+fn surface_without_doubt(name: &str, equation: &str, seed: u64) -> Option<(i64, bool)> {
+    let system = written(&format!(
+        "variable_group x, y, z; function f; f = {equation};"
+    ));
+    let found = components(name, &system, seed);
+    let question = Question::RealSurface { samples: 2 };
+    let solve = QuestionSolve::new(&system, &options(seed), &found.components, &question);
+    let (answer, doubts) = run_locally(solve.expect("it can be asked"), 8).expect("stages run");
+    let Answer::RealSurface(surfaces) = answer else {
+        panic!("{answer:?}");
+    };
+    let said = (surfaces[0].euler, surfaces[0].compact);
+    doubts.is_empty().then_some(said)
 }
 
 /// The surface of Whitney, with its handle: paths to fibres beside the double line may be lost, and it is in doubt then;
 /// what is said without doubt is right.
 #[test]
 fn a_surface_that_crosses_itself_is_right_or_in_doubt() {
-    let system = written("variable_group x, y, z; function f; f = x^2 - y^2*z;");
-    let found = components("whitney", &system, 1);
-    let question = Question::RealSurface { samples: 2 };
-    let solve = QuestionSolve::new(&system, &options(1), &found.components, &question);
-    let (answer, doubts) = run_locally(solve.expect("it can be asked"), 8).expect("stages run");
-    let Answer::RealSurface(surfaces) = answer else {
-        panic!("{answer:?}");
-    };
-    assert!(!doubts.is_empty() || (surfaces[0].euler, surfaces[0].compact) == (1, false));
+    let said = surface_without_doubt("whitney", "x^2 - y^2*z", 1);
+    assert!(said.is_none_or(|said| said == (1, false)), "{said:?}");
+}
+
+/// A sphere with five handles has 2 - 2 * 5. By its symmetries critical values come near each other: seed 3 is in doubt.
+#[test]
+fn a_surface_with_handles_is_right_or_in_doubt() {
+    let equation = "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 59/5";
+    for seed in 1..=3 {
+        let said = surface_without_doubt("tangle", equation, seed);
+        assert!(
+            said.is_none_or(|said| said == (-8, true)),
+            "{seed}: {said:?}"
+        );
+        assert!(said.is_some() || seed == 3, "{seed}");
+    }
 }

@@ -273,6 +273,7 @@ mod tests {
             "tls_client_ca",
             "metrics",
             "audit_log",
+            "page",
         ];
         let mut said = format!("{file:?}");
         let text = std::fs::read_to_string(&path).expect("it was read before");

@@ -3,7 +3,8 @@
 use super::audit_log::Entry;
 use super::caller::Caller;
 use super::error::ApiError;
-use super::{Answers, Context, guarded, pieces, visible};
+use super::visible::visible;
+use super::{Answers, Context, guarded, pieces};
 use crate::coordinator::submission_limits::SubmissionLimits;
 use crate::coordinator::{Answered, ClassifiedPath, CoordinatorError};
 use crate::intake;

@@ -9,6 +9,7 @@ pub mod error;
 pub mod held_stream;
 pub mod quota;
 pub mod security;
+pub mod visible;
 pub mod worker_service;
 
 use crate::config::Rules;
@@ -104,21 +105,6 @@ async fn guarded<T: Send + 'static>(
 /// A stream of answers.
 pub type Answers<T> = futures::stream::BoxStream<'static, Result<T, Status>>;
 
-/// A text of somebody else with its control characters written out: what is shown in a terminal or a log
-/// neither moves the cursor nor forges lines.
-pub fn visible(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        // Characters that turn the direction of what follows hide as well as others.
-        let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        match c.is_control() || turns {
-            true => shown.extend(c.escape_default()),
-            false => shown.push(c),
-        }
-    }
-    shown
-}
-
 /// A lease's name.
 fn lease_id(field: &str, m: Option<&v1::LeaseId>) -> Result<LeaseId, ApiError> {
     let m = m.ok_or_else(|| ProtocolError::missing(field))?;
@@ -153,12 +139,6 @@ fn pieces(bytes: Bytes) -> Answers<v1::ObjectPiece> {
 mod tests {
     use super::*;
     use futures::StreamExt;
-
-    #[test]
-    fn what_is_shown_moves_no_cursor() {
-        let evil = "a\u{1b}]0;owned\u{7}\nb\u{202e}c \u{e4}";
-        assert_eq!(visible(evil), "a\\u{1b}]0;owned\\u{7}\\nb\\u{202e}c \u{e4}");
-    }
 
     #[tokio::test]
     async fn pieces_make_up_the_object() {

@@ -2,7 +2,7 @@
 
 use super::audit_log::{AuditLog, Entry};
 use super::caller::Caller;
-use super::visible;
+use super::visible::visible;
 use crate::ledger::identity::{Credential, Tenant};
 use cognate_worker::transport::tokens::{CredentialError, Limits, Role, read_tokens};
 use futures::future::BoxFuture;

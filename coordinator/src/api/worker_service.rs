@@ -2,7 +2,8 @@
 
 use super::caller::Caller;
 use super::error::ApiError;
-use super::{Answers, Context, duration_ms, guarded, lease_id, pieces, visible};
+use super::visible::visible;
+use super::{Answers, Context, duration_ms, guarded, lease_id, pieces};
 use crate::coordinator::{Coordinator, CoordinatorError, Pull, Report};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;

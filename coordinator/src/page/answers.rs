@@ -328,13 +328,18 @@ fn with_cookie(token: Option<&str>) -> Response<Body> {
 
 /// A whole body of at most so many bytes.
 async fn gather(body: Body, most: usize) -> Result<Bytes, Fault> {
+    let too_large = || Fault {
+        status: StatusCode::PAYLOAD_TOO_LARGE,
+        message: format!("more than {most} bytes are not taken here"),
+    };
+    // What is announced need not be waited for.
+    if http_body::Body::size_hint(&body).lower() > most as u64 {
+        return Err(too_large());
+    }
     let collected = tokio::time::timeout(PATIENCE, Limited::new(body, most).collect()).await;
     match collected {
         Ok(Ok(body)) => Ok(body.to_bytes()),
-        Ok(Err(error)) if error.is::<LengthLimitError>() => Err(Fault {
-            status: StatusCode::PAYLOAD_TOO_LARGE,
-            message: format!("more than {most} bytes are not taken here"),
-        }),
+        Ok(Err(error)) if error.is::<LengthLimitError>() => Err(too_large()),
         Ok(Err(error)) => Err(Fault::of_request(format!(
             "the body did not arrive: {error}"
         ))),

@@ -9,7 +9,6 @@
 
 use super::batch::Batch;
 use super::digits::Digits;
-use super::far_out::{self, Place};
 use super::lane::{Lane, Phase};
 use super::limits::{Limits, MOST_ROUNDS, rounds};
 use super::observer::{Observer, StepEvent};
@@ -20,9 +19,8 @@ use super::tracking_context::{Ended, HandedOffPath, Handoff, Queue, TrackingCont
 use crate::chart::{LEAST_NORM, norm};
 use crate::endgames::cauchy::distance;
 use crate::endgames::circle::VERTICES;
-use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
 use crate::predictor::hermite::{POINTS, weights};
-use crate::refine::{Refiner, Report};
+use crate::refine::Refiner;
 use crate::stage::PreparedStage;
 use crate::step_control::{largest_error, next_step};
 use cognate_machine_code::Evaluator;
@@ -58,8 +56,6 @@ const PASSING: f64 = 0.1;
 const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
-/// A regular end whose homogenising coordinate is below this part of the largest lacks digits.
-const FAR_OUT: f64 = 1e-6;
 /// With such a condition number a path may go down a rung.
 const TAME: f64 = 1e10;
 /// So many rejections since the last accepted step that only noise explains send a path to the
@@ -110,17 +106,6 @@ pub(super) struct Lockstep<'a, R: Real> {
     pub(super) observer: Option<&'a mut dyn Observer>,
     pub(super) point: Vec<Complex64>,
     pub(super) tangent: Vec<Complex64>,
-}
-
-/// How a path has ended.
-pub(super) struct End {
-    pub outcome: PathOutcome,
-    /// Where, in t.
-    pub t: Complex64,
-    pub report: Report,
-    pub winding_number: Option<u32>,
-    /// Turns of each homogenising coordinate.
-    pub infinity_turns: Vec<i32>,
 }
 
 /// What one step showed in one lane.
@@ -588,7 +573,11 @@ impl<'a, R: Real> Lockstep<'a, R> {
                 let radius = settings.endgame_radius;
                 let passing = h < PASSING * t.re && t.re > PASSED * radius;
                 let reaches = step.accepted && h >= t.re;
-                let near = t.re <= radius && !passing;
+                // Where no endgame comes, a regular end may still be a few steps away.
+                let near = match settings.max_endgame_bits < self.tracking.bits {
+                    true => t.re <= PASSED * radius,
+                    false => t.re <= radius && !passing,
+                };
                 let at_end = !reaches && (near || self.in_endgame_zone(lane, step, t));
                 let settings = &self.settings;
                 let far = self.tracking.projective && step.size > FAR;
@@ -735,27 +724,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
         self.tracking.bits > DOUBLE
     }
 
-    /// A path has ended at `self.point`; the lane takes the next one.
-    pub(super) fn finish(
-        &mut self,
-        lane: usize,
-        outcome: PathOutcome,
-        report: Report,
-        winding_number: Option<u32>,
-        infinity_turns: Vec<i32>,
-    ) {
-        let (outcome, report, endpoint) = self.endpoint(self.lanes[lane].target, outcome, report);
-        let end = End {
-            outcome,
-            t: Complex64::default(),
-            report,
-            winding_number,
-            infinity_turns,
-        };
-        self.record(lane, end, endpoint);
-        self.refill(lane);
-    }
-
     /// A path that cannot go on in this tracking context is handed to another one, or fails.
     pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
         let most = self.settings.max_endgame_bits;
@@ -880,99 +848,6 @@ impl<'a, R: Real> Lockstep<'a, R> {
             handoff,
         });
         self.refill(lane);
-    }
-
-    /// The path is not followed further than where it is.
-    pub(super) fn put_aside(&mut self, lane: usize, t: Complex64) {
-        self.batch
-            .read_here(lane, &mut self.point, &mut self.tangent);
-        self.stop(lane, t, PathOutcome::PutAside);
-        self.refill(lane);
-    }
-
-    /// The path fails where it is.
-    fn fail_and_refill(&mut self, lane: usize, t: Complex64, why: Failure) {
-        self.batch
-            .read_here(lane, &mut self.point, &mut self.tangent);
-        self.fail(lane, t, why);
-        self.refill(lane);
-    }
-
-    fn fail(&mut self, lane: usize, t: Complex64, why: Failure) {
-        self.stop(lane, t, PathOutcome::Failed(why));
-    }
-
-    /// The path's end is not known: it stops at `self.point`.
-    fn stop(&mut self, lane: usize, t: Complex64, outcome: PathOutcome) {
-        let end = End {
-            outcome,
-            t,
-            report: Report::unknown(),
-            winding_number: None,
-            infinity_turns: Vec::new(),
-        };
-        let endpoint = self.tracking.homotopy.endpoint(&self.point);
-        self.record(lane, end, endpoint);
-    }
-
-    /// A path has come to its end, at a point with these normalised homogeneous coordinates.
-    pub(super) fn record(&mut self, lane: usize, end: End, endpoint: Vec<Complex64>) {
-        let path = &self.lanes[lane];
-        let result = PathResult {
-            origin: PathIndex(path.origin),
-            attempt: self.stage.attempt(),
-            outcome: end.outcome,
-            endpoint: Coordinates::Double(endpoint),
-            t: end.t,
-            residual: end.report.residual,
-            condition: end.report.condition,
-            accuracy: end.report.accuracy,
-            winding_number: end.winding_number,
-            infinity_turns: end.infinity_turns,
-            precision_bits: path.highest_bits,
-            counts: Counts {
-                steps: path.steps,
-                rejections: path.rejections,
-                evaluations: path.evaluations,
-                exchanges: self.batch.exchanges.lane(lane) as u32,
-                turns: path.cauchy.total_turns(),
-            },
-            asked: None,
-            local_dimension: None,
-            boundary: path
-                .boundary
-                .filter(|_| matches!(end.outcome, PathOutcome::Singular | PathOutcome::Diverging))
-                .map(Box::new),
-        };
-        self.ended.results.push((path.item, result));
-    }
-
-    /// How a path ends, and the normalised homogeneous coordinates of where. A regular point far out is given with
-    /// digits of its own: those that doubles have there are digits of its largest coordinate.
-    fn endpoint(
-        &self,
-        target: u64,
-        outcome: PathOutcome,
-        report: Report,
-    ) -> (PathOutcome, Report, Vec<Complex64>) {
-        let homotopy = self.tracking.homotopy;
-        let coordinates = homotopy.endpoint(&self.point);
-        let is_far_out = || homotopy.smallest_homogenizing(&coordinates) < FAR_OUT;
-        if outcome != PathOutcome::Regular || !is_far_out() {
-            return (outcome, report, coordinates);
-        }
-        match far_out::resolve(homotopy, &self.settings, &self.point, target) {
-            Place::Resolved(coordinates) => (outcome, report, coordinates),
-            Place::WithinDataAccuracy(coordinate) => {
-                let accuracy = coordinate;
-                let report = Report { accuracy, ..report };
-                (PathOutcome::Diverging, report, coordinates)
-            }
-            Place::Unresolved => {
-                let coordinates = far_out::unresolved(homotopy, coordinates);
-                (outcome, report, coordinates)
-            }
-        }
     }
 }
 

@@ -7,6 +7,7 @@ mod batch;
 pub(crate) mod boundary;
 mod contexts;
 mod digits;
+mod ends;
 mod far_out;
 pub(crate) mod lane;
 mod limits;

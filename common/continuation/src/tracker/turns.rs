@@ -6,7 +6,8 @@
 use super::digits::Digits;
 use super::far_out;
 use super::lane::Phase;
-use super::lockstep::{ENDGAME_BITS, End, Lockstep, Step};
+use super::ends::End;
+use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
 use super::tracking_context::Handoff;
 use crate::chart::norm;

@@ -329,10 +329,7 @@ mod tests {
     fn comments_are_blank_and_places_stay() {
         let text = "a // b é\nc /* d\n e */ f";
         let clean = without_comments(text, "//", Some(("/*", "*/")));
-        assert_eq!(
-            clean,
-            "a        \nc     \n      f".replace("a        ", "a          ")
-        );
+        assert_eq!(clean, "a        \nc     \n      f");
         assert_eq!(clean.len(), text.len());
         assert_eq!(without_comments("x -- y", "--", None), "x     ");
         assert_eq!(

@@ -1,0 +1,139 @@
+//! Ends: how a lane's path ends, is put aside or fails, and what is recorded of it.
+
+use super::far_out::{self, Place};
+use super::lockstep::Lockstep;
+use super::outcome::{Failure, PathOutcome};
+use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
+use crate::refine::Report;
+use cognate_numeric::scalar::{Complex, Real};
+use num_complex::Complex64;
+
+/// A regular end whose homogenising coordinate is below this part of the largest lacks digits.
+const FAR_OUT: f64 = 1e-6;
+
+/// How a path has ended.
+pub(super) struct End {
+    pub outcome: PathOutcome,
+    /// Where, in t.
+    pub t: Complex64,
+    pub report: Report,
+    pub winding_number: Option<u32>,
+    /// Turns of each homogenising coordinate.
+    pub infinity_turns: Vec<i32>,
+}
+
+impl<R: Real> Lockstep<'_, R> {
+    /// A path has ended at `self.point`; the lane takes the next one.
+    pub(super) fn finish(
+        &mut self,
+        lane: usize,
+        outcome: PathOutcome,
+        report: Report,
+        winding_number: Option<u32>,
+        infinity_turns: Vec<i32>,
+    ) {
+        let (outcome, report, endpoint) = self.endpoint(self.lanes[lane].target, outcome, report);
+        let end = End {
+            outcome,
+            t: Complex64::default(),
+            report,
+            winding_number,
+            infinity_turns,
+        };
+        self.record(lane, end, endpoint);
+        self.refill(lane);
+    }
+
+    /// The path is not followed further than where it is.
+    pub(super) fn put_aside(&mut self, lane: usize, t: Complex64) {
+        self.batch
+            .read_here(lane, &mut self.point, &mut self.tangent);
+        self.stop(lane, t, PathOutcome::PutAside);
+        self.refill(lane);
+    }
+
+    /// The path fails where it is.
+    pub(super) fn fail_and_refill(&mut self, lane: usize, t: Complex64, why: Failure) {
+        self.batch
+            .read_here(lane, &mut self.point, &mut self.tangent);
+        self.fail(lane, t, why);
+        self.refill(lane);
+    }
+
+    pub(super) fn fail(&mut self, lane: usize, t: Complex64, why: Failure) {
+        self.stop(lane, t, PathOutcome::Failed(why));
+    }
+
+    /// The path's end is not known: it stops at `self.point`.
+    fn stop(&mut self, lane: usize, t: Complex64, outcome: PathOutcome) {
+        let end = End {
+            outcome,
+            t,
+            report: Report::unknown(),
+            winding_number: None,
+            infinity_turns: Vec::new(),
+        };
+        let endpoint = self.tracking.homotopy.endpoint(&self.point);
+        self.record(lane, end, endpoint);
+    }
+
+    /// A path has come to its end, at a point with these normalised homogeneous coordinates.
+    pub(super) fn record(&mut self, lane: usize, end: End, endpoint: Vec<Complex64>) {
+        let path = &self.lanes[lane];
+        let result = PathResult {
+            origin: PathIndex(path.origin),
+            attempt: self.stage.attempt(),
+            outcome: end.outcome,
+            endpoint: Coordinates::Double(endpoint),
+            t: end.t,
+            residual: end.report.residual,
+            condition: end.report.condition,
+            accuracy: end.report.accuracy,
+            winding_number: end.winding_number,
+            infinity_turns: end.infinity_turns,
+            precision_bits: path.highest_bits,
+            counts: Counts {
+                steps: path.steps,
+                rejections: path.rejections,
+                evaluations: path.evaluations,
+                exchanges: self.batch.exchanges.lane(lane) as u32,
+                turns: path.cauchy.total_turns(),
+            },
+            asked: None,
+            local_dimension: None,
+            boundary: path
+                .boundary
+                .filter(|_| matches!(end.outcome, PathOutcome::Singular | PathOutcome::Diverging))
+                .map(Box::new),
+        };
+        self.ended.results.push((path.item, result));
+    }
+
+    /// How a path ends, and the normalised homogeneous coordinates of where. A regular point far out is given with
+    /// digits of its own: those that doubles have there are digits of its largest coordinate.
+    fn endpoint(
+        &self,
+        target: u64,
+        outcome: PathOutcome,
+        report: Report,
+    ) -> (PathOutcome, Report, Vec<Complex64>) {
+        let homotopy = self.tracking.homotopy;
+        let coordinates = homotopy.endpoint(&self.point);
+        let is_far_out = || homotopy.smallest_homogenizing(&coordinates) < FAR_OUT;
+        if outcome != PathOutcome::Regular || !is_far_out() {
+            return (outcome, report, coordinates);
+        }
+        match far_out::resolve(homotopy, &self.settings, &self.point, target) {
+            Place::Resolved(coordinates) => (outcome, report, coordinates),
+            Place::WithinDataAccuracy(coordinate) => {
+                let accuracy = coordinate;
+                let report = Report { accuracy, ..report };
+                (PathOutcome::Diverging, report, coordinates)
+            }
+            Place::Unresolved => {
+                let coordinates = far_out::unresolved(homotopy, coordinates);
+                (outcome, report, coordinates)
+            }
+        }
+    }
+}
