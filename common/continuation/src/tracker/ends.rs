@@ -5,7 +5,7 @@ use super::lockstep::Lockstep;
 use super::outcome::{Failure, PathOutcome};
 use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
 use crate::refine::Report;
-use cognate_numeric::scalar::{Complex, Real};
+use cognate_numeric::scalar::Real;
 use num_complex::Complex64;
 
 /// A regular end whose homogenising coordinate is below this part of the largest lacks digits.

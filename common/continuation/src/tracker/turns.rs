@@ -4,9 +4,9 @@
 //! back: the point, its homogenising coordinates and their valuations.
 
 use super::digits::Digits;
+use super::ends::End;
 use super::far_out;
 use super::lane::Phase;
-use super::ends::End;
 use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
 use super::tracking_context::Handoff;
