@@ -164,3 +164,46 @@ fn points_that_doubles_do_not_tell_apart_are_two() {
         assert_eq!(near.count(), 2, "seed {seed}");
     }
 }
+
+/// The interval arithmetic benchmark i1 (one of PHCpack's demos, with 66 solutions, 16 of them real): at one of them coordinates go from 4e-11 to 4e11, and the
+/// condition number is 5e20. Taken for a point on a set of solutions, it was lost in silence.
+#[test]
+fn regular_solutions_with_coordinates_of_very_different_sizes_are_regular() {
+    let system = written(
+        "variable_group x1, x2, x3, x4, x5, x6, x7, x8, x9, x10; \
+         function f1, f2, f3, f4, f5, f6, f7, f8, f9, f10; \
+         f1 = x1 - 0.25428722 - 0.18324757*x4*x3*x9; \
+         f2 = x2 - 0.37842197 - 0.16275449*x1*x10*x6; \
+         f3 = x3 - 0.27162577 - 0.16955071*x1*x2*x10; \
+         f4 = x4 - 0.19807914 - 0.15585316*x7*x1*x6; \
+         f5 = x5 - 0.44166728 - 0.19950920*x7*x6*x3; \
+         f6 = x6 - 0.14654113 - 0.18922793*x8*x5*x10; \
+         f7 = x7 - 0.42937161 - 0.21180484*x2*x5*x8; \
+         f8 = x8 - 0.07056438 - 0.17081208*x1*x7*x6; \
+         f9 = x9 - 0.34504906 - 0.19612740*x10*x6*x8; \
+         f10 = x10 - 0.42651102 - 0.21466544*x4*x8*x1;",
+    );
+    for seed in 1..=5 {
+        let options = SolveOptions {
+            seed,
+            ..SolveOptions::default()
+        };
+        let (_, sets) = solve(&system, &options, &|_| None);
+        let counts = &sets[0].counts;
+        assert!(sets[0].settled(), "seed {seed}: {:?}", sets[0].warnings);
+        assert_eq!(
+            (counts.nonsingular, counts.singular, counts.real),
+            (66, 0, Some(16)),
+            "seed {seed}"
+        );
+        let sizes = sets[0].solutions.iter().map(|solution| {
+            let values = solution.variables.values();
+            values.map(|z| z.norm_sqr().sqrt()).fold(0.0, f64::max)
+        });
+        let far = sizes.fold(0.0, f64::max);
+        assert!(
+            (far / 3.760_923_057_506e11 - 1.0).abs() < 1e-9,
+            "seed {seed}: {far:e}"
+        );
+    }
+}

@@ -303,7 +303,8 @@ fn plan_polyhedral(
         attempt: 0,
     };
     let tolerances = options.tracking.tolerances.clone();
-    let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
+    let solve =
+        PolyhedralSolve::new(first, system, parameters, tolerances).regular_ends_first(system);
     Ok(Plan {
         system: system.clone(),
         algorithm: AnyAlgorithm::from(AnySolve::Polyhedral(Box::new(solve)))

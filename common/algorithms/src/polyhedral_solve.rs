@@ -25,10 +25,14 @@ use cognate_continuation::start_systems::polyhedral::mixed_cells::{
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::{Tolerances, Verdict};
+use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+/// With more paths than this it costs more to follow some of them twice than to follow all to their ends at once.
+const MOST_COUNTED: usize = 3000;
 
 /// The stages that count mixed cells: one, and another for each lifting that is not generic.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,6 +56,8 @@ pub struct PolyhedralSolve {
     arrived: Vec<u64>,
     /// Values of the system's parameters.
     parameters: Vec<Complex64>,
+    /// The system, where regular ends come first.
+    counted: Option<Arc<System>>,
 }
 
 impl PolyhedralSolve {
@@ -87,7 +93,16 @@ impl PolyhedralSolve {
             target: None,
             arrived: Vec::new(),
             parameters,
+            counted: None,
         }
+    }
+
+    /// The same, where paths of the second leg that do not end regularly are followed to their ends only where the
+    /// others leave solutions of the system to be found.
+    #[must_use]
+    pub fn regular_ends_first(mut self, system: &System) -> Self {
+        self.counted = Some(Arc::new(system.clone()));
+        self
     }
 
     /// The same with another limit of repetitions.
@@ -181,8 +196,13 @@ impl PolyhedralSolve {
             system: None,
             objects: vec![points],
         };
-        let lost = self.lost();
-        Some(self.target.insert(self.generic.followed_by(first, lost)))
+        let mut second = self.generic.followed_by(first, self.lost());
+        if let Some(system) = &self.counted
+            && self.arrived.len() <= MOST_COUNTED
+        {
+            second = second.regular_ends_first(system);
+        }
+        Some(self.target.insert(second))
     }
 
     /// The last result of every path of the whole, by its index in the first leg.
@@ -388,6 +408,10 @@ impl Solve for PolyhedralSolve {
 
     fn renumbered_results(&self) -> Option<Vec<PathResult>> {
         Some(self.results())
+    }
+
+    fn solution_count(&self) -> Option<SolutionCount> {
+        self.target.as_ref()?.solution_count()
     }
 }
 

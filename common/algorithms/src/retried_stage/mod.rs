@@ -411,10 +411,17 @@ impl RetriedStage {
         }
         assert_eq!(taken, stage.items, "a stage is absorbed as a whole");
         let suspects = self.judge();
+        let meet = |record: &TargetRecord| record.crossings.paths().next().is_some();
+        if !self.targets.iter().any(meet)
+            && self.put_aside.confirms(&mut self.paths, &self.criteria)
+        {
+            self.judge();
+            return Phase::Done;
+        }
         if !suspects.is_empty() && stage.attempt < self.max_retries {
             return Phase::Repeats(suspects);
         }
-        let unended = self.put_aside.close(&self.paths, &self.criteria);
+        let unended = self.put_aside.follow(&self.paths);
         if !unended.is_empty() {
             return Phase::Follows(unended);
         }

@@ -30,8 +30,13 @@ pub(super) enum PutAside {
     /// Every path is followed to its end at once.
     #[default]
     Never,
-    /// They are put aside until the others have ended; the solutions of this system are counted then.
-    First(Arc<System>),
+    /// They are put aside until the others have ended.
+    First {
+        /// Its solutions are counted then.
+        system: Arc<System>,
+        /// How many there are, once that was asked.
+        count: Option<Option<SolutionCount>>,
+    },
     /// Simple solutions are missing still, of so many: those that are put aside have their endgames, in doubles.
     InDoubles(u64),
     /// All solutions are found: none of those put aside is followed.
@@ -53,7 +58,10 @@ impl PutAside {
             && criteria.declared.names().next().is_none();
         let countable = affine && determined && system.parameters.is_empty();
         match all_count && countable && criteria.paths_per_target <= MOST_PATHS {
-            true => Self::First(Arc::new(system.clone())),
+            true => Self::First {
+                system: Arc::new(system.clone()),
+                count: None,
+            },
             false => Self::Never,
         }
     }
@@ -61,7 +69,7 @@ impl PutAside {
     /// These settings, for the next stage.
     pub fn settings(&self, settings: Settings) -> Settings {
         let max_endgame_bits = match self {
-            Self::First(_) => 0,
+            Self::First { .. } => 0,
             Self::InDoubles(_) => DOUBLE,
             Self::Never | Self::Confirmed(_) | Self::Followed(_) => u32::MAX,
         };
@@ -74,46 +82,84 @@ impl PutAside {
     /// How many solutions the system has, if that was asked.
     pub fn count(&self) -> Option<SolutionCount> {
         match self {
-            Self::Never | Self::First(_) => None,
+            Self::Never => None,
+            Self::First { count, .. } => (*count)?,
             Self::InDoubles(simple) => Some(all_simple(*simple)),
             Self::Confirmed(count) => Some(*count),
             Self::Followed(count) => *count,
         }
     }
 
-    /// No path fails or meets another any more: the paths that must be followed further, ascending.
-    pub fn close(&mut self, paths: &PathStore, criteria: &Criteria) -> Vec<u64> {
-        let is_aside = |result: &&PathResult| result.outcome == PathOutcome::PutAside;
-        let results = paths.results().iter();
-        let aside: Vec<u64> = results.filter(is_aside).map(|r| r.origin.0).collect();
-        let count = match self {
-            Self::Never | Self::Confirmed(_) | Self::Followed(_) => return Vec::new(),
-            Self::First(_) if aside.is_empty() => None,
-            Self::First(system) => {
-                let operations = OPERATIONS_PER_PATH.saturating_mul(aside.len() as u64);
-                solution_count(system, operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS))
-            }
-            Self::InDoubles(simple) => Some(all_simple(*simple)),
+    /// Whether each of the solutions that there are is the end of a path of its own, so that none is left for any other
+    /// path; no two finite ends meet. What is not known of the others is not asked then: they are put aside.
+    pub fn confirms(&mut self, paths: &mut PathStore, criteria: &Criteria) -> bool {
+        self.ask(paths);
+        let Some(simple) = self.simple() else {
+            return false;
         };
-        let decisions = paths.results().iter().map(|r| criteria.decide(r).verdict);
-        let finite = decisions.filter(|&v| v == Verdict::Finite).count() as u64;
-        let simple = match count {
-            Some(SolutionCount::Finite {
+        let decided = |result: &PathResult| (result.origin.0, criteria.decide(result).verdict);
+        let verdicts: Vec<(u64, Verdict)> = paths.results().iter().map(decided).collect();
+        let finite = verdicts.iter().filter(|(_, v)| *v == Verdict::Finite);
+        if finite.count() as u64 != simple {
+            return false;
+        }
+        for (path, verdict) in verdicts {
+            let held = match verdict {
+                Verdict::Failed
+                | Verdict::PositiveDimensional
+                | Verdict::Undecided
+                | Verdict::Singular => paths.get_mut(path),
+                Verdict::Finite
+                | Verdict::AtInfinity
+                | Verdict::ExcessSolution
+                | Verdict::WithinDataAccuracy => None,
+            };
+            if let Some(held) = held {
+                held.outcome = PathOutcome::PutAside;
+            }
+        }
+        *self = Self::Confirmed(all_simple(simple));
+        true
+    }
+
+    /// Counts the solutions of the system, once some paths are put aside or have failed.
+    fn ask(&mut self, paths: &PathStore) {
+        let Self::First { system, count } = self else {
+            return;
+        };
+        let unended =
+            |r: &&PathResult| matches!(r.outcome, PathOutcome::PutAside | PathOutcome::Failed(_));
+        let unended = paths.results().iter().filter(unended).count() as u64;
+        if count.is_none() && unended > 0 {
+            let operations = OPERATIONS_PER_PATH.saturating_mul(unended);
+            let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
+            *count = Some(solution_count(system, operations));
+        }
+    }
+
+    /// No path fails or meets another any more, and solutions are missing, or their number is not known: the paths that
+    /// must be followed further, ascending.
+    pub fn follow(&mut self, paths: &PathStore) -> Vec<u64> {
+        let follows = match (self.simple(), &*self) {
+            (_, Self::Never | Self::Confirmed(_) | Self::Followed(_)) => return Vec::new(),
+            (Some(simple), Self::First { .. }) => Self::InDoubles(simple),
+            _ => Self::Followed(self.count()),
+        };
+        *self = follows;
+        let aside = |result: &&PathResult| result.outcome == PathOutcome::PutAside;
+        let aside = paths.results().iter().filter(aside);
+        aside.map(|result| result.origin.0).collect()
+    }
+
+    /// How many solutions there are, where none is multiple.
+    fn simple(&self) -> Option<u64> {
+        match self.count()? {
+            SolutionCount::Finite {
                 with_multiplicity,
                 distinct: Some(distinct),
-            }) if with_multiplicity == distinct => Some(distinct),
+            } => Some(distinct).filter(|&distinct| distinct == with_multiplicity),
             _ => None,
-        };
-        let missing = simple.map(|simple| simple.saturating_sub(finite));
-        *self = match (simple, missing, &*self) {
-            (Some(simple), Some(0), _) if finite == simple => Self::Confirmed(all_simple(simple)),
-            (Some(simple), Some(1..), Self::First(_)) => Self::InDoubles(simple),
-            _ => Self::Followed(count),
-        };
-        if let Self::Confirmed(_) = self {
-            return Vec::new();
         }
-        aside
     }
 }
 

@@ -89,8 +89,10 @@ pub enum Next {
         /// coefficients.
         power_sum: Option<f64>,
     },
-    /// The turns are made again at this radius with more digits: whether a homogenising
+    /// The samples of these turns with more digits ([`Cauchy::with_precise_samples`]): whether a homogenising
     /// coordinate vanishes lies below the noise of these.
+    PreciseSamples,
+    /// The turns are made again at this radius with more digits, which Newton's method at the samples does not give.
     Finer,
     /// There is no use in smaller radii.
     Unsettled,
@@ -109,6 +111,17 @@ pub struct Settled {
     pub infinity_turns: Vec<i32>,
     /// Radius of the last turns.
     pub radius: f64,
+}
+
+/// A sample of a path with more digits than it was followed in.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PreciseSample {
+    /// Values of the homogenising coordinates.
+    pub homogenizing: Vec<Homogenizing>,
+    /// t x'/x of the homogenising coordinates x.
+    pub valuations: Vec<Complex64>,
+    /// Relative error of the point, at most.
+    pub noise: f64,
 }
 
 /// The state of one path in the endgame.
@@ -130,6 +143,12 @@ pub struct Cauchy {
     /// Whether the turns can be made with more digits.
     may_be_finer: bool,
     noise: f64,
+    /// Where the samples of the present turns were taken, in t, and the points there, one after another: of turns in
+    /// doubles that can be made with more digits.
+    places: Vec<Complex64>,
+    points: Vec<Complex64>,
+    /// Whether the homogenising coordinates have more digits than the points; relative error of the points they are of.
+    precise: Option<f64>,
     /// Valuations of the homogenising coordinates at all samples, sample after sample.
     valuations: Vec<Complex64>,
     /// The exponents that were found at the radius before, and at how many radii up to it none fell.
@@ -254,6 +273,10 @@ impl Cauchy {
         self.vertex = 0;
         self.turns = 0;
         self.noise = noise;
+        self.places.clear();
+        self.points.clear();
+        self.precise = None;
+        self.keep(Complex64::new(radius, 0.0), point);
         self.valuations.clear();
         self.infinity.resize(homogenizing.len(), Winding::default());
         self.homogenizing.clear();
@@ -293,7 +316,7 @@ impl Cauchy {
             .map(|(value, &valuation)| at_exact_vertex(value, valuation, t, radius, vertex))
             .collect();
         if self.vertex < VERTICES {
-            self.add(point, form, &homogenizing);
+            self.add(t, point, form, &homogenizing);
             return Next::Vertex {
                 radius: self.radius,
                 vertex: self.vertex + 1,
@@ -305,15 +328,21 @@ impl Cauchy {
         let size = norm(point);
         let closed = (1e-9f64).max(100.0 * self.noise);
         if distance(point, &self.start) > closed * size || !self.returns(form, size) {
-            return self.after_open_turn(point, form, &homogenizing, settings);
+            return self.after_open_turn(t, point, form, &homogenizing, settings);
         }
+        self.keep(t, point);
+        self.after_closing(settings)
+    }
+
+    /// The path is back where its turns began.
+    fn after_closing(&mut self, settings: &Settings) -> Next {
+        let size = norm(&self.start);
         let infinity = self.at_infinity(size, settings);
         match infinity {
             Infinity::Shown => return self.diverging(None),
             Infinity::BelowNoise { within } if self.may_be_finer => {
-                self.within = Some(self.radius * within);
                 self.previous = None;
-                return Next::Finer;
+                return self.below_noise(within, settings);
             }
             Infinity::Apart { part, power_sum } if WITHIN * part < SHRINKAGE => {
                 // One sheet ends at a regular point, however far out: it is followed.
@@ -377,9 +406,70 @@ impl Cauchy {
         self.inward(SHRINKAGE, settings)
     }
 
+    /// Whether a homogenising coordinate vanishes lies below the noise of the samples.
+    fn below_noise(&mut self, within: f64, settings: &Settings) -> Next {
+        match self.precise {
+            None if !self.fine => Next::PreciseSamples,
+            Some(_) if within < NEARLY => self.inward(within, settings),
+            _ => {
+                self.within = Some(self.radius * within);
+                Next::Finer
+            }
+        }
+    }
+
+    /// Where the samples of the closed turns were taken, in t, and the points there, one after another; the last one is
+    /// the first again.
+    pub(crate) fn samples(&self) -> (&[Complex64], &[Complex64]) {
+        (&self.places, &self.points)
+    }
+
+    /// [`Next::PreciseSamples`] are these; `None` where Newton's method finds none. At small radii all sheets of a cycle
+    /// are near one another, so that a path may not have closed.
+    pub(crate) fn with_precise_samples(
+        &mut self,
+        samples: Option<Vec<PreciseSample>>,
+        settings: &Settings,
+    ) -> Next {
+        let Some(samples) = samples else {
+            self.within = Some(self.radius);
+            return Next::Finer;
+        };
+        let mut noise = 0.0f64;
+        let mut exact = Vec::with_capacity(samples.len() * self.infinity.len());
+        for ((sample, &t), vertex) in samples.iter().zip(&self.places).zip(0..) {
+            let both = sample.homogenizing.iter().zip(&sample.valuations);
+            exact.extend(both.map(|(value, &valuation)| {
+                at_exact_vertex(value, valuation, t, self.radius, vertex)
+            }));
+            noise = noise.max(sample.noise);
+        }
+        let again = exact.split_off(exact.len() - self.infinity.len());
+        let groups = self.infinity.len();
+        let closes = again.iter().enumerate().all(|(k, again)| {
+            let from_first = |z: &Homogenizing| {
+                let mut difference = *z;
+                difference.sub(&exact[k]);
+                difference.lane(0).norm_sqr()
+            };
+            let away = exact.iter().skip(k).step_by(groups).map(from_first);
+            let away = away.fold(0.0, f64::max).sqrt();
+            let noise = 100.0 * noise * norm(&self.start);
+            from_first(again).sqrt() <= (RETURNED * away).max(noise)
+        });
+        if !closes {
+            self.within = Some(self.radius);
+            return Next::Finer;
+        }
+        self.homogenizing = exact;
+        self.precise = Some(noise);
+        self.after_closing(settings)
+    }
+
     /// A turn is made that has not brought the path back to where its turns began: another one here, or further in.
     fn after_open_turn(
         &mut self,
+        t: Complex64,
         point: &[Complex64],
         form: Complex64,
         homogenizing: &[Homogenizing],
@@ -398,7 +488,7 @@ impl Cauchy {
         if self.turns >= most || diverges && self.turns >= believed {
             return self.does_not_close(settings);
         }
-        self.add(point, form, homogenizing);
+        self.add(t, point, form, homogenizing);
         Next::Vertex {
             radius: self.radius,
             vertex: 1,
@@ -484,7 +574,22 @@ impl Cauchy {
         !self.fine || form.norm_sqr().sqrt() <= (RETURNED * away).max(noise * size)
     }
 
-    fn add(&mut self, point: &[Complex64], form: Complex64, homogenizing: &[Homogenizing]) {
+    /// Keeps a sample whose digits may have to be more.
+    fn keep(&mut self, t: Complex64, point: &[Complex64]) {
+        if self.may_be_finer && !self.fine {
+            self.places.push(t);
+            self.points.extend_from_slice(point);
+        }
+    }
+
+    fn add(
+        &mut self,
+        t: Complex64,
+        point: &[Complex64],
+        form: Complex64,
+        homogenizing: &[Homogenizing],
+    ) {
+        self.keep(t, point);
         self.samples.push(form);
         self.homogenizing.extend_from_slice(homogenizing);
         let even = self.vertex.is_multiple_of(2);
@@ -559,7 +664,8 @@ impl Cauchy {
                 self.homogenizing.iter().skip(k).step_by(groups).collect();
             let turns = winding.turns() > 0;
             let zero = Zero::of(settings, self.may_be_finer);
-            let here = vanishes(&samples, self.turns, turns, self.noise, size, zero);
+            let noise = self.precise.unwrap_or(self.noise);
+            let here = vanishes(&samples, self.turns, turns, noise, size, zero);
             match here {
                 Infinity::Shown => return Infinity::Shown,
                 Infinity::BelowNoise { .. } => found = here,

@@ -13,6 +13,7 @@ use super::lane::{Lane, Phase};
 use super::limits::{Limits, MOST_ROUNDS, rounds};
 use super::observer::{Observer, StepEvent};
 use super::outcome::{Failure, PathOutcome};
+use super::precise_samples::NewtonAtSamples;
 use super::settings::Settings;
 use super::taylor_probe::{Estimate, Series, TaylorProbe};
 use super::tracking_context::{Ended, HandedOffPath, Handoff, Queue, TrackingContext};
@@ -96,6 +97,8 @@ pub(super) struct Lockstep<'a, R: Real> {
     pub(super) p: Vec<Complex<R>>,
     pub(super) dp: Vec<Complex<R>>,
     pub(super) refiner: Refiner<'a, R::Single>,
+    /// Made when first wanted.
+    pub(super) newton_at_samples: Option<Box<dyn NewtonAtSamples + 'a>>,
     /// In robust mode.
     pub(super) probe: Option<TaylorProbe<'a, R::Single>>,
     /// Where each lane's path goes on, as its last Taylor series showed; in robust mode, on the way.
@@ -187,6 +190,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
             p: vec![Complex::zero(context); parameters],
             dp: vec![Complex::zero(context); parameters],
             refiner: Refiner::new(homotopy, context),
+            newton_at_samples: None,
             circle: roots_of_unity(VERTICES),
             tracking,
             queue,

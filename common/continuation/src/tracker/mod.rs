@@ -14,6 +14,8 @@ mod limits;
 pub mod lockstep;
 pub mod observer;
 pub mod outcome;
+mod precise_samples;
+mod scaled_newton;
 pub mod settings;
 mod taylor_probe;
 mod tracking_context;

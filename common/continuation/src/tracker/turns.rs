@@ -9,6 +9,8 @@ use super::far_out;
 use super::lane::Phase;
 use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
 use super::outcome::{Failure, PathOutcome};
+use super::precise_samples::newton_at_samples;
+use super::scaled_newton;
 use super::tracking_context::Handoff;
 use crate::chart::norm;
 use crate::endgames::cauchy::{self, distance};
@@ -151,10 +153,22 @@ impl<R: Real> Lockstep<'_, R> {
                     target,
                 );
                 let moved = distance(&self.point, &settled.endpoint) / norm(&settled.endpoint);
-                let regular = settled.winding_number == 1
+                let farthest = 1e3 * settled.accuracy.max(1e-12);
+                let mut regular = settled.winding_number == 1
                     && report.converged
                     && report.condition <= 100.0 * near
-                    && moved <= 1e3 * settled.accuracy.max(1e-12);
+                    && moved <= farthest;
+                if !regular && settled.winding_number == 1 {
+                    let end = &settled.endpoint;
+                    let found = self.regular_in_own_units(end, target);
+                    let beside = |point: &Vec<_>| distance(point, end) <= farthest * norm(end);
+                    if let Some(point) = found.filter(beside) {
+                        regular = true;
+                        report = self.refiner.report(&point, target);
+                        report.accuracy = f64::EPSILON;
+                        self.point = point;
+                    }
+                }
                 // In doubles a multiple point and points that are only close are the same (a
                 // perturbation by the unit roundoff takes a double point apart by its square root). Deflated
                 // equations tell; where they did not the path is tracked again, and the next rung tells.
@@ -201,6 +215,10 @@ impl<R: Real> Lockstep<'_, R> {
             } => {
                 self.diverge(lane, winding_number, infinity_turns, power_sum);
             }
+            cauchy::Next::PreciseSamples => {
+                let next = self.with_precise_samples(lane);
+                self.follow_endgame(lane, next);
+            }
             cauchy::Next::Finer if self.settings.max_endgame_bits <= self.tracking.bits => {
                 let t = self.batch.t(lane);
                 self.put_aside(lane, t);
@@ -216,6 +234,29 @@ impl<R: Real> Lockstep<'_, R> {
                 self.give_up(lane, t, Failure::EndgameUnsettled);
             }
         }
+    }
+
+    /// The regular solution at a point of the chart, whose coordinates may be of very different sizes; `None` where there
+    /// is none.
+    fn regular_in_own_units(&self, point: &[Complex64], target: u64) -> Option<Vec<Complex64>> {
+        let (homotopy, affine) = (self.tracking.homotopy, self.stage.homotopy());
+        let there = affine.chart().point(&homotopy.endpoint(point))?;
+        let found = scaled_newton::regular_nearby(affine, &there, target)?;
+        homotopy.chart().point(&affine.chart().homogeneous(&found))
+    }
+
+    /// What the endgame wants once it has the samples of the present turns with the digits of double-doubles.
+    fn with_precise_samples(&mut self, lane: usize) -> cauchy::Next {
+        let homotopy = self.tracking.homotopy;
+        let newton = &mut self.newton_at_samples;
+        let newton = newton.get_or_insert_with(|| newton_at_samples(homotopy));
+        let path = &mut self.lanes[lane];
+        let (places, points) = path.cauchy.samples();
+        let found = newton.precise(places, points, path.target);
+        path.evaluations += found.evaluations;
+        path.effort += u64::from(found.evaluations);
+        path.cauchy
+            .with_precise_samples(found.samples, &self.settings)
     }
 
     /// Turns have taken a path for one to infinity: it is, unless it ends far out.

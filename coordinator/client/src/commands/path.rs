@@ -1,7 +1,7 @@
 //! `cognate path`: one path again, in this process, step by step.
 //!
 //! A path's result is a pure function of the problem and its number, so this
-//! is the path that a job tracked, bit for bit.
+//! is the path that a job tracked, bit for bit; where a job puts it aside, it is followed to its end here.
 
 use crate::arguments::{Format, TracePath};
 use crate::error::{ClientError, Exit};
@@ -137,8 +137,9 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
     };
     // A first stage asks for what it brings, or else for the start solutions.
     let objects = |wanted: Digest| opening.object(wanted).or_else(|| points.clone());
-    let stage =
-        PreparedStage::new(&plan.system, &opening.stage, &objects).map_err(|e| wrong(&e))?;
+    let mut stage = opening.stage.clone();
+    stage.settings.max_endgame_bits = u32::MAX;
+    let stage = PreparedStage::new(&plan.system, &stage, &objects).map_err(|e| wrong(&e))?;
     let (result, steps) = stage.trace(index);
     let shape = PointShape::of(&plan.system);
     let verdict = classify(&result, &shape, &Tolerances::default()).verdict;

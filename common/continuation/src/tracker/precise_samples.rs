@@ -1,0 +1,280 @@
+//! Precise samples: points at which doubles have followed a path around t = 0, with the digits of double-doubles.
+//!
+//! Whether several sheets run to infinity together lies below the noise of doubles, which follow them well enough all
+//! the same. Newton's method with more digits, at eight samples at a time, takes that noise away; the path need not be
+//! followed again.
+
+use super::digits::Digits;
+use crate::chart::LEAST_NORM;
+use crate::endgames::cauchy::PreciseSample;
+use crate::homotopies::Homotopy;
+use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSet, dispatch_set};
+use cognate_numeric::lanes::double_doubles::{DoubleDoubleLanes, WIDTH};
+use cognate_numeric::linear_algebra::lu::eliminate;
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
+use cognate_systems::evaluation::{Evaluate, Interpreter};
+use num_complex::Complex64;
+use std::marker::PhantomData;
+
+/// A relative correction this small leaves an error that no decision sees.
+const SMALL: f64 = 1e-24;
+/// A first correction is at most this: the samples have the digits of doubles, and are not multiple points.
+const FIRST: f64 = 1e-6;
+/// Corrections after the first are at most this part of the one before,
+const CONTRACTION: f64 = 1e-3;
+/// or what rounding makes of them, which is no more than this.
+const ROUNDING: f64 = 1e-18;
+/// Newton steps at most.
+const ROUNDS: u32 = 4;
+
+/// What became of the samples of one path.
+pub(super) struct Found {
+    /// With more digits; `None` where Newton's method does not converge.
+    pub samples: Option<Vec<PreciseSample>>,
+    /// How often the equations were evaluated.
+    pub evaluations: u32,
+}
+
+/// Newton's method at samples of paths of one homotopy.
+pub(super) trait NewtonAtSamples {
+    /// `places`: where the samples were taken, in t; `points`: the points there, one after another; `target`: which of
+    /// the homotopy's targets the path goes to.
+    fn precise(&mut self, places: &[Complex64], points: &[Complex64], target: u64) -> Found;
+}
+
+/// Work space for one homotopy.
+pub(super) fn newton_at_samples<'a>(homotopy: &'a Homotopy) -> Box<dyn NewtonAtSamples + 'a> {
+    dispatch_set(InstructionSet::detect(), Made(homotopy))
+}
+
+struct Made<'a>(&'a Homotopy);
+
+impl<'a> JobOfSet for Made<'a> {
+    type Output = Box<dyn NewtonAtSamples + 'a>;
+    #[inline(always)]
+    fn run<S: CompiledSet>(self) -> Self::Output {
+        Box::new(InLanes::<S>::new(self.0))
+    }
+}
+
+/// For one instruction set.
+struct InLanes<'a, S: CompiledSet> {
+    homotopy: &'a Homotopy,
+    scratch: <Interpreter as Evaluate<DoubleDoubleLanes<S>>>::Scratch,
+    matrix: Matrix<DoubleDoubleLanes<S>>,
+    x: Vec<Complex<DoubleDoubleLanes<S>>>,
+    p: Vec<Complex<DoubleDoubleLanes<S>>>,
+    dp: Vec<Complex<DoubleDoubleLanes<S>>>,
+    set: PhantomData<S>,
+}
+
+impl<'a, S: CompiledSet> InLanes<'a, S> {
+    fn new(homotopy: &'a Homotopy) -> Self {
+        let n = homotopy.dimension();
+        let zero = Complex::zero(());
+        Self {
+            homotopy,
+            scratch: Evaluate::<DoubleDoubleLanes<S>>::scratch(homotopy.program(), ()),
+            matrix: Matrix::zeros((), n, n + 2),
+            x: vec![zero; n],
+            p: vec![zero; homotopy.parameter_count()],
+            dp: vec![zero; homotopy.parameter_count()],
+            set: PhantomData,
+        }
+    }
+
+    /// The sample in one lane, where the last Newton step led.
+    fn sample(&self, lane: usize, t: Complex64, noise: f64) -> PreciseSample {
+        let n = self.x.len();
+        let one =
+            |z: &Complex<DoubleDoubleLanes<S>>| Digits::of(z, lane).value::<DoubleDouble<f64>>(());
+        let here: Vec<_> = self.x.iter().map(one).collect();
+        // The column of H_t is the tangent with the other sign.
+        let mut back = here.clone();
+        for (i, z) in back.iter_mut().enumerate() {
+            z.add(&one(self.matrix.at(i, n + 1)));
+        }
+        let homogenizing = self.homotopy.homogenizing((), &here);
+        let before = self.homotopy.homogenizing((), &back);
+        let valuation = |(x, back): (&Complex<DoubleDouble<f64>>, Complex<DoubleDouble<f64>>)| {
+            let mut change = *x;
+            change.sub(&back);
+            t * change.lane(0) / x.lane(0)
+        };
+        let valuations = homogenizing.iter().zip(before).map(valuation).collect();
+        PreciseSample {
+            homogenizing,
+            valuations,
+            noise,
+        }
+    }
+}
+
+impl<S: CompiledSet> NewtonAtSamples for InLanes<'_, S> {
+    fn precise(&mut self, places: &[Complex64], points: &[Complex64], target: u64) -> Found {
+        let n = self.x.len();
+        let mut samples = Vec::with_capacity(places.len());
+        let mut evaluations = 0;
+        for (places, points) in places.chunks(WIDTH).zip(points.chunks(n * WIDTH)) {
+            let newton = Newton {
+                space: self,
+                places,
+                points,
+                target,
+            };
+            let Corrections { last, rounds } = S::call(newton);
+            evaluations += rounds * places.len() as u32;
+            let Some(last) = last else {
+                return Found {
+                    samples: None,
+                    evaluations,
+                };
+            };
+            let in_lanes = places.iter().zip(last).enumerate();
+            samples.extend(in_lanes.map(|(lane, (&t, noise))| self.sample(lane, t, noise)));
+        }
+        Found {
+            samples: Some(samples),
+            evaluations,
+        }
+    }
+}
+
+/// Newton's method at as many samples as there are lanes.
+struct Newton<'r, 'a, S: CompiledSet> {
+    space: &'r mut InLanes<'a, S>,
+    places: &'r [Complex64],
+    points: &'r [Complex64],
+    target: u64,
+}
+
+/// How it converged.
+struct Corrections {
+    /// The last corrections, relative to the largest coordinates; `None` where it does not converge.
+    last: Option<[f64; WIDTH]>,
+    rounds: u32,
+}
+
+impl<S: CompiledSet> Job for Newton<'_, '_, S> {
+    type Output = Corrections;
+    #[inline(always)]
+    fn run(self) -> Corrections {
+        let space = self.space;
+        let n = space.x.len();
+        let mut t = Complex::from_f64((), 0.0, 0.0);
+        // Lanes without a sample of their own have the last one.
+        for lane in 0..WIDTH {
+            let sample = lane.min(self.places.len() - 1);
+            t.set_lane(lane, self.places[sample]);
+            for (x, z) in space.x.iter_mut().zip(&self.points[sample * n..]) {
+                x.set_lane(lane, *z);
+            }
+        }
+        let (a, b) = space.homotopy.ends(self.target);
+        let native = |z: Complex64| Complex::<DoubleDoubleLanes<S>>::from_f64((), z.re, z.im);
+        let a: Vec<_> = a.map(native).collect();
+        let b: Vec<_> = b.map(native).collect();
+        space
+            .homotopy
+            .path()
+            .at((), &t, &a, &b, &mut space.p, &mut space.dp);
+        let mut before = f64::INFINITY;
+        let mut rounds = 0;
+        let last = loop {
+            let last = space.step();
+            rounds += 1;
+            let largest = last.iter().copied().fold(0.0, f64::max);
+            let is_number = last.iter().all(|c| c.is_finite());
+            let converges = largest
+                <= if rounds == 1 {
+                    FIRST
+                } else {
+                    CONTRACTION * before
+                };
+            let rests = largest <= SMALL || rounds > 1 && !converges && largest <= ROUNDING;
+            if is_number && rests {
+                break Some(last);
+            }
+            if !(is_number && converges) || rounds == ROUNDS {
+                break None;
+            }
+            before = largest;
+        };
+        Corrections { last, rounds }
+    }
+}
+
+impl<S: CompiledSet> InLanes<'_, S> {
+    /// A Newton step in every lane; the corrections, relative to the largest coordinate.
+    #[inline(always)]
+    fn step(&mut self) -> [f64; WIDTH] {
+        let n = self.x.len();
+        let (program, scratch) = (self.homotopy.program(), &mut self.scratch);
+        program.linearize(&self.x, &self.p, &self.dp, &mut self.matrix, scratch);
+        let mut exchanges = Real::from_f64((), 0.0);
+        eliminate::<DoubleDoubleLanes<S>, 2>(&mut self.matrix, &mut exchanges);
+        let mut largest = [(0.0f64, LEAST_NORM * LEAST_NORM); WIDTH];
+        for (i, x) in self.x.iter_mut().enumerate() {
+            let delta = self.matrix.at(i, n);
+            x.sub(delta);
+            for (lane, (correction, size)) in largest.iter_mut().enumerate() {
+                let here = delta.lane(lane).norm_sqr();
+                if here > *correction || here.is_nan() {
+                    *correction = here;
+                }
+                size.max(&x.lane(lane).norm_sqr());
+            }
+        }
+        largest.map(|(correction, size)| (correction / size).sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::homotopies::HomotopyKind;
+    use crate::path_result::PathResult;
+    use crate::stage::PreparedStage;
+    use crate::start_points::StartPoints;
+    use crate::tracker::outcome::PathOutcome;
+    use crate::tracker::settings::Settings;
+    use crate::work::{Stage, StageId, Work};
+    use cognate_systems::named::reimer;
+
+    fn ends(precision_bits: u32) -> Vec<PathResult> {
+        let stage = Stage {
+            id: StageId(0),
+            system: None,
+            work: Work::Track,
+            homotopy: HomotopyKind::StraightLine {
+                parameters: Vec::new(),
+            },
+            start_points: StartPoints::TotalDegree {
+                degrees: vec![2, 3, 4],
+            },
+            settings: Settings {
+                precision_bits,
+                ..Settings::default()
+            },
+            seed: 3,
+            attempt: 0,
+        };
+        let prepared = PreparedStage::new(&reimer(3).system, &stage, &|_| None).unwrap();
+        prepared.track(0..24, 8)
+    }
+
+    /// What paths to infinity are told by their samples they are told by paths with as many digits.
+    #[test]
+    fn doubles_follow_several_sheets_to_infinity() {
+        let (doubles, precise) = (ends(53), ends(106));
+        let mut several = 0;
+        for (a, b) in doubles.iter().zip(&precise) {
+            assert_eq!(a.outcome, b.outcome);
+            if a.outcome == PathOutcome::Diverging {
+                assert_eq!(a.winding_number, b.winding_number, "{a:?} {b:?}");
+                several += u32::from(a.winding_number > Some(1) && a.precision_bits == 53);
+            }
+        }
+        assert!(several >= 6, "{several}");
+    }
+}
