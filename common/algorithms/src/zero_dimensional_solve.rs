@@ -107,7 +107,8 @@ impl Solve for ZeroDimensionalSolve {
     }
 
     fn renumbered_results(&self) -> Option<Vec<PathResult>> {
-        self.paths.results_with_images()
+        let confirmed = || self.paths.confirmed_results();
+        self.paths.results_with_images().or_else(confirmed)
     }
 
     fn solution_count(&self) -> Option<SolutionCount> {

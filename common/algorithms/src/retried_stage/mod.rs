@@ -258,6 +258,14 @@ impl RetriedStage {
         Some(results.into_owned())
     }
 
+    /// The last results of all paths, where an exact count decided some of them.
+    pub fn confirmed_results(&self) -> Option<Vec<PathResult>> {
+        match self.put_aside {
+            PutAside::Confirmed(_) => Some(self.paths.results().to_vec()),
+            _ => None,
+        }
+    }
+
     /// How its points are laid out.
     pub fn shape(&self) -> &PointShape {
         &self.criteria.shape
@@ -412,11 +420,18 @@ impl RetriedStage {
         assert_eq!(taken, stage.items, "a stage is absorbed as a whole");
         let suspects = self.judge();
         let meet = |record: &TargetRecord| record.crossings.paths().next().is_some();
-        if !self.targets.iter().any(meet)
-            && self.put_aside.confirms(&mut self.paths, &self.criteria)
-        {
-            self.judge();
-            return Phase::Done;
+        if !self.targets.iter().any(meet) {
+            if self.put_aside.confirms(&mut self.paths, &self.criteria) {
+                self.judge();
+                return Phase::Done;
+            }
+            // Endgames of those put aside cost less than what paths that failed take to be tracked again.
+            if self.put_aside.knows_what_is_missing() {
+                let unended = self.put_aside.follow(&self.paths);
+                if !unended.is_empty() {
+                    return Phase::Follows(unended);
+                }
+            }
         }
         if !suspects.is_empty() && stage.attempt < self.max_retries {
             return Phase::Repeats(suspects);

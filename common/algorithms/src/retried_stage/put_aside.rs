@@ -151,6 +151,11 @@ impl PutAside {
         aside.map(|result| result.origin.0).collect()
     }
 
+    /// Whether solutions are missing whose number is known, and no endgame has begun.
+    pub fn knows_what_is_missing(&self) -> bool {
+        matches!(self, Self::First { .. }) && self.simple().is_some()
+    }
+
     /// How many solutions there are, where none is multiple.
     fn simple(&self) -> Option<u64> {
         match self.count()? {

@@ -733,7 +733,9 @@ impl<'a, R: Real> Lockstep<'a, R> {
         let most = self.settings.max_endgame_bits;
         let more =
             most < self.tracking.bits || most == self.tracking.bits && !self.tracking.projective;
-        if more && t.re <= self.settings.endgame_boundary {
+        // Most paths that need very many digits on their way are not those of solutions that are missing.
+        let climbs = most < u32::MAX && self.tracking.bits >= DOUBLE_DOUBLE;
+        if climbs || more && t.re <= self.settings.endgame_boundary {
             return self.put_aside(lane, t);
         }
         let helps = match self.probe {
