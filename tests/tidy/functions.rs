@@ -6,12 +6,7 @@ use super::{File, check, sources};
 const PAGE: usize = 120;
 
 /// Functions that are longer: file, name, reason. One that has become shorter must leave the list.
-const LONGER: [(&str, &str, &str); 10] = [
-    (
-        "coordinator/client/src/output/table.rs",
-        "solution_list",
-        "columns of a table; to be one function per column",
-    ),
+const LONGER: [(&str, &str, &str); 9] = [
     (
         "common/machine_code/src/encoder.rs",
         "evex_is_what_an_assembler_makes_of_it",
