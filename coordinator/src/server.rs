@@ -8,6 +8,7 @@ use crate::api::accounting::Accounting;
 use crate::api::admission::Admission;
 use crate::api::audit_log::AuditLog;
 use crate::api::client_service::ClientService;
+use crate::api::middleware::Before;
 use crate::api::security::{Guard, Security, Tokens};
 use crate::api::worker_service::WorkerService;
 use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
@@ -237,7 +238,7 @@ impl Server {
         }
         let memory_ends = stopping.child_token();
         if let Some(memory) = memory {
-            let services = accounting.layer(admission.layer(routes));
+            let services = Before(accounting).layer(Before(admission).layer(routes));
             tasks.spawn(memory.serve(services, memory_ends.clone()));
         }
         tasks.spawn(report_health(health, Arc::clone(&context)));
@@ -424,12 +425,15 @@ async fn listen(
             .filter(|_| !matches!(listener, Listener::Unix(_))),
         audit: security.audit,
     };
-    let accounting = context.accounting.clone();
+    let layers = tower::ServiceBuilder::new()
+        .layer(Before(guard))
+        .layer(Before(context.accounting.clone()))
+        .layer(Before(admission));
     let served = match listener {
         Listener::Tcp(listener, callers) => {
-            let mut server = server.layer(guard).layer(accounting).layer(admission);
             let incoming = transport::tcp_connections(listener, callers, connections);
             server
+                .layer(layers)
                 .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await
@@ -439,8 +443,8 @@ async fn listen(
             let incoming = transport::tcp_connections(listener, callers, connections);
             match server.tls_config(tls) {
                 Ok(server) => {
-                    let mut server = server.layer(guard).layer(accounting).layer(admission);
                     server
+                        .layer(layers)
                         .add_routes(routes)
                         .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                         .await
@@ -449,9 +453,9 @@ async fn listen(
             }
         }
         Listener::Unix(socket) => {
-            let mut server = server.layer(guard).layer(accounting).layer(admission);
             let incoming = transport::unix_connections(socket, connections);
             server
+                .layer(layers)
                 .add_routes(routes)
                 .serve_with_incoming_shutdown(incoming, stopping.cancelled_owned())
                 .await

@@ -2,9 +2,11 @@
 
 use crate::{Next, Opening, PathAlgorithm};
 use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::work::Stage;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use std::collections::{HashMap, VecDeque};
@@ -32,14 +34,43 @@ pub fn run_locally(
     objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     width: usize,
 ) -> Result<Vec<SolutionSet>, PrepareError> {
+    run(system, algorithm, objects, &mut |system, stage, find| {
+        let prepared = PreparedWork::new(system, stage, find)?;
+        Ok(prepared.run(0..prepared.items(), width))
+    })
+}
+
+/// The same for one of many solves in a family, with as many lanes as are best: what belongs to the family is taken
+/// over from the solves before, and kept for the next. The bits are the same.
+pub fn run_in_family(
+    system: &System,
+    algorithm: &mut dyn PathAlgorithm,
+    objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    family: &PreparedFamily,
+) -> Result<Vec<SolutionSet>, PrepareError> {
+    run(system, algorithm, objects, &mut |system, stage, find| {
+        let prepared = family.prepare(system, stage, find)?;
+        Ok(prepared.run(0..prepared.items(), prepared.preferred_width()))
+    })
+}
+
+/// Finds stored points by their digest.
+type Objects<'a> = &'a dyn Fn(Digest) -> Option<Arc<StoredPoints>>;
+
+/// Solves; `work` does all items of a stage of this system.
+fn run(
+    system: &System,
+    algorithm: &mut dyn PathAlgorithm,
+    objects: Objects<'_>,
+    work: &mut dyn FnMut(&System, &Stage, Objects<'_>) -> Result<Vec<ItemResult>, PrepareError>,
+) -> Result<Vec<SolutionSet>, PrepareError> {
     let mut made: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
     drive::<PrepareError, _>(algorithm, &mut |opening| {
         let objects_of_stage = opening.objects.iter();
         made.extend(objects_of_stage.map(|points| (points.digest(), Arc::clone(points))));
         let find = |wanted: Digest| made.get(&wanted).cloned().or_else(|| objects(wanted));
         let system = opening.system.as_deref().unwrap_or(system);
-        let prepared = PreparedWork::new(system, &opening.stage, &find)?;
-        Ok(prepared.run(0..prepared.items(), width))
+        work(system, &opening.stage, &find)
     })?;
     if let Some(reason) = algorithm.failure() {
         return Err(PrepareError::StartPoints(reason));
@@ -76,7 +107,7 @@ mod tests {
     use crate::synthetic::{first_stage, system};
     use cognate_continuation::homotopies::HomotopyKind;
     use cognate_continuation::path_result::PathResult;
-    use cognate_continuation::work::{Stage, StageId};
+    use cognate_continuation::work::StageId;
     use num_complex::Complex64;
 
     /// Solves x^4 = 2 from 1, then goes on from what it found: to 3, then to 5 from there.

@@ -25,11 +25,19 @@ use std::sync::{Arc, OnceLock};
 /// The homotopy in projective patches, compiled when the first path needs it.
 #[derive(Debug)]
 struct ProjectiveHomotopy {
+    equations: Arc<ProjectiveEquations>,
+    homotopy: OnceLock<Homotopy>,
+}
+
+/// What a homotopy in projective patches is made of; stages with other targets share it.
+#[derive(Debug)]
+struct ProjectiveEquations {
     system: System,
     degrees: Degrees,
     start_system: Option<StartSystem>,
     first_chart: Chart,
-    homotopy: OnceLock<Homotopy>,
+    /// The homotopy with the targets of the stage that needed it first.
+    compiled: OnceLock<Homotopy>,
 }
 
 /// A stage, ready to track any of its items, in any order, any number of times, with the same bits.
@@ -305,10 +313,13 @@ impl PreparedStage {
             stage.seed,
         );
         let projective = checked.affine.then(|| ProjectiveHomotopy {
-            system: checked.system.into_owned(),
-            degrees: checked.degrees,
-            start_system: checked.start_system,
-            first_chart: checked.first_chart,
+            equations: Arc::new(ProjectiveEquations {
+                system: checked.system.into_owned(),
+                degrees: checked.degrees,
+                start_system: checked.start_system,
+                first_chart: checked.first_chart,
+                compiled: OnceLock::new(),
+            }),
             homotopy: OnceLock::new(),
         });
         let exchange = stage.start_points.exchange();
@@ -321,6 +332,50 @@ impl PreparedStage {
             stage: stage.clone(),
             starts: checked.starts,
             items: checked.items,
+        })
+    }
+
+    /// What [`Self::new`] would make of this stage of the same system and objects, without compiling; `None` where
+    /// more than the targets of a parameter homotopy is different, or what is compiled depends on them.
+    pub fn with_targets(&self, stage: &Stage) -> Option<Self> {
+        let (own, other) = (&self.stage.homotopy, &stage.homotopy);
+        let (
+            HomotopyKind::Parameter { start, .. },
+            HomotopyKind::Parameter {
+                start: other_start,
+                targets,
+            },
+        ) = (own, other)
+        else {
+            return None;
+        };
+        let same_otherwise = start == other_start
+            && self.stage.system == stage.system
+            && self.stage.work == stage.work
+            && self.stage.start_points == stage.start_points
+            && self.stage.settings == stage.settings
+            && (self.stage.seed, self.stage.attempt) == (stage.seed, stage.attempt);
+        let fit = !targets.is_empty() && targets.iter().all(|target| target.len() == start.len());
+        let starts_are_selected = matches!(stage.start_points, StartPoints::Selected { .. });
+        if !same_otherwise || !fit || starts_are_selected || self.asked.is_some() {
+            return None;
+        }
+        let Points::Stored(points) = &self.points else {
+            return None;
+        };
+        let projective = self.projective.as_ref();
+        Some(Self {
+            homotopy: self.homotopy.with_targets(targets)?,
+            projective: projective.map(|projective| ProjectiveHomotopy {
+                equations: Arc::clone(&projective.equations),
+                homotopy: OnceLock::new(),
+            }),
+            asked: None,
+            points: Points::Stored(Arc::clone(points)),
+            boundary: self.boundary.clone(),
+            stage: stage.clone(),
+            starts: self.starts,
+            items: stage.items()?,
         })
     }
 
@@ -354,19 +409,32 @@ impl PreparedStage {
     pub(crate) fn projective_homotopy(&self) -> Option<&Homotopy> {
         let projective = self.projective.as_ref()?;
         Some(projective.homotopy.get_or_init(|| {
-            let chart = Chart::new(&projective.system, self.stage.seed, self.stage.attempt);
-            let begins = sample(&self.points, &chart);
-            Homotopy::new(
-                &projective.system,
-                &projective.degrees,
-                &self.stage.homotopy,
-                projective.start_system.as_ref(),
-                chart,
-                &projective.first_chart,
-                &begins,
-                self.stage.seed,
-            )
+            let equations = &projective.equations;
+            let HomotopyKind::Parameter { targets, .. } = &self.stage.homotopy else {
+                return self.in_patches(equations);
+            };
+            let compiled = equations
+                .compiled
+                .get_or_init(|| self.in_patches(equations));
+            let with_own = compiled.with_targets(targets);
+            with_own.unwrap_or_else(|| self.in_patches(equations))
         }))
+    }
+
+    /// Compiles the homotopy in projective patches.
+    fn in_patches(&self, equations: &ProjectiveEquations) -> Homotopy {
+        let chart = Chart::new(&equations.system, self.stage.seed, self.stage.attempt);
+        let begins = sample(&self.points, &chart);
+        Homotopy::new(
+            &equations.system,
+            &equations.degrees,
+            &self.stage.homotopy,
+            equations.start_system.as_ref(),
+            chart,
+            &equations.first_chart,
+            &begins,
+            self.stage.seed,
+        )
     }
 
     /// Whether paths may leave the chart where they begin.

@@ -6,13 +6,12 @@
 use super::audit_log::{AuditLog, Entry};
 use super::caller::Caller;
 use super::error::code_name;
+use super::middleware::{Answer, Inner, Middleware};
 use super::quota::{CallPermit, Quota};
 use crate::histogram::Histogram;
 use bytes::Bytes;
-use futures::future::BoxFuture;
 use http_body::{Frame, SizeHint};
 use std::collections::BTreeMap;
-use std::convert::Infallible;
 use std::fmt::Write;
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,7 +19,6 @@ use std::task::{Context, Poll};
 use std::time::Instant;
 use tonic::body::Body;
 use tonic::{Code, Status};
-use tower::{Layer, Service};
 
 /// Methods that are counted by name; all others together, so that no caller makes new ones.
 const METHODS: [&str; 22] = [
@@ -86,58 +84,23 @@ pub struct Accounting {
     pub audit: AuditLog,
 }
 
-impl<S> Layer<S> for Accounting {
-    type Service = Accounted<S>;
-
-    fn layer(&self, inner: S) -> Accounted<S> {
-        Accounted {
-            accounting: self.clone(),
-            inner,
-        }
-    }
-}
-
-/// Services whose calls are counted.
-#[derive(Clone, Debug)]
-pub struct Accounted<S> {
-    accounting: Accounting,
-    inner: S,
-}
-
-impl<S> Service<http::Request<Body>> for Accounted<S>
-where
-    S: Service<http::Request<Body>, Response = http::Response<Body>, Error = Infallible>,
-    S::Future: Send + 'static,
-{
-    type Response = http::Response<Body>;
-    type Error = Infallible;
-    type Future = BoxFuture<'static, Result<Self::Response, Infallible>>;
-
-    fn poll_ready(&mut self, cx: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
-        self.inner.poll_ready(cx)
-    }
-
-    fn call(&mut self, request: http::Request<Body>) -> Self::Future {
+impl Middleware for Accounting {
+    fn answer<S: Inner>(&self, request: http::Request<Body>, mut inner: S) -> Answer {
         let method = method(request.uri().path());
-        let Accounting {
-            measures,
-            quota,
-            audit,
-        } = self.accounting.clone();
         let permit = match request.extensions().get::<Caller>() {
             None => Ok(None),
-            Some(caller) => quota.call(caller).inspect_err(|status| {
+            Some(caller) => self.quota.call(caller).inspect_err(|status| {
                 let entry = Entry {
                     call: method,
                     job: None,
                     code: status.code(),
                     why: Some(status.message()),
                 };
-                audit.record(caller, entry);
+                self.audit.record(caller, entry);
             }),
         };
         let mut running = RunningCall {
-            measures,
+            measures: Arc::clone(&self.measures),
             method,
             since: Instant::now(),
             // Unless something else is heard: whoever asked is gone.
@@ -151,7 +114,7 @@ where
             }
             Ok(permit) => {
                 running.permit = permit;
-                let answer = self.inner.call(request);
+                let answer = inner.call(request);
                 Box::pin(async move {
                     let response = answer.await?;
                     if let Some(code) = code_of(response.headers()) {
@@ -232,35 +195,20 @@ impl http_body::Body for FollowedBody {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::api::middleware::{Before, Behind};
     use cognate_worker::transport::tokens::Limits;
     use http_body_util::BodyExt;
-    use tower::ServiceExt;
+    use std::convert::Infallible;
+    use tower::{Layer, ServiceExt};
 
-    async fn ask(service: &Accounted<impl TestService>, caller: &Caller) -> http::Response<Body> {
+    async fn ask(
+        service: &Behind<Accounting, impl Inner>,
+        caller: &Caller,
+    ) -> http::Response<Body> {
         let mut request = http::Request::new(Body::empty());
         *request.uri_mut() = "/cognate.v1.ClientApi/Explain".parse().unwrap();
         request.extensions_mut().insert(caller.clone());
         service.clone().oneshot(request).await.unwrap()
-    }
-
-    /// What a service must be to be counted here.
-    trait TestService:
-        Service<
-            http::Request<Body>,
-            Response = http::Response<Body>,
-            Error = Infallible,
-            Future: Send + 'static,
-        > + Clone
-    {
-    }
-    impl<T> TestService for T where
-        T: Service<
-                http::Request<Body>,
-                Response = http::Response<Body>,
-                Error = Infallible,
-                Future: Send + 'static,
-            > + Clone
-    {
     }
 
     #[tokio::test]
@@ -272,7 +220,7 @@ mod tests {
             let body = http_body_util::Full::new(Bytes::from_static(b"x"));
             Ok::<_, Infallible>(refused.map(|_| Body::new(body)))
         });
-        let service = accounting.layer(refuse);
+        let service = Before(accounting.clone()).layer(refuse);
         let caller = Caller {
             limits: Limits {
                 calls: Some(1),

@@ -4,20 +4,17 @@
 //! will take: so no call, and not all of them together, can take more than is set aside for calls. What
 //! is malformed is refused here by its place.
 
+use super::middleware::{Answer, Inner, Middleware};
 use bytes::{Bytes, BytesMut};
 use cognate_protocol::decoded_size::decoded_size;
 use cognate_protocol::limits::MESSAGE_BYTES;
-use futures::future::BoxFuture;
 use http_body_util::{BodyExt, Full};
-use std::convert::Infallible;
 use std::sync::Arc;
-use std::task::{Context, Poll};
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::timeout;
 use tonic::body::Body;
 use tonic::{Code, Status};
-use tower::{Layer, Service};
 
 /// What calls may take in all. Memory of a message that is decoded is an estimate from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,45 +164,9 @@ impl Admission {
     }
 }
 
-impl<S> Layer<S> for Admission {
-    type Service = Admitting<S>;
-
-    fn layer(&self, inner: S) -> Admitting<S> {
-        Admitting {
-            admission: self.clone(),
-            inner,
-        }
-    }
-}
-
-/// Services behind limits.
-#[derive(Clone, Debug)]
-pub struct Admitting<S> {
-    admission: Admission,
-    inner: S,
-}
-
-impl<S> Service<http::Request<Body>> for Admitting<S>
-where
-    S: Service<http::Request<Body>, Response = http::Response<Body>, Error = Infallible>
-        + Clone
-        + Send
-        + 'static,
-    S::Future: Send,
-{
-    type Response = http::Response<Body>;
-    type Error = Infallible;
-    type Future = BoxFuture<'static, Result<Self::Response, Infallible>>;
-
-    fn poll_ready(&mut self, cx: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
-        self.inner.poll_ready(cx)
-    }
-
-    fn call(&mut self, request: http::Request<Body>) -> Self::Future {
-        // The one that is ready answers; its clone is for the next call.
-        let clone = self.inner.clone();
-        let mut inner = std::mem::replace(&mut self.inner, clone);
-        let admission = self.admission.clone();
+impl Middleware for Admission {
+    fn answer<S: Inner>(&self, request: http::Request<Body>, mut inner: S) -> Answer {
+        let admission = self.clone();
         Box::pin(async move {
             let (parts, body) = request.into_parts();
             let Some((message, most)) = admission.of_path(parts.uri.path()) else {

@@ -2,20 +2,18 @@
 
 use super::audit_log::{AuditLog, Entry};
 use super::caller::Caller;
+use super::middleware::{Answer, Inner, Middleware};
 use super::visible::visible;
 use crate::ledger::identity::{Credential, Tenant};
 use cognate_worker::transport::tokens::{CredentialError, Limits, Role, read_tokens};
-use futures::future::BoxFuture;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
-use std::task::{Context, Poll};
 use std::time::Duration;
+use tonic::Status;
 use tonic::body::Body;
 use tonic::transport::server::{TcpConnectInfo, TlsConnectInfo};
 use tonic::transport::{Certificate, Identity, ServerTlsConfig};
-use tonic::{Status, body};
-use tower::{Layer, Service};
 
 /// What a coordinator asks of whoever calls from a network.
 #[derive(Clone, Debug, Default)]
@@ -250,41 +248,8 @@ pub struct Guard {
     pub audit: AuditLog,
 }
 
-impl<S> Layer<S> for Guard {
-    type Service = Guarded<S>;
-
-    fn layer(&self, inner: S) -> Guarded<S> {
-        Guarded {
-            tokens: self.tokens.clone(),
-            audit: self.audit.clone(),
-            inner,
-        }
-    }
-}
-
-/// Services behind a guard.
-#[derive(Clone, Debug)]
-pub struct Guarded<S> {
-    tokens: Option<Tokens>,
-    audit: AuditLog,
-    inner: S,
-}
-
-impl<S, B> Service<http::Request<B>> for Guarded<S>
-where
-    S: Service<http::Request<B>, Response = http::Response<body::Body>>,
-    S::Response: Send,
-{
-    type Response = S::Response;
-    type Error = S::Error;
-    type Future =
-        futures::future::Either<BoxFuture<'static, Result<S::Response, S::Error>>, S::Future>;
-
-    fn poll_ready(&mut self, cx: &mut Context<'_>) -> Poll<Result<(), S::Error>> {
-        self.inner.poll_ready(cx)
-    }
-
-    fn call(&mut self, mut request: http::Request<B>) -> Self::Future {
+impl Middleware for Guard {
+    fn answer<S: Inner>(&self, mut request: http::Request<Body>, mut inner: S) -> Answer {
         let peer = peer(&request);
         let caller = match &self.tokens {
             Some(tokens) => tokens.caller(request.uri().path(), request.headers(), &peer),
@@ -303,15 +268,14 @@ where
                 };
                 let stranger = Caller::untold("unknown", peer);
                 self.audit.record(&stranger, entry);
-                let refusal = async move {
+                Box::pin(async move {
                     tokio::time::sleep(WRONG_TOKEN).await;
-                    Ok(status.into_http::<Body>())
-                };
-                futures::future::Either::Left(Box::pin(refusal))
+                    Ok(status.into_http())
+                })
             }
             Ok(caller) => {
                 request.extensions_mut().insert(caller);
-                futures::future::Either::Right(self.inner.call(request))
+                Box::pin(inner.call(request))
             }
         }
     }

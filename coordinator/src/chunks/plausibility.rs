@@ -4,7 +4,6 @@
 //! thousandth of what the path cost. Nothing is decided by it but whether somebody else does the chunk,
 //! too: the bounds are wide, and an end that cannot be looked at counts as plausible.
 
-use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
@@ -41,20 +40,12 @@ impl EndCheck {
         if stage.work != Work::Track || !stage.homotopy.ends_at_the_system() || !square {
             return None;
         }
-        let mut parameters = match &stage.homotopy {
-            HomotopyKind::StraightLine { parameters }
-            | HomotopyKind::Generic { parameters }
-            | HomotopyKind::PathVariable { parameters } => parameters.clone(),
-            HomotopyKind::Parameter { targets, .. } => match targets.as_slice() {
-                [one] => one.clone(),
-                _ => return None,
-            },
-            _ => return None,
-        };
-        parameters.resize(system.parameters.len(), Complex64::ZERO);
-        if let Some(t) = system.path_variable {
-            parameters[t] = Complex64::ZERO;
+        if stage.homotopy.parameter_sets() != 1 {
+            return None;
         }
+        let ends = stage.homotopy.end_parameters(0, system.path_variable)?;
+        let mut parameters = ends.into_owned();
+        parameters.resize(system.parameters.len(), Complex64::ZERO);
         let coordinates = system.groups.iter();
         let coordinates =
             coordinates.map(|group| group.variables.len() + usize::from(!group.homogeneous));

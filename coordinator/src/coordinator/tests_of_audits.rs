@@ -2,7 +2,7 @@
 //! others: the answer is the undisturbed one, and every wrong one is named.
 
 use super::simulation::*;
-use crate::ledger::rows::JobState;
+use crate::ledger::rows::{JobRow, JobState};
 
 /// A cluster in which so many chunks of a hundred are audited; workers are known to it before there is work.
 async fn audited(percent: u32, workers: usize, seed: u64) -> Cluster {
@@ -17,6 +17,25 @@ async fn audited(percent: u32, workers: usize, seed: u64) -> Cluster {
         cluster.pull(0, worker).await;
     }
     cluster
+}
+
+/// With so many workers at work the job ends solved, as it does undisturbed.
+async fn solves_as(cluster: &mut Cluster, workers: usize, undisturbed: &JobRow, seed: u64) {
+    for _ in 0..4000 {
+        cluster.drive(0).await;
+        for worker in 0..workers {
+            cluster.pull(0, worker).await;
+            cluster.report(0, worker).await;
+        }
+        cluster.clock.advance_ms(100);
+        cluster.expire(0).await;
+        if cluster.row().await.state.has_ended() {
+            break;
+        }
+    }
+    let row = cluster.row().await;
+    assert_eq!(row.state, JobState::Solved, "seed {seed}: {:?}", row.reason);
+    assert_eq!(row.solutions, undisturbed.solutions, "seed {seed}");
 }
 
 #[tokio::test]
@@ -49,21 +68,7 @@ async fn where_two_differ_the_coordinator_decides() {
         cluster.break_worker(seed as usize % 2, Fault::LastBit);
         cluster.submit(&problem()).await;
         // Nobody dies here: neither can be outvoted by a third.
-        for _ in 0..4000 {
-            cluster.drive(0).await;
-            for worker in 0..2 {
-                cluster.pull(0, worker).await;
-                cluster.report(0, worker).await;
-            }
-            cluster.clock.advance_ms(100);
-            cluster.expire(0).await;
-            if cluster.row().await.state.has_ended() {
-                break;
-            }
-        }
-        let row = cluster.row().await;
-        assert_eq!(row.state, JobState::Solved, "seed {seed}: {:?}", row.reason);
-        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+        solves_as(&mut cluster, 2, &reference, seed).await;
         let workers = cluster.ledger.workers(100).await.unwrap();
         found += workers.iter().filter(|worker| worker.evicted).count();
     }
@@ -84,21 +89,7 @@ async fn many_names_of_one_credential_are_one_voice() {
             cluster.pull(0, worker).await;
         }
         cluster.submit(&problem()).await;
-        for _ in 0..4000 {
-            cluster.drive(0).await;
-            for worker in 0..4 {
-                cluster.pull(0, worker).await;
-                cluster.report(0, worker).await;
-            }
-            cluster.clock.advance_ms(100);
-            cluster.expire(0).await;
-            if cluster.row().await.state.has_ended() {
-                break;
-            }
-        }
-        let row = cluster.row().await;
-        assert_eq!(row.state, JobState::Solved, "seed {seed}: {:?}", row.reason);
-        assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+        solves_as(&mut cluster, 4, &reference, seed).await;
         for worker in cluster.ledger.workers(100).await.unwrap() {
             let honest = worker.says.credential.0 != "evil";
             assert!(!(honest && worker.evicted), "seed {seed}: {worker:?}");

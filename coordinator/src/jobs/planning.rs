@@ -301,3 +301,19 @@ pub fn first_chunks(items: u64) -> Vec<ItemRange> {
         vec![whole]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A job that runs while the program is replaced by one of another version fails with this reason.
+    #[test]
+    fn a_plan_of_another_version_is_refused_by_its_name() {
+        for bytes in [&[VERSION + 1, 0][..], &[VERSION - 1, 0], &[]] {
+            let refused = Planned::from_bytes(bytes).err();
+            let reason = refused.map(|error| error.to_string());
+            let expected = "the plan of the job cannot be read: it is of another version";
+            assert_eq!(reason.as_deref(), Some(expected), "{bytes:?}");
+        }
+    }
+}

@@ -1,7 +1,8 @@
 //! Caller: the service for clients, called in this process with the token that a browser has shown.
 
-use crate::api::admission::Admitting;
-use crate::api::security::Guarded;
+use crate::api::admission::Admission;
+use crate::api::middleware::Behind;
+use crate::api::security::Guard;
 use cognate_protocol::limits::MESSAGE_BYTES;
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use tonic::metadata::{Ascii, MetadataValue};
@@ -10,7 +11,7 @@ use tonic::service::{Interceptor, Routes};
 use tonic::{Request, Status};
 
 /// All services, behind their guard and their limits.
-pub type Services = Guarded<Admitting<Routes>>;
+pub type Services = Behind<Guard, Behind<Admission, Routes>>;
 
 /// A client of the service in this process.
 pub type Calls = ClientApiClient<InterceptedService<Services, Shown>>;

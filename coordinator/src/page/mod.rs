@@ -11,6 +11,7 @@ mod points;
 mod request;
 
 use crate::api::admission::Admission;
+use crate::api::middleware::Before;
 use crate::api::security::{Guard, Security};
 use crate::config::ListenAddress;
 use crate::transport::introduction::{ConnectionLimits, Connections};
@@ -98,7 +99,7 @@ impl PageListener {
             tokens,
             audit: security.audit,
         };
-        let service = guard.layer(admission.layer(routes));
+        let service = Before(guard).layer(Before(admission).layer(routes));
         let access = Access::new(&self.host, self.asks_for_tokens);
         let page = Arc::new(Page::new(access, service, stopping.clone()));
         let service = tower::service_fn(move |request| {

@@ -3,8 +3,9 @@
 //! Behind it are the same services as behind the sockets. A thread sleeps until a
 //! worker rings; each call is a task, called off when its worker no longer waits.
 
-use crate::api::accounting::Accounted;
-use crate::api::admission::Admitting;
+use crate::api::accounting::Accounting;
+use crate::api::admission::Admission;
+use crate::api::middleware::Behind;
 use bytes::Bytes;
 use cognate_protocol::v1;
 use cognate_worker::transport::shared_memory::frame::{Request, Response};
@@ -43,7 +44,7 @@ const LEAVE: Duration = Duration::from_secs(1);
 const RESPONSES: usize = 64;
 
 /// What answers calls: the services behind the limits of calls, counted.
-type Services = Accounted<Admitting<Routes>>;
+type Services = Behind<Accounting, Behind<Admission, Routes>>;
 type Active = ActiveRequest<Ipc, [u8], (), [u8], ()>;
 
 /// A listener in shared memory that is open.

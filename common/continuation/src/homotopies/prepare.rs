@@ -43,8 +43,8 @@ pub(crate) enum StartSystem {
     Generic(GenericSystem),
 }
 
-/// A homotopy ready to be tracked: every one is a program F(z; p(t)).
-#[derive(Debug)]
+/// A homotopy ready to be tracked: every one is a program F(z; p(t)). Cloning shares the machine code.
+#[derive(Clone, Debug)]
 pub struct Homotopy {
     program: Interpreter,
     evaluator: Evaluator,
@@ -55,6 +55,8 @@ pub struct Homotopy {
     start: Vec<Complex64>,
     /// Parameters of the program at t = 0, for each target.
     targets: Vec<Vec<Complex64>>,
+    /// Whether targets are nothing but numbers beside the program: it is made from where paths begin.
+    targets_are_free: bool,
     /// Where paths begin in mixed cells: a target is the path itself.
     toric: Option<Arc<ToricStart>>,
     /// Degree of each row of the program in each group; none where residuals are taken as they
@@ -597,7 +599,16 @@ impl Homotopy {
             row_degrees,
             start: ends.start,
             targets: ends.targets,
+            targets_are_free: matches!(kind, HomotopyKind::Parameter { .. }) && !begins.is_empty(),
         }
+    }
+
+    /// The same with other targets, as [`Self::new`] would make it; `None` where the program depends on them.
+    pub(crate) fn with_targets(&self, targets: &[Vec<Complex64>]) -> Option<Self> {
+        self.targets_are_free.then(|| Self {
+            targets: targets.to_vec(),
+            ..self.clone()
+        })
     }
 
     /// The same program, as machine code where this machine allows it.

@@ -184,6 +184,17 @@ impl<R: Real> Batch<R> {
         self.here().iter().map(|z| Digits::of(z, lane)).collect()
     }
 
+    /// In these lanes, the points where the paths are instead of those that a step has led to.
+    #[inline(always)]
+    pub fn stay(&self, x: &mut [Complex<R>], tangent: &mut [Complex<R>], stays: R::Mask) {
+        if stays.any() {
+            for i in 0..x.len() {
+                x[i].select(stays, &self.x[self.newest][i]);
+                tangent[i].select(stays, &self.tangent[self.newest][i]);
+            }
+        }
+    }
+
     /// Takes the points that a step has led to, `moved` lanes at `t`; in lanes that did not move their coordinates are
     /// those where the lane is.
     #[inline(always)]

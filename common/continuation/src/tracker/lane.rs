@@ -1,6 +1,7 @@
 //! Lane: what one path knows of itself between steps.
 
 use super::digits::Digits;
+use super::limits::{CONTRACTION, Limits};
 use crate::endgames::cauchy::Cauchy;
 use crate::path_result::BoundaryKey;
 use num_complex::Complex64;
@@ -46,6 +47,35 @@ impl Phase {
             Self::Turning => "turn",
             Self::Sampling => "sample",
         }
+    }
+}
+
+/// What one step showed in one lane.
+pub(super) struct Step {
+    pub accepted: bool,
+    /// Whether it was accepted and ends at the lane's target.
+    pub arrived: bool,
+    /// Whether its length is 0.
+    pub refines: bool,
+    /// First and second Newton correction, relative.
+    pub predictor_error: f64,
+    pub correction: f64,
+    /// The last two.
+    pub last: [f64; 2],
+    /// Largest coordinate of the point that was tried.
+    pub size: f64,
+}
+
+impl Step {
+    /// What one more Newton correction would be, by quadratic convergence: with c_1 and c_2 the last
+    /// two, c_3 = c_2 (c_2 / c_1)^2.
+    pub fn left(&self) -> f64 {
+        let [before, last] = self.last;
+        if last == 0.0 {
+            return 0.0;
+        }
+        let ratio = last / before;
+        last * ratio * ratio
     }
 }
 
@@ -117,6 +147,28 @@ impl Lane {
         self.last_rejected = f64::INFINITY;
         (self.first_turn, self.last_turn) = (None, None);
         self.valuations = None;
+    }
+
+    /// Counts a step, of this many Newton rounds and this effort.
+    pub(super) fn count(&mut self, step: &Step, rounds: usize, effort: u64, limits: &Limits) {
+        self.evaluations += rounds as u32;
+        self.effort += effort;
+        if step.refines {
+            return;
+        }
+        if step.accepted {
+            self.steps += 1;
+            self.steps_here += 1;
+            (self.starved, self.last_rejected) = (0, f64::INFINITY);
+            return;
+        }
+        self.rejections += 1;
+        // A correction that neither Newton's method nor a shorter step makes smaller is noise.
+        let stuck = step.predictor_error <= limits.noise
+            && step.correction > CONTRACTION * step.predictor_error
+            && step.correction > 0.3 * self.last_rejected;
+        self.starved += u32::from(stuck);
+        self.last_rejected = step.correction;
     }
 
     /// Whether the difficult place that sent the path up lies behind it: each time it was sent

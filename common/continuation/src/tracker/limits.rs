@@ -2,11 +2,19 @@
 
 use super::settings::Settings;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, unit_roundoff};
+use cognate_numeric::scalar::Real;
 
 /// Newton rounds of a step on the higher rungs; in doubles two. The tangent is that of the point before
 /// the last, and where the Jacobian is nearly singular, its error times the next step is the next
 /// prediction's error.
 pub(super) const MOST_ROUNDS: usize = 3;
+/// A step is accepted when the second Newton correction is at most this part of the first.
+pub(super) const CONTRACTION: f64 = 0.1;
+/// An endgame that does not settle is not tried again above this many bits: what then remains
+/// is not for want of digits.
+pub(super) const ENDGAME_BITS: u32 = 212;
+/// A step in multiple precision counts as so many in doubles for each two doubles' digits.
+const MULTIPLE_PRECISION: u32 = 4;
 /// A refinement is accepted when its last correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
 
@@ -56,6 +64,22 @@ impl Limits {
 /// Newton rounds of a step.
 pub(super) fn rounds(bits: u32) -> usize {
     if bits > DOUBLE { MOST_ROUNDS } else { 2 }
+}
+
+/// A step of this precision, as so many in doubles: numbers of more digits than two doubles are tracked one at a time,
+/// by functions of a library.
+pub(super) fn effort(bits: u32) -> u64 {
+    match bits {
+        ..=DOUBLE_DOUBLE => 1,
+        _ => u64::from(MULTIPLE_PRECISION * (bits / DOUBLE_DOUBLE)),
+    }
+}
+
+/// The same control number in every lane. A function, since a closure that is called in several places would not be
+/// compiled for the instruction set of its caller.
+#[inline(always)]
+pub(super) fn control<R: Real>(value: f64) -> R::Control {
+    R::Control::from_f64((), value)
 }
 
 /// The unit roundoff as a part of that of doubles.

@@ -1,22 +1,30 @@
 //! How one path is followed: settings, state, steps, outcome.
 //!
-//! [`lockstep`] follows many paths at once, always in the same phase of a step;
-//! [`lane`] is what one of them knows of itself between steps.
+//! [`lockstep`] follows many paths at once, always in the same phase of a step: [`attempt`], [`prediction`],
+//! [`corrector`], [`acceptance`], [`step_length`] are what it does with all of them; [`lane`] is what one of them knows of itself
+//! between steps, [`decisions`], [`turns`], [`handoffs`] and [`ends`] are how it goes on.
 
+mod acceptance;
+mod attempt;
 mod batch;
 pub(crate) mod boundary;
 mod contexts;
+mod corrector;
+mod decisions;
 mod digits;
 mod ends;
 mod far_out;
+mod handoffs;
 pub(crate) mod lane;
 mod limits;
 pub mod lockstep;
 pub mod observer;
 pub mod outcome;
 mod precise_samples;
+mod prediction;
 mod scaled_newton;
 pub mod settings;
+mod step_length;
 mod taylor_probe;
 mod tracking_context;
 mod turns;

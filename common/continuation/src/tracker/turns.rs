@@ -6,8 +6,9 @@
 use super::digits::Digits;
 use super::ends::End;
 use super::far_out;
-use super::lane::Phase;
-use super::lockstep::{ENDGAME_BITS, Lockstep, Step};
+use super::lane::{Phase, Step};
+use super::limits::ENDGAME_BITS;
+use super::lockstep::Lockstep;
 use super::outcome::{Failure, PathOutcome};
 use super::precise_samples::newton_at_samples;
 use super::scaled_newton;

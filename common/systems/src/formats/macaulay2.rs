@@ -65,15 +65,7 @@ pub fn is(text: &str) -> bool {
 
 /// Reads the first ideal, or the first list in braces, of a text.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    let mut settings = FileSettings::default();
-    let mut warnings = Vec::new();
-    let system = system(source, &mut settings, &mut warnings);
-    Ok(Problem {
-        system: system.map_err(|fault| source.error(fault))?,
-        settings,
-        format: Format::Macaulay2,
-        warnings,
-    })
+    list::problem(source, Format::Macaulay2, system)
 }
 
 fn system(
@@ -135,11 +127,7 @@ fn system(
 }
 
 fn missing(text: &str, expected: &str) -> Fault {
-    let end = Span {
-        start: text.len(),
-        end: text.len(),
-    };
-    Fault::expected(end, expected, "none")
+    Fault::expected(list::end_of(text), expected, "none")
 }
 
 /// Names, and ranges of them such as `x_1..x_4` or `a..d`; options such as `MonomialOrder => Lex` are left out.

@@ -5,7 +5,7 @@
 
 use super::polynomial_list::{self as list, Declared, Words};
 use super::sharing::WriteError;
-use super::{FileSettings, Format, FormatError, Problem, Source};
+use super::{FileSettings, Format, FormatError, Problem, Source, Warning};
 use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Span};
 use crate::expression::parse::Dialect;
@@ -31,18 +31,15 @@ pub fn is(text: &str) -> bool {
 
 /// Reads the list of polynomials or equations of a text.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    let mut settings = FileSettings::default();
-    let system = system(source.text, &mut settings);
-    Ok(Problem {
-        system: system.map_err(|fault| source.error(fault))?,
-        settings,
-        format: Format::Maple,
-        warnings: Vec::new(),
-    })
+    list::problem(source, Format::Maple, system)
 }
 
-fn system(text: &str, settings: &mut FileSettings) -> Result<System, Fault> {
-    let text = &clean(text);
+fn system(
+    source: &Source<'_>,
+    settings: &mut FileSettings,
+    _: &mut Vec<Warning>,
+) -> Result<System, Fault> {
+    let text = &clean(source.text);
     let mut declared = Declared::default();
     let mut found: Option<Span> = None;
     let mut from = 0;
@@ -74,10 +71,7 @@ fn system(text: &str, settings: &mut FileSettings) -> Result<System, Fault> {
             }
         }
     }
-    let end = Span {
-        start: text.len(),
-        end: text.len(),
-    };
+    let end = list::end_of(text);
     let list = found.ok_or_else(|| Fault::expected(end, "a list of polynomials", "none"))?;
     list::system(text, list, &declared, WORDS.dialect, settings)
 }

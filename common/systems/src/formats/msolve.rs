@@ -2,7 +2,7 @@
 
 use super::polynomial_list::{self as list, Declared, Words};
 use super::sharing::WriteError;
-use super::{FileSettings, Format, FormatError, Problem, Source};
+use super::{FileSettings, Format, FormatError, Problem, Source, Warning};
 use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Span};
 use crate::expression::parse::Dialect;
@@ -52,21 +52,16 @@ pub fn is(text: &str) -> bool {
 
 /// Reads a system.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    let mut settings = FileSettings::default();
-    let system = system(source.text, &mut settings);
-    Ok(Problem {
-        system: system.map_err(|fault| source.error(fault))?,
-        settings,
-        format: Format::Msolve,
-        warnings: Vec::new(),
-    })
+    list::problem(source, Format::Msolve, system)
 }
 
-fn system(text: &str, settings: &mut FileSettings) -> Result<System, Fault> {
-    let end = Span {
-        start: text.len(),
-        end: text.len(),
-    };
+fn system(
+    source: &Source<'_>,
+    settings: &mut FileSettings,
+    _: &mut Vec<Warning>,
+) -> Result<System, Fault> {
+    let text = source.text;
+    let end = list::end_of(text);
     let lines = head(text);
     let (first, second, start) =
         lines.ok_or_else(|| Fault::expected(end, "the characteristic, 0", "none"))?;

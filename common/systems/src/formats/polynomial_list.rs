@@ -3,7 +3,7 @@
 //! Each notation blanks its comments, finds its declarations and the list, and hands these over with their places.
 
 use super::sharing::{self, WriteError};
-use super::{FileSettings, Format, finish};
+use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish};
 use crate::expression::build::{Builder, Use};
 use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Problem as What, Span};
@@ -25,6 +25,34 @@ pub(super) struct Declared {
     pub parameters: Vec<Placed>,
     /// Whatever is not a variable is a parameter.
     pub others_are_parameters: bool,
+}
+
+/// How a notation finds the system of a text.
+type ReadSystem = fn(&Source<'_>, &mut FileSettings, &mut Vec<Warning>) -> Result<System, Fault>;
+
+/// The problem of a text in this notation.
+pub(super) fn problem(
+    source: &Source<'_>,
+    format: Format,
+    system: ReadSystem,
+) -> Result<Problem, FormatError> {
+    let mut settings = FileSettings::default();
+    let mut warnings = Vec::new();
+    let system = system(source, &mut settings, &mut warnings);
+    Ok(Problem {
+        system: system.map_err(|fault| source.error(fault))?,
+        settings,
+        format,
+        warnings,
+    })
+}
+
+/// The place after a text.
+pub(super) fn end_of(text: &str) -> Span {
+    Span {
+        start: text.len(),
+        end: text.len(),
+    }
 }
 
 /// The text with blanks in the place of comments, so that places stay what they are: from a mark to the end of its
@@ -88,13 +116,9 @@ pub(super) fn between(text: &str, open: usize) -> Result<Span, Fault> {
             _ => {}
         }
     }
-    let end = Span {
-        start: text.len(),
-        end: text.len(),
-    };
     let closing = waiting.pop().unwrap_or(')');
     Err(Fault::expected(
-        end,
+        end_of(text),
         format!("`{closing}`"),
         "the end of the text",
     ))

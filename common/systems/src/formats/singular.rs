@@ -59,15 +59,7 @@ pub fn is(text: &str) -> bool {
 
 /// Reads the first ideal of a text.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    let mut settings = FileSettings::default();
-    let mut warnings = Vec::new();
-    let system = system(source, &mut settings, &mut warnings);
-    Ok(Problem {
-        system: system.map_err(|fault| source.error(fault))?,
-        settings,
-        format: Format::Singular,
-        warnings,
-    })
+    list::problem(source, Format::Singular, system)
 }
 
 fn missing(text: &str, at: usize, expected: &str) -> Fault {

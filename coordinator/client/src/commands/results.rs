@@ -7,7 +7,7 @@ use crate::error::{ClientError, Exit};
 use crate::output::certificates::Certificates;
 use crate::output::files::Folder;
 use crate::output::paths::Paths;
-use crate::output::table::SOLUTIONS_SHOWN;
+use crate::output::solution_list::SOLUTIONS_SHOWN;
 use crate::output::text::{Look, counted};
 use crate::output::{self, answers, decomposition, json, summary, table};
 use cognate_protocol::v1;

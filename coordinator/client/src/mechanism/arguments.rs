@@ -1,5 +1,6 @@
 //! What people type after `cognate mechanism`.
 
+use crate::common_arguments::Format;
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -34,16 +35,6 @@ pub enum MechanismFormat {
     Json,
     /// A row for each position, with the names of columns in the first line
     Csv,
-}
-
-/// How a mechanism is described.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum InfoFormat {
-    /// A table for people
-    #[default]
-    Table,
-    /// One JSON object on standard output, nothing else there
-    Json,
 }
 
 /// Unit of angles that are typed, in files of targets, and shown.
@@ -126,7 +117,7 @@ pub struct MechanismInfo {
     pub mechanism: MechanismFile,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: InfoFormat,
+    pub format: Format,
 }
 
 /// Which equations are wanted.
@@ -327,7 +318,7 @@ pub struct MechanismFamilies {
     pub action: Option<FamilyAction>,
     /// How the list is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: InfoFormat,
+    pub format: Format,
 }
 
 /// What is done with a family.

@@ -2,8 +2,9 @@
 
 use super::cache::{Cache, Entry, Kept, Key};
 use cognate_algorithms::plan::{GivenStart, KnownSolutions, SolveMethod, TrackingOptions};
-use cognate_algorithms::run_locally::run_locally;
+use cognate_algorithms::run_locally::run_in_family;
 use cognate_algorithms::{SolveOptions, plan};
+use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::Preset;
 use cognate_kinematics::compile::{CLOSES, Formulation, Lifted};
@@ -13,9 +14,6 @@ use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::sync::Arc;
-
-/// Lanes side by side; other widths give the same bits.
-const WIDTH: usize = 8;
 
 /// Where targets start, and how that came about.
 #[derive(Clone, Debug)]
@@ -39,12 +37,13 @@ pub struct Prepared {
 /// Values of a solution's variables in the system's order.
 pub fn in_order(solution: &Solution, system: &System) -> Vec<Complex64> {
     let named = &solution.variables.0;
-    let value = |name: &String| named.iter().find(|v| v.name == *name).map(|v| v.value);
-    system
-        .variables
-        .iter()
-        .map(|name| value(name).unwrap_or_default())
-        .collect()
+    let value = |(place, name): (usize, &String)| {
+        // Most often they are in this order already.
+        let here = named.get(place).filter(|v| v.name == *name);
+        let found = here.or_else(|| named.iter().find(|v| v.name == *name));
+        found.map(|v| v.value).unwrap_or_default()
+    };
+    system.variables.iter().enumerate().map(value).collect()
 }
 
 /// Solves in this process.
@@ -52,6 +51,16 @@ pub fn solve(
     system: &System,
     options: &SolveOptions,
     start: Option<&Arc<StoredPoints>>,
+) -> Result<Vec<SolutionSet>, String> {
+    solve_in_family(system, options, start, &PreparedFamily::default())
+}
+
+/// The same for many solves of one family: what belongs to the family is compiled once.
+pub fn solve_in_family(
+    system: &System,
+    options: &SolveOptions,
+    start: Option<&Arc<StoredPoints>>,
+    family: &PreparedFamily,
 ) -> Result<Vec<SolutionSet>, String> {
     let mut options = options.clone();
     let digest = start.map(|points| points.digest());
@@ -65,7 +74,7 @@ pub fn solve(
     }
     let mut plan = plan(system, &options).map_err(|e| e.to_string())?;
     let find = |wanted: Digest| start.filter(|_| digest == Some(wanted)).map(Arc::clone);
-    run_locally(&plan.system, &mut plan.algorithm, &find, WIDTH).map_err(|e| e.to_string())
+    run_in_family(&plan.system, &mut plan.algorithm, &find, family).map_err(|e| e.to_string())
 }
 
 /// The positions among the regular solutions at these parameters.

@@ -6,10 +6,11 @@
 use super::cache::Cache;
 use super::parallel;
 use super::preparation::{AnswerOptions, Preparation};
-use super::prepare::{prepared, solve};
+use super::prepare::{prepared, solve_in_family};
 use super::target_answer::{TargetAnswer, of_positions, of_set};
 use cognate_algorithms::SolveOptions;
 use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
+use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
@@ -42,6 +43,8 @@ struct Tracked {
     options: SolveOptions,
     /// The solutions from which paths begin; `None` where a start system is wanted.
     start: Option<Arc<StoredPoints>>,
+    /// What is compiled for the paths to all targets.
+    family: PreparedFamily,
 }
 
 /// The equations that are followed along a path of targets.
@@ -224,6 +227,7 @@ fn tracked(
             ..SolveOptions::default()
         },
         start: None,
+        family: PreparedFamily::default(),
     };
     if tracked.system.parameters.is_empty() {
         return Ok(Some(tracked));
@@ -268,6 +272,6 @@ impl Tracked {
         if self.start.is_some() {
             options.target_parameters = targets;
         }
-        solve(&self.system, &options, self.start.as_ref())
+        solve_in_family(&self.system, &options, self.start.as_ref(), &self.family)
     }
 }

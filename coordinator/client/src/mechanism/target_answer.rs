@@ -234,26 +234,7 @@ pub fn of_set(
             point,
         });
     }
-    positions.sort_by(|a, b| {
-        let key = |p: &Position| (!p.is_real, p.is_singular);
-        let values = |p: &Position| -> Vec<f64> {
-            p.configuration
-                .values
-                .iter()
-                .map(|(_, v)| v.real())
-                .collect()
-        };
-        let by_value = || {
-            values(a)
-                .iter()
-                .zip(&values(b))
-                .map(|(x, y)| x.total_cmp(y))
-                .find(|o| o.is_ne())
-        };
-        key(a)
-            .cmp(&key(b))
-            .then_with(|| by_value().unwrap_or(std::cmp::Ordering::Equal))
-    });
+    sort(&mut positions);
     TargetAnswer {
         target: target.clone(),
         settled: set.settled() && closes,
@@ -261,4 +242,22 @@ pub fn of_set(
         positions,
         warnings: Vec::new(),
     }
+}
+
+/// Real positions first, regular ones before singular ones, then in the order of their joint values.
+fn sort(positions: &mut Vec<Position>) {
+    let key = |p: Position| {
+        let values = p.configuration.values.iter().map(|(_, v)| v.real());
+        ((!p.is_real, p.is_singular), values.collect::<Vec<f64>>(), p)
+    };
+    let mut keyed: Vec<_> = positions.drain(..).map(key).collect();
+    keyed.sort_by(|(kind, values, _), (other_kind, others, _)| {
+        let differ = || {
+            let both = values.iter().zip(others);
+            both.map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne())
+        };
+        kind.cmp(other_kind)
+            .then_with(|| differ().unwrap_or(std::cmp::Ordering::Equal))
+    });
+    positions.extend(keyed.into_iter().map(|(_, _, position)| position));
 }

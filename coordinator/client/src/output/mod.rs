@@ -17,6 +17,7 @@ pub mod paths;
 pub mod progress;
 pub mod rates;
 pub mod screen;
+pub mod solution_list;
 pub mod summary;
 pub mod surface;
 pub mod table;

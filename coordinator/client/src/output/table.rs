@@ -1,27 +1,21 @@
 //! The answer for people: paths by verdict that add up, solutions, time, workers, warnings.
 
+use super::solution_list::solution_list;
 use super::summary::open_questions;
-use super::text::{Look, complex, count, counted, cut, magnitude, rate, seconds, wrapped};
+use super::text::{Look, count, counted, cut, rate, seconds, wrapped};
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
 use cognate_solutions::completeness::Completeness;
-use cognate_solutions::solution::{NamedValue, Solution};
+use cognate_solutions::solution::Solution;
 use cognate_summary::solve::Summary;
-use num_complex::Complex64;
 use std::fmt::Write as _;
 use std::path::Path;
-
-/// Solutions shown before a table says how many more there are.
-pub const SOLUTIONS_SHOWN: usize = 8;
 
 /// Workers named in a table; `--format json` names all.
 const WORKERS_SHOWN: usize = 8;
 
 /// Width of the column of names.
 const LABEL: usize = 22;
-
-/// Significant figures of a coordinate in a table; files have all of them.
-const FIGURES: usize = 6;
 
 /// One line: a name, a number, what it means.
 pub(super) struct Lines {
@@ -454,142 +448,4 @@ fn warnings(summary: &Summary, look: Look) -> String {
         }
     }
     text
-}
-
-/// The first solutions, one a line, as many variables as fit; `total` is how many there are.
-pub fn solution_list(
-    solutions: &[Solution],
-    total: u64,
-    files: Option<&Path>,
-    look: Look,
-) -> String {
-    let mut text = String::new();
-    let Some(first) = solutions.first() else {
-        return text;
-    };
-    let shown = &solutions[..solutions.len().min(SOLUTIONS_SHOWN)];
-    let digits = shown.len().to_string().len().max(1);
-    let kind = |s: &Solution| {
-        let mut kind = match s.real {
-            Some(true) => "real".to_string(),
-            Some(false) => "complex".to_string(),
-            None => String::new(),
-        };
-        if s.undecided {
-            kind = format!("{kind} undecided").trim().to_string();
-        } else if s.singular {
-            kind = format!("{kind} singular").trim().to_string();
-        }
-        if s.multiplicity > 1 {
-            let _ = write!(kind, " x{}", s.multiplicity);
-        }
-        kind.trim().to_string()
-    };
-    let mut columns: Vec<(String, Vec<String>)> = vec![
-        (
-            "#".into(),
-            (1..=shown.len()).map(|i| format!("{i:>digits$}")).collect(),
-        ),
-        ("kind".into(), shown.iter().map(kind).collect()),
-        (
-            "condition".into(),
-            shown.iter().map(|s| magnitude(s.condition)).collect(),
-        ),
-    ];
-    if columns[1].1.iter().all(String::is_empty) {
-        columns.remove(1);
-    }
-    let fixed = columns.len();
-    for (v, NamedValue { name, .. }) in first.variables.0.iter().enumerate() {
-        let mut cells: Vec<String> = shown
-            .iter()
-            .map(|s| {
-                s.variables
-                    .0
-                    .get(v)
-                    .map_or(String::new(), |v| coordinate(s, v.value))
-            })
-            .collect();
-        // Signs stand in a column of their own.
-        if cells.iter().any(|c| c.starts_with('-')) {
-            for cell in cells.iter_mut().filter(|c| !c.starts_with('-')) {
-                cell.insert(0, ' ');
-            }
-        }
-        columns.push((name.clone(), cells));
-    }
-    let width = |(name, cells): &(String, Vec<String>)| {
-        cells
-            .iter()
-            .chain([name])
-            .map(|c| c.chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let widths: Vec<usize> = columns.iter().map(width).collect();
-    // As many variables as fit, at least one, and room to say how many are left out.
-    let mut used = widths[..fixed].iter().map(|w| w + 2).sum::<usize>();
-    let mut fitting = fixed;
-    for (i, w) in widths.iter().enumerate().skip(fixed) {
-        let mark = match columns.len() - i - 1 {
-            0 => 0,
-            left => format!("  +{left} more").len(),
-        };
-        if i > fixed && used + w + 2 + mark > look.width {
-            break;
-        }
-        used += w + 2;
-        fitting = i + 1;
-    }
-    let left_out = columns.len() - fitting;
-    let mut heading = String::new();
-    for (i, (name, _)) in columns[..fitting].iter().enumerate() {
-        let _ = write!(heading, "  {name:<width$}", width = widths[i]);
-    }
-    if left_out > 0 {
-        let _ = write!(heading, "  +{left_out} more");
-    }
-    let _ = writeln!(text, "{}", look.bold(&cut(heading.trim_end(), look.width)));
-    for r in 0..shown.len() {
-        let mut line = String::new();
-        for (i, (_, cells)) in columns[..fitting].iter().enumerate() {
-            let _ = write!(line, "  {:<width$}", cells[r], width = widths[i]);
-        }
-        let _ = writeln!(text, "{}", cut(line.trim_end(), look.width));
-    }
-    let more = total.saturating_sub(shown.len() as u64);
-    if more > 0 || left_out > 0 || files.is_some() {
-        let mut note = String::new();
-        if more > 0 {
-            let _ = write!(note, "and {} more; ", count(more));
-        }
-        match files {
-            Some(folder) => {
-                let _ = write!(
-                    note,
-                    "all digits of all of them are in {}",
-                    folder.display()
-                );
-            }
-            None => note.push_str("--output DIR writes all digits of all of them"),
-        }
-        for line in wrapped(&note, look.width - 2) {
-            let _ = writeln!(text, "  {}", look.dim(&line));
-        }
-    }
-    text
-}
-
-/// A coordinate without what is only rounding.
-fn coordinate(solution: &Solution, z: Complex64) -> String {
-    // A part below the solution's own error estimate says nothing; nor does one that is below
-    // the shown figures of the other by a thousand.
-    let values = solution
-        .variables
-        .0
-        .iter()
-        .map(|v| v.value.re.abs().max(v.value.im.abs()));
-    let noise = solution.accuracy.clamp(1e-14, 1e-6) * values.fold(1.0, f64::max);
-    let keep = |part: f64| if part.abs() <= noise { 0.0 } else { part };
-    complex(Complex64::new(keep(z.re), keep(z.im)), FIGURES, 1e-9)
 }

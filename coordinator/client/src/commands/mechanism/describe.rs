@@ -1,10 +1,10 @@
 //! What a mechanism is, its equations, and the same in another notation; nothing is solved.
 
 use super::read::{Read, described, some, wrong};
+use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{
-    EquationsFormat, InfoFormat, MechanismConvert, MechanismEquations, MechanismInfo, Notation,
-    ProblemName,
+    EquationsFormat, MechanismConvert, MechanismEquations, MechanismInfo, Notation, ProblemName,
 };
 use crate::output;
 use crate::output::mechanisms::info as shown;
@@ -38,8 +38,8 @@ pub fn info(a: &MechanismInfo) -> Result<Exit, ClientError> {
             })
             .collect();
     let text = match a.format {
-        InfoFormat::Table => shown::table(&read.mechanism, &asked, Look::of_standard_output()),
-        InfoFormat::Json => shown::json(&read.mechanism, &read.content, &asked),
+        Format::Table => shown::table(&read.mechanism, &asked, Look::of_standard_output()),
+        Format::Json => shown::json(&read.mechanism, &read.content, &asked),
     };
     output::print(&text)?;
     Ok(Exit::Solved)

@@ -1,8 +1,9 @@
 //! The families that are solved already, and their members solved anew.
 
 use super::read::wrong;
+use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
-use crate::mechanism::arguments::{FamilyAction, InfoFormat, MechanismFamilies};
+use crate::mechanism::arguments::{FamilyAction, MechanismFamilies};
 use crate::mechanism::families::solve_member;
 use crate::output;
 use crate::output::mechanisms::families as shown;
@@ -18,8 +19,8 @@ pub fn run(a: &MechanismFamilies) -> Result<Exit, ClientError> {
     }) = &a.action
     else {
         output::print(&match a.format {
-            InfoFormat::Table => shown::table(Look::of_standard_output()),
-            InfoFormat::Json => shown::json(),
+            Format::Table => shown::table(Look::of_standard_output()),
+            Format::Json => shown::json(),
         })?;
         return Ok(Exit::Solved);
     };
