@@ -345,6 +345,7 @@ impl JunkFilter {
             junk,
             excess: superset.excess,
             failed: superset.failed,
+            found_by_loops: 0,
             degree: 0,
             complete: Completeness::NotKnown,
             doubts: doubts.map(|(_, doubt)| doubt).collect(),
