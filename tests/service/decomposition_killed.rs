@@ -2,9 +2,9 @@
 
 use crate::questions_killed::{SET, answer, check, check_and_look, components, listed, submission};
 use crate::worker_lost::{nervous, slow_worker};
-use cognate_algorithms::ClosingOptions;
 use cognate_protocol::submission::{Decompose, Options};
 use cognate_protocol::v1;
+use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::witness::{KnownComponents, Method};
 use cognate_tests::client::{Submission, has_ended};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions};
