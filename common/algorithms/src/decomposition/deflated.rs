@@ -38,8 +38,6 @@ const NOISE: f64 = 30.0;
 /// Condition number above which equations are not regular at a point: there double-doubles lose half their
 /// digits. Below it what tells is that Newton's method comes to all its digits at once.
 const SINGULAR: f64 = 1e14;
-/// Below it equations are as regular at a point as beside it.
-const CLEARLY_CONDITIONED: f64 = 1e6;
 /// What Newton's method must reach: its last step relative to the point, and the equations.
 const STEP: f64 = 1e-22;
 const RESIDUAL: f64 = 1e-20;
@@ -324,7 +322,7 @@ impl Deflations {
     ) -> Option<RefinedPoint> {
         let equations = self.sliced(problem, &[], dimension);
         let start: Vec<Number> = values.iter().map(|&z| exactly(z)).collect();
-        let refined = refined_from(&equations, &start);
+        let refined = equations.refine(&start);
         refined.filter(|refined| settled(refined, MOVED))
     }
 
@@ -341,7 +339,7 @@ impl Deflations {
         for _ in 0..MOST_TRIED {
             let (ranks, start): (Vec<u32>, Vec<Number>) = untried.pop_front()?;
             let equations = self.sliced(problem, &ranks, dimension);
-            let refined = refined_from(&equations, &start);
+            let refined = equations.refine(&start);
             if let Some(refined) = refined.filter(|refined| settled(refined, moved)) {
                 return Some(DeflatedPoint { ranks, refined });
             }
@@ -421,7 +419,7 @@ impl Deflations {
             for depth in 1..=ranks.len() {
                 start = self.with_multipliers(problem, slices.len(), &ranks[..depth], &start);
             }
-            let refined = refined_from(&equations, &start);
+            let refined = equations.refine(&start);
             refined.filter(|refined| settled(refined, MOVED))
         };
         let refined = points.iter().map(&mut refine).collect();
@@ -521,20 +519,6 @@ impl Deflations {
         }
         sets
     }
-}
-
-/// Newton's method from near a point. The condition is that at the point itself, where it matters: a little beside a
-/// set of higher dimension equations are regular.
-fn refined_from(equations: &SlicedEquations, start: &[Number]) -> Option<RefinedPoint> {
-    let refined = equations.refine(start)?;
-    if refined.condition < CLEARLY_CONDITIONED {
-        return Some(refined);
-    }
-    let at_the_point = equations.refine(&refined.point)?;
-    Some(RefinedPoint {
-        moved: refined.moved + at_the_point.moved,
-        ..at_the_point
-    })
 }
 
 fn settled(refined: &RefinedPoint, moved: f64) -> bool {
