@@ -190,6 +190,16 @@ fn rank_one_3x3() {
     }
 }
 
+/// A path ends on the sphere, 400 from the origin and 1e-10 of that beside it, where the equations are regular; on it
+/// they are not, and it is no point of a curve.
+#[test]
+fn an_end_beside_a_surface_is_no_witness_point() {
+    let system = instance("sphere_and_curves");
+    let found = decompose_by(&system, 14, Some(Method::Equations));
+    assert!(found.settled() && found.adds_up(), "{}", doubts(&found));
+    assert_eq!(counted(&found), [(2, 2, 1, 1), (1, 3, 1, 1), (1, 1, 1, 4)]);
+}
+
 /// The union of a quadric surface, `lines` lines and `points` points with random small coefficients, by the
 /// products of one equation of each.
 fn planted_union(lines: usize, points: usize, number: u64) -> System {

