@@ -1,10 +1,14 @@
 //! A worker and a coordinator are killed in the middle of a decomposition: the same components, byte for byte.
 
-use crate::questions_killed::{SET, check, check_and_look, components, listed, submission};
+use crate::questions_killed::{SET, answer, check, check_and_look, components, listed, submission};
+use crate::worker_lost::{nervous, slow_worker};
 use cognate_protocol::submission::{Decompose, Options};
 use cognate_protocol::v1;
-use cognate_solutions::witness::KnownComponents;
-use cognate_tests::client::Submission;
+use cognate_solutions::closing_options::ClosingOptions;
+use cognate_solutions::witness::{KnownComponents, Method};
+use cognate_tests::client::{Submission, has_ended};
+use cognate_tests::cluster::{Cluster, CoordinatorOptions};
+use std::collections::BTreeSet;
 
 /// Components of the system.
 const EXPECTED: [(u64, u64); 6] = [(2, 2), (1, 3), (1, 1), (1, 1), (1, 1), (0, 1)];
@@ -60,4 +64,84 @@ fn kills_leave_no_trace_where_equations_are_added() {
     let extended = submission(text("f, g, h", &format!("{first} {others}")), options);
     let summary = check(&extended, [10, 40], &SET);
     assert_eq!(listed(&summary), EXPECTED);
+}
+
+/// A worker and the coordinator are killed in a stage of each kind, each of which has many items: paths, local dimensions,
+/// derivatives, certificates.
+#[test]
+fn kills_leave_no_trace_in_any_kind_of_stage() {
+    // Six double planes, which eight planes cut in 48 double lines.
+    let planes = |names: [&str; 3], count: u32| {
+        let [x, y, z] = names;
+        let plane = |k: u32| format!("({x} + {}*{y} - {z} - {})", k + 2, 2 * k + 1);
+        (0..count).map(plane).collect::<Vec<_>>().join("*")
+    };
+    let text = format!(
+        "CONFIG\nEND;\nINPUT\nvariable_group x, y, z; function f, g; f = ({})^2; g = {};\nEND;\n",
+        planes(["x", "y", "z"], 6),
+        planes(["z", "x", "y"], 8)
+    );
+    let options = Options {
+        decompose: Some(Decompose {
+            method: Some(Method::Equations),
+            ..Decompose::default()
+        }),
+        closings: ClosingOptions {
+            certify: true,
+            ..ClosingOptions::default()
+        },
+        ..Options::default()
+    };
+    let undisturbed = submission(text, options);
+    let quiet = Cluster::with_workers(1);
+    let job = quiet.client().submit(&undisturbed);
+    quiet.client().wait_until_solved(&job);
+    let expected = answer(&quiet, &job, &SET);
+    quiet.stop();
+    assert_eq!(listed(&expected.0), vec![(1, 1); 48]);
+
+    let mut cluster = Cluster::start(CoordinatorOptions {
+        chunk_paths: Some(1),
+        ..nervous()
+    });
+    for _ in 0..2 {
+        cluster.add_worker(&slow_worker());
+    }
+    let again = Submission {
+        request_id: "killed in every kind of stage".into(),
+        ..undisturbed
+    };
+    let job = cluster.client().submit(&again);
+    let mut struck = BTreeSet::new();
+    loop {
+        let is_open = |stage: &&v1::StageProgress| {
+            (1..stage.total).contains(&stage.accepted) && !struck.contains(&stage.purpose)
+        };
+        let middle =
+            cluster
+                .client()
+                .progress_once(&job, "a stage of another kind, or the end", |p| {
+                    has_ended(p) || p.stages.iter().any(|stage| is_open(&stage))
+                });
+        let Some(stage) = middle.stages.iter().find(is_open) else {
+            break;
+        };
+        struck.insert(stage.purpose.clone());
+        cluster.workers[0].kill();
+        cluster.kill_coordinator();
+        cluster.workers.remove(0);
+        cluster.restart_coordinator();
+        cluster.add_worker(&slow_worker());
+    }
+    cluster.client().wait_until_solved(&job);
+    let found = answer(&cluster, &job, &SET);
+    assert!(found == expected, "the same, byte for byte");
+    let kinds = [
+        "tracking",
+        "whether singular endpoints are isolated",
+        "derivatives of witness points",
+        "certifying",
+    ];
+    assert_eq!(struck, kinds.map(String::from).into());
+    cluster.stop();
 }

@@ -56,7 +56,7 @@ fn asked(text: String, components: Vec<WitnessSet>, question: Question) -> Submi
 }
 
 /// The answer without times and workers, and the files with components or points.
-fn answer(cluster: &Cluster, job: &str, files: &[&str]) -> (Value, Vec<String>) {
+pub fn answer(cluster: &Cluster, job: &str, files: &[&str]) -> (Value, Vec<String>) {
     let folder = cluster.folder().join("answer");
     let output = folder.display().to_string();
     let shown = cluster.command(&["results", job, "--format", "json", "--output", &output]);

@@ -152,6 +152,9 @@ pub struct DimensionBlock {
     pub excess: u64,
     /// Paths that failed on the way.
     pub failed: u64,
+    /// Paths that must have been lost, by witness points that loops found and to which none came.
+    #[serde(default)]
+    pub found_by_loops: u64,
     /// Whether all components of this dimension are found.
     pub complete: Completeness,
     /// Reasons why this part of the answer is not settled.
@@ -292,6 +295,7 @@ fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
         junk: dimension.junk,
         excess: dimension.excess,
         failed: dimension.failed,
+        found_by_loops: dimension.found_by_loops,
         complete: dimension.complete,
         doubts: dimension.doubts.clone(),
     }

@@ -146,7 +146,8 @@ impl Cascade {
         };
         let system = (StageSystem::Staircase, &*problem.staircase);
         let with = &problem.tracking;
-        Some(Job::track(system, homotopy, &self.points, with))
+        // Singular ends that solve all equations are asked about with these, in `junk`.
+        Some(Job::track(system, homotopy, &self.points, with).ends_only())
     }
 
     /// The system of a stage on a multiple set.

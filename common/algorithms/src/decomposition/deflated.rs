@@ -38,6 +38,8 @@ const NOISE: f64 = 30.0;
 /// Condition number above which equations are not regular at a point: there double-doubles lose half their
 /// digits. Below it what tells is that Newton's method comes to all its digits at once.
 const SINGULAR: f64 = 1e14;
+/// Below it equations are as regular at a point as beside it.
+const CLEARLY_CONDITIONED: f64 = 1e6;
 /// What Newton's method must reach: its last step relative to the point, and the equations.
 const STEP: f64 = 1e-22;
 const RESIDUAL: f64 = 1e-20;
@@ -322,7 +324,7 @@ impl Deflations {
     ) -> Option<RefinedPoint> {
         let equations = self.sliced(problem, &[], dimension);
         let start: Vec<Number> = values.iter().map(|&z| exactly(z)).collect();
-        let refined = equations.refine(&start);
+        let refined = refined_from(&equations, &start, dimension);
         refined.filter(|refined| settled(refined, MOVED))
     }
 
@@ -339,7 +341,7 @@ impl Deflations {
         for _ in 0..MOST_TRIED {
             let (ranks, start): (Vec<u32>, Vec<Number>) = untried.pop_front()?;
             let equations = self.sliced(problem, &ranks, dimension);
-            let refined = equations.refine(&start);
+            let refined = refined_from(&equations, &start, dimension);
             if let Some(refined) = refined.filter(|refined| settled(refined, moved)) {
                 return Some(DeflatedPoint { ranks, refined });
             }
@@ -419,7 +421,7 @@ impl Deflations {
             for depth in 1..=ranks.len() {
                 start = self.with_multipliers(problem, slices.len(), &ranks[..depth], &start);
             }
-            let refined = equations.refine(&start);
+            let refined = refined_from(&equations, &start, slices.len());
             refined.filter(|refined| settled(refined, MOVED))
         };
         let refined = points.iter().map(&mut refine).collect();
@@ -519,6 +521,29 @@ impl Deflations {
         }
         sets
     }
+}
+
+/// Newton's method from near a point of a set of this dimension on its slices. Where equations are not clearly regular
+/// their rank is taken at the point itself, too: a little beside a set of higher dimension they are regular.
+fn refined_from(
+    equations: &SlicedEquations,
+    start: &[Number],
+    dimension: usize,
+) -> Option<RefinedPoint> {
+    let mut refined = equations.refine(start)?;
+    if refined.condition >= CLEARLY_CONDITIONED {
+        let values = equations.singular_values(&refined.point);
+        let rank = start.len() - dimension;
+        let least = rank.checked_sub(1).and_then(|k| values.get(k));
+        let ends = values.first().zip(least);
+        let condition = ends.map_or(f64::INFINITY, |(largest, least)| largest / least);
+        // No number: all of them are 0.
+        match condition.is_nan() {
+            true => refined.condition = f64::INFINITY,
+            false => refined.condition = refined.condition.max(condition),
+        }
+    }
+    Some(refined)
 }
 
 fn settled(refined: &RefinedPoint, moved: f64) -> bool {

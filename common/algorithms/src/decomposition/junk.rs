@@ -9,6 +9,7 @@ use super::deflated::{Deflations, Multiple, PureSet, equal_ones_merged};
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use super::superset::{SingularEnd, Superset};
+use cognate_continuation::bend::RefinedPoint;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
@@ -32,6 +33,8 @@ const NEAR_FACTOR: f64 = 100.0;
 const NEAR: f64 = 1e-7;
 /// ... and is not beyond this.
 const FAR: f64 = 1e-3;
+/// Relative error that is assumed of an end that was called regular and is not.
+const ACCURACY: f64 = 1e-9;
 /// Most paths that confirm in one dimension what dual spaces and moved slices call junk: where there would be more,
 /// points spread evenly among them are asked for all.
 const MOST_CONFIRMING: usize = 100_000;
@@ -120,7 +123,13 @@ impl JunkFilter {
                 if let Some(job) = self.membership(problem, deflations, sets) {
                     return Some(job);
                 }
-                self.settle(problem, deflations, sets);
+                let regular = self.refine(problem, deflations);
+                if let Some(dimension) = self.suspect(&regular) {
+                    self.sets_left = (0..sets.len()).collect();
+                    self.asking = Asking::Isolation;
+                    return Some(self.isolate(problem, dimension));
+                }
+                self.settle((problem, deflations), regular, sets);
             }
             let superset = self.supersets.pop_front()?;
             let superset = match self.by_paths {
@@ -158,6 +167,40 @@ impl JunkFilter {
             }
         }
         superset
+    }
+
+    /// The ends that the tracker called regular, refined on the given equations; `None`: they are not regular there.
+    fn refine(&self, problem: &Problem, deflations: &mut Deflations) -> Vec<Option<RefinedPoint>> {
+        let regular = |superset: &Superset| -> Vec<Option<RefinedPoint>> {
+            let ends = superset.regular.iter();
+            ends.map(|end| deflations.reduced_point(problem, superset.dimension, end))
+                .collect()
+        };
+        self.current.as_ref().map(regular).unwrap_or_default()
+    }
+
+    /// Takes ends that are not regular after all among those of which it is asked whether they are isolated; the
+    /// dimension, where there are some.
+    fn suspect(&mut self, regular: &[Option<RefinedPoint>]) -> Option<usize> {
+        let superset = self.current.as_mut().filter(|_| !self.by_paths)?;
+        let ends = std::mem::take(&mut superset.regular);
+        let (mut kept, mut some) = (Vec::with_capacity(ends.len()), false);
+        for (values, refined) in ends.into_iter().zip(regular) {
+            if refined.is_some() {
+                kept.push(values);
+                continue;
+            }
+            some = true;
+            let end = SingularEnd {
+                values,
+                accuracy: ACCURACY,
+                paths: 1,
+            };
+            self.suspects.push(Suspect::new(&end));
+            superset.singular.push(end);
+        }
+        superset.regular = kept;
+        some.then_some(superset.dimension)
     }
 
     fn isolate(&self, problem: &Problem, dimension: usize) -> Job {
@@ -253,7 +296,12 @@ impl JunkFilter {
     }
 
     /// Decides about the points of the current dimension.
-    fn settle(&mut self, problem: &Problem, deflations: &mut Deflations, sets: &mut Vec<PureSet>) {
+    fn settle(
+        &mut self,
+        (problem, deflations): (&Problem, &mut Deflations),
+        refined: Vec<Option<RefinedPoint>>,
+        sets: &mut Vec<PureSet>,
+    ) {
         let Some(superset) = self.current.take() else {
             return;
         };
@@ -293,8 +341,8 @@ impl JunkFilter {
                 }
             }
         }
-        for values in &superset.regular {
-            match deflations.reduced_point(problem, dimension, values) {
+        for point in refined {
+            match point {
                 Some(point) => regular.push((point, 1)),
                 None => not_deflated += 1,
             }
@@ -345,6 +393,7 @@ impl JunkFilter {
             junk,
             excess: superset.excess,
             failed: superset.failed,
+            found_by_loops: 0,
             degree: 0,
             complete: Completeness::NotKnown,
             doubts: doubts.map(|(_, doubt)| doubt).collect(),

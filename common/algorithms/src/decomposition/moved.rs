@@ -38,6 +38,11 @@ impl MovedPoints {
         }
     }
 
+    /// How many points it holds.
+    pub fn count(&self) -> usize {
+        self.lengths.len()
+    }
+
     /// Takes one more point; `None`: any error may be in its derivatives.
     pub fn push(&mut self, bend: Option<&Bend>) {
         let own = self.own;
@@ -105,4 +110,9 @@ pub(super) fn bounded(x: f64) -> f64 {
 /// Whether points with this sum are whole components.
 pub(crate) fn is_closed(trace: &Trace) -> bool {
     trace.noise < NOISY && trace.deviation <= CLOSED * trace.noise
+}
+
+/// Whether the sum tells that points are missing.
+pub(crate) fn misses_points(trace: &Trace) -> bool {
+    trace.noise < NOISY && !is_closed(trace)
 }

@@ -8,9 +8,10 @@
 
 use super::deflated::{Deflations, PureSet};
 use super::job::Job;
-use super::moved::{MovedPoints, bounded, is_closed};
+use super::moved::{MovedPoints, bounded, is_closed, misses_points};
 use super::problem::Problem;
 use super::proof::moving_slices;
+use super::search::Search;
 use cognate_continuation::bend::{length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
@@ -50,6 +51,16 @@ struct Class {
     closed: Option<Trace>,
 }
 
+impl Class {
+    /// A point by itself.
+    fn of(point: usize) -> Self {
+        Self {
+            points: vec![point],
+            closed: None,
+        }
+    }
+}
+
 /// What is known of the loops that brought a closed class together.
 enum Loops {
     /// Without any of them no proper part is closed.
@@ -79,6 +90,8 @@ pub(crate) struct Split {
     /// The leg that is open, its points, and the witness points where its paths began.
     leg: usize,
     travellers: Vec<usize>,
+    /// Points that were lost, looked for by loops.
+    search: Search,
     /// Conjugates of the witness points are under way.
     mirroring: bool,
     /// The witness point where the conjugate of each is after its slice has moved back; `None` where that was not
@@ -88,12 +101,8 @@ pub(crate) struct Split {
 
 impl Split {
     pub fn new(set: PureSet) -> Self {
-        let class = |k| Class {
-            points: vec![k],
-            closed: None,
-        };
         Self {
-            classes: (0..set.points.len()).map(class).collect(),
+            classes: (0..set.points.len()).map(Class::of).collect(),
             bends: None,
             set,
             smallest_wrong: None,
@@ -103,6 +112,7 @@ impl Split {
             edges: Vec::new(),
             leg: 0,
             travellers: Vec::new(),
+            search: Search::default(),
             mirroring: false,
             mirrored: None,
         }
@@ -129,16 +139,28 @@ impl Split {
             let Some(job) = done else {
                 return Some(self.ask_bends(problem));
             };
-            self.bends = Some(self.read_bends(job.answers(), own));
+            let mut moved = MovedPoints::with_capacity(self.set.points.len(), own);
+            self.read_bends(job.answers(), &mut moved);
+            self.bends = Some(moved);
             let next = self.next_loop(problem, deflations);
             return next.or_else(|| self.mirror(problem, deflations));
         };
         let mut points = self.travelling();
-        if let Some(job) = done {
+        if let Some(job) = done.filter(|_| self.search.asks_bends()) {
+            let mut moved = self.bends.take().unwrap_or_default();
+            self.read_bends(job.answers(), &mut moved);
+            self.bends = Some(moved);
+            self.search.bends_are_known();
+        } else if let Some(job) = done {
             let arrived = arrivals(job);
             self.leg += 1;
             match (arrived, self.leg == LEGS) {
                 (Some(ends), false) => points = ends,
+                (Some(ends), true) if self.search.is_on() => {
+                    if let Some(job) = self.take_lost((problem, deflations), &ends) {
+                        return Some(job);
+                    }
+                }
                 (Some(ends), true) => self.close_loop(&ends, own),
                 (None, _) => self.give_up_loop(),
             }
@@ -188,14 +210,16 @@ impl Split {
     fn ask_bends(&self, problem: &Problem) -> Job {
         let dimension = self.set.dimension;
         let ends = moving_slices(problem, dimension);
-        let points = self.set.doubles();
+        let known = self.bends.as_ref().map_or(0, MovedPoints::count);
+        let points = self.set.doubles().split_off(known);
         Job::bend(self.set.whole(), ends, &points, &problem.tracking)
     }
 
-    /// What workers found; where one found nothing, any error may be in the derivatives.
-    fn read_bends(&self, results: &[ItemResult], own: usize) -> MovedPoints {
-        let mut moved = MovedPoints::with_capacity(results.len(), own);
-        for (result, point) in results.iter().zip(&self.set.points) {
+    /// What workers found of the points that have not moved yet; where one found nothing, any error may be in the
+    /// derivatives.
+    fn read_bends(&self, results: &[ItemResult], moved: &mut MovedPoints) {
+        let points = &self.set.points[moved.count()..];
+        for (result, point) in results.iter().zip(points) {
             let ItemResult::Bend(result) = result else {
                 unreachable!("a stage that asks for derivatives has no {result:?}")
             };
@@ -203,7 +227,6 @@ impl Split {
             let length = point.point.len();
             moved.push(known.filter(|bend| bend.acceleration.len() == length));
         }
-        moved
     }
 
     /// The next loop, where there are classes that it may bring together.
@@ -211,9 +234,19 @@ impl Split {
         let own = problem.variables();
         self.close(own);
         let open = self.open().count();
-        let more = self.idle < problem.idle_loops && self.loops < MOST_LOOPS;
-        let untested = self.open().any(|class| self.is_untested(class, own));
-        if (open <= 1 && !untested) || self.hopeless() || !more {
+        let more = self.loops < MOST_LOOPS;
+        let hopeless = self.hopeless();
+        let searches = hopeless && self.misses_points();
+        let goes_on = match searches {
+            true => more && self.search.begin(),
+            false => {
+                self.search.end();
+                let untested = self.open().any(|class| self.is_untested(class, own));
+                let together = open <= 1 && !untested;
+                !together && !hopeless && more && self.idle < problem.idle_loops
+            }
+        };
+        if !goes_on {
             return None;
         }
         self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
@@ -265,10 +298,33 @@ impl Split {
     }
 
     fn give_up_loop(&mut self) {
-        self.broken += 1;
-        self.idle += 1;
         self.loops += 1;
         self.leg = 0;
+        match self.search.is_on() {
+            true => self.search.found_nothing(),
+            false => {
+                self.broken += 1;
+                self.idle += 1;
+            }
+        }
+    }
+
+    /// Takes the points to which a loop led and that no path came to; the stage that asks how they move.
+    fn take_lost(
+        &mut self,
+        (problem, deflations): (&Problem, &mut Deflations),
+        ends: &[Vec<Complex64>],
+    ) -> Option<Job> {
+        self.loops += 1;
+        self.leg = 0;
+        let all: Vec<usize> = (0..self.set.points.len()).collect();
+        let places = self.places(&all, ends, problem.variables());
+        let lost = (self.search).lost_points((problem, deflations), &self.set, ends, &places);
+        let first = self.set.points.len();
+        self.set.points.extend(lost);
+        let found = first..self.set.points.len();
+        self.classes.extend(found.clone().map(Class::of));
+        (!found.is_empty()).then(|| self.ask_bends(problem))
     }
 
     /// Joins the classes between which the loop leads, where it is a permutation.
@@ -292,6 +348,15 @@ impl Split {
 
     /// The witness point to which each path came back; `None` where they are no permutation.
     fn images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
+        let places = self.places(&self.travellers, ends, own).into_iter();
+        let images: Vec<usize> = places.collect::<Option<_>>()?;
+        let mut sorted = images.clone();
+        sorted.sort_unstable();
+        (sorted == self.travellers).then_some(images)
+    }
+
+    /// Which of these witness points each end is; `None`: none of them.
+    fn places(&self, among: &[usize], ends: &[Vec<Complex64>], own: usize) -> Vec<Option<usize>> {
         let point = |k: usize| self.set.points[k].point[..own].iter().map(rounded);
         // No two points are nearer than their values of a form of length 1.
         let mut random = RandomStream::new(0, Purpose::Probe, 4);
@@ -300,11 +365,10 @@ impl Split {
         let value = |x: &mut dyn Iterator<Item = Complex64>| -> f64 {
             x.zip(&form).map(|(x, c)| (x * c).re).sum()
         };
-        let travellers = self.travellers.iter();
-        let mut order: Vec<(f64, usize)> = travellers.map(|&k| (value(&mut point(k)), k)).collect();
+        let among = among.iter();
+        let mut order: Vec<(f64, usize)> = among.map(|&k| (value(&mut point(k)), k)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut images = Vec::with_capacity(ends.len());
-        for end in ends {
+        let place = |end: &Vec<Complex64>| {
             let size = 1.0 + end.iter().map(|y| y.norm_sqr()).sum::<f64>();
             let distance = |k: usize| {
                 let pairs = point(k).zip(end).map(|(x, &y)| (x, x - y));
@@ -320,14 +384,9 @@ impl Split {
                 .take_while(|(value, _)| *value <= at + reach);
             let near = near.map(|&(_, k)| (distance(k), k));
             let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
-            if nearest.0 > BACK * BACK {
-                return None;
-            }
-            images.push(nearest.1);
-        }
-        let mut sorted = images.clone();
-        sorted.sort_unstable();
-        (sorted == self.travellers).then_some(images)
+            (nearest.0 <= BACK * BACK).then_some(nearest.1)
+        };
+        ends.iter().map(place).collect()
     }
 
     /// The sum of second derivatives over these points.
@@ -339,10 +398,19 @@ impl Split {
         )
     }
 
-    /// Whether not even all open points together are closed: some are missing, and no loop helps.
+    /// Whether not even all open points together are closed: no loop brings them together to components.
     fn hopeless(&self) -> bool {
-        let all = self.open().flat_map(|class| class.points.iter().copied());
-        !is_closed(&self.trace(all))
+        !is_closed(&self.trace(self.open_points()))
+    }
+
+    /// Whether some points are open, and others of their components are missing.
+    fn misses_points(&self) -> bool {
+        let some = self.open().next().is_some();
+        some && misses_points(&self.trace(self.open_points()))
+    }
+
+    fn open_points(&self) -> impl Iterator<Item = usize> {
+        self.open().flat_map(|class| class.points.iter().copied())
     }
 
     /// Takes back what loops did in which paths jumped from one component to another: classes that one loop brought
@@ -560,6 +628,7 @@ impl Split {
             junk: 0,
             excess: 0,
             failed: 0,
+            found_by_loops: self.search.found() * self.set.multiplicity.tracked,
             degree: 0,
             complete: Completeness::NotKnown,
             doubts,

@@ -21,6 +21,9 @@ pub struct Dimension {
     pub excess: u64,
     /// Paths that failed on the way to this dimension.
     pub failed: u64,
+    /// Paths that must have been lost, by witness points that loops found and to which none came.
+    #[serde(default)]
+    pub found_by_loops: u64,
     /// Sum of the degrees of its components.
     pub degree: u64,
     /// Whether all its components are found.
@@ -118,21 +121,23 @@ impl Decomposition {
         });
     }
 
-    /// Whether in every dimension the paths to its solutions are those to components, each as often as
-    /// paths came to it, and to junk.
+    /// Whether in every dimension the paths to its solutions, and those that were lost to points that loops found, are
+    /// those to components, each as often as paths came to it, and to junk.
     pub fn adds_up(&self) -> bool {
         let explained = |d: &Dimension| d.junk + paths_to(&self.components, d.number);
-        self.dimensions.iter().all(|d| d.superset == explained(d))
+        let mut all = self.dimensions.iter();
+        all.all(|d| d.superset + d.found_by_loops == explained(d))
     }
 
     /// Notes in each dimension by how much its counts do not add up, where nothing else explains that.
     pub fn check_counts(&mut self) {
         for dimension in &mut self.dimensions {
             let explained = dimension.junk + paths_to(&self.components, dimension.number);
-            if dimension.superset != explained && dimension.doubts.is_empty() {
+            let superset = dimension.superset + dimension.found_by_loops;
+            if superset != explained && dimension.doubts.is_empty() {
                 dimension.complete = Completeness::NotKnown;
                 dimension.doubts.push(Doubt::Counts {
-                    superset: dimension.superset,
+                    superset,
                     explained,
                 });
             }

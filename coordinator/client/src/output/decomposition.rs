@@ -279,7 +279,9 @@ fn proofs(summary: &DecompositionSummary, look: Look) -> String {
 }
 
 fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
-    let mut columns = Columns::new(&[
+    let by_dimension = &summary.decomposition.by_dimension;
+    let by_loops = by_dimension.values().any(|d| d.found_by_loops > 0);
+    let mut names = vec![
         ">dimension",
         ">components",
         ">degree",
@@ -287,10 +289,12 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
         ">junk",
         ">excess",
         ">failed",
-        "complete",
-    ]);
-    for (number, d) in summary.decomposition.by_dimension.iter().rev() {
-        columns.row(vec![
+    ];
+    names.extend(by_loops.then_some(">found by loops"));
+    names.push("complete");
+    let mut columns = Columns::new(&names);
+    for (number, d) in by_dimension.iter().rev() {
+        let mut row = vec![
             number.to_string(),
             count(d.components),
             count(d.degree),
@@ -298,8 +302,10 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
             count(d.junk),
             count(d.excess),
             count(d.failed),
-            d.complete.name().into(),
-        ]);
+        ];
+        row.extend(by_loops.then(|| count(d.found_by_loops)));
+        row.push(d.complete.name().into());
+        columns.row(row);
     }
     columns.render(Look {
         width: look.width - 2,

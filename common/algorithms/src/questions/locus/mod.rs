@@ -435,6 +435,7 @@ impl Locus {
         let of = self.dimensions.iter_mut();
         if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
             known.doubts.extend(dimension.doubts);
+            known.found_by_loops += dimension.found_by_loops;
         }
         self.next_split();
     }
