@@ -8,7 +8,7 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
-use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::{Stage, Work};
 use cognate_numeric::precision::DOUBLE;
 use cognate_solutions::completeness::Completeness;
@@ -97,6 +97,69 @@ fn multiple_solutions_and_sets_have_their_endgames() {
         assert_eq!(paths.positive_dimensional, Some(on_sets), "{text}");
         assert!(set.settled(), "{text}: {:?}", set.warnings);
     }
+}
+
+/// Where every solution has a path of its own, a path that failed is none of theirs, and is not tracked again.
+#[test]
+fn what_failed_is_not_repeated_where_all_solutions_are_found() {
+    let (stages, set) = solve(TWO_OF_FOUR, |_, path| {
+        if path.outcome == PathOutcome::PutAside {
+            path.outcome = PathOutcome::Failed(Failure::TooManySteps);
+        }
+    });
+    assert_eq!(stages.len(), 1);
+    let paths = &set.paths;
+    assert_eq!((paths.finite, paths.at_infinity, paths.failed), (2, 2, 0));
+    assert_eq!((paths.decided_by_exact_count, paths.retracked), (2, 0));
+    assert!(set.settled(), "{:?}", set.warnings);
+}
+
+/// A solution whose path fails at first is missing: what waits has its endgames before that path is repeated, and then
+/// it is found.
+#[test]
+fn a_solution_whose_path_fails_is_found() {
+    let (stages, set) = solve(THREE_OF_FOUR, |stage, path| {
+        if stage.settings.max_endgame_bits == 0 && path.outcome == PathOutcome::Regular {
+            path.outcome = PathOutcome::Failed(Failure::TooManySteps);
+        }
+    });
+    let attempts: Vec<u16> = stages.iter().map(|stage| stage.attempt).collect();
+    assert_eq!(attempts, [0, 0, 1]);
+    assert_eq!(stages[1].items(), Some(1));
+    let paths = &set.paths;
+    assert_eq!(
+        (paths.finite, paths.at_infinity, paths.retracked),
+        (3, 1, 3)
+    );
+    assert!(set.settled(), "{:?}", set.warnings);
+}
+
+/// Two solutions at generic coefficients, and one at these: the other path from mixed cells waits.
+#[test]
+fn paths_from_mixed_cells_wait_too() {
+    let text = "variable_group x, y; function f, g; f = x*y + x + y - 5; g = x*y + 2*x + y - 6;";
+    let mut stages = Vec::new();
+    let options = SolveOptions {
+        method: SolveMethod::Polyhedral,
+        seed: 3,
+        ..SolveOptions::default()
+    };
+    let mut plan = plan(&declared(text), &options).expect("a plan");
+    let system = plan.system.clone();
+    let done: Result<(), PrepareError> = drive(&mut plan.algorithm, &mut |opening| {
+        let objects = opening.objects.clone();
+        let find = |digest| objects.iter().find(|o| o.digest() == digest).cloned();
+        let prepared = PreparedWork::new(&system, &opening.stage, &find)?;
+        stages.push(opening.stage.settings.max_endgame_bits);
+        Ok(prepared.run(0..prepared.items(), 8))
+    });
+    done.expect("stages that can be prepared");
+    let set = plan.algorithm.solution_sets(&system).remove(0);
+    assert_eq!(stages, [u32::MAX, 0]);
+    let paths = &set.paths;
+    assert_eq!((paths.total, paths.finite, paths.at_infinity), (2, 1, 1));
+    assert_eq!(paths.decided_by_exact_count, 1);
+    assert!(set.settled(), "{:?}", set.warnings);
 }
 
 /// One solution twice is not as many as two.
