@@ -29,6 +29,11 @@ const BOLDEST: f64 = 1e-3;
 const WITHIN_DATA: f64 = 10.0;
 /// Where more digits are wanted at a smaller radius, one that is larger than this part is small enough.
 const NEARLY: f64 = 0.8;
+/// Where replacing integrals by sums may have made a power sum that is not 0 it is made again at this part of the radius,
+/// where that error is 1e-8 times as large,
+const LESS_ALIASED: f64 = 0.3;
+/// and is not 0 if it differs by no more than this part of it.
+const SAME_POWER_SUM: f64 = 0.1;
 /// Turns after which a path that has not closed is taken further in, twice as many every second time,
 /// unless it looks as if it diverged: more often branch points lie inside the radius than the
 /// winding number is so large.
@@ -149,6 +154,8 @@ pub struct Cauchy {
     points: Vec<Complex64>,
     /// Whether the homogenising coordinates have more digits than the points; relative error of the points they are of.
     precise: Option<f64>,
+    /// The power sum that was not 0 with more digits at the radius before.
+    apart: Option<f64>,
     /// Valuations of the homogenising coordinates at all samples, sample after sample.
     valuations: Vec<Complex64>,
     /// The exponents that were found at the radius before, and at how many radii up to it none fell.
@@ -210,6 +217,7 @@ impl Cauchy {
         self.previous = None;
         self.within = None;
         self.unclosed = 0;
+        self.apart = None;
         self.powers.clear();
     }
 
@@ -338,6 +346,12 @@ impl Cauchy {
     fn after_closing(&mut self, settings: &Settings) -> Next {
         let size = norm(&self.start);
         let infinity = self.at_infinity(size, settings);
+        if let (Infinity::Apart { power_sum, .. }, Some(_)) = (infinity, self.precise)
+            && !self.is_apart(power_sum)
+        {
+            self.previous = None;
+            return self.inward(LESS_ALIASED, settings);
+        }
         match infinity {
             Infinity::Shown => return self.diverging(None),
             Infinity::BelowNoise { within } if self.may_be_finer => {
@@ -404,6 +418,13 @@ impl Cauchy {
         }
         self.previous = Some((self.turns, mean));
         self.inward(SHRINKAGE, settings)
+    }
+
+    /// Whether a power sum that is not 0 is the same at two radii: errors of replacing integrals by sums, of which there
+    /// is an estimate only, are not.
+    fn is_apart(&mut self, power_sum: f64) -> bool {
+        let before = self.apart.replace(power_sum);
+        before.is_some_and(|before| (power_sum - before).abs() <= SAME_POWER_SUM * before)
     }
 
     /// Whether a homogenising coordinate vanishes lies below the noise of the samples.
