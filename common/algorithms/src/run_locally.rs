@@ -56,13 +56,15 @@ pub fn run_in_family(
 
 /// Finds stored points by their digest.
 type Objects<'a> = &'a dyn Fn(Digest) -> Option<Arc<StoredPoints>>;
+/// Of all items of a stage.
+type Results = Result<Vec<ItemResult>, PrepareError>;
 
 /// Solves; `work` does all items of a stage of this system.
 fn run(
     system: &System,
     algorithm: &mut dyn PathAlgorithm,
     objects: Objects<'_>,
-    work: &mut dyn FnMut(&System, &Stage, Objects<'_>) -> Result<Vec<ItemResult>, PrepareError>,
+    work: &mut dyn FnMut(&System, &Stage, Objects<'_>) -> Results,
 ) -> Result<Vec<SolutionSet>, PrepareError> {
     let mut made: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
     drive::<PrepareError, _>(algorithm, &mut |opening| {
