@@ -915,7 +915,10 @@ mod tests {
                         next = cauchy.begin(radius, &x, 1e-15, &[], [false, false]);
                     }
                     Next::Settled(settled) => break settled,
-                    Next::Diverging { .. } | Next::Finer | Next::Unsettled => {
+                    Next::Diverging { .. }
+                    | Next::PreciseSamples
+                    | Next::Finer
+                    | Next::Unsettled => {
                         panic!("{next:?} at {distance}")
                     }
                 }
