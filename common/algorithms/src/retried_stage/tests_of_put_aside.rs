@@ -118,18 +118,18 @@ fn what_failed_is_not_repeated_where_all_solutions_are_found() {
 /// it is found.
 #[test]
 fn a_solution_whose_path_fails_is_found() {
-    let (stages, set) = solve(THREE_OF_FOUR, |stage, path| {
+    let (stages, set) = solve(TWO_OF_FOUR, |stage, path| {
         if stage.settings.max_endgame_bits == 0 && path.outcome == PathOutcome::Regular {
             path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
     });
     let attempts: Vec<u16> = stages.iter().map(|stage| stage.attempt).collect();
     assert_eq!(attempts, [0, 0, 1]);
-    assert_eq!(stages[1].items(), Some(1));
+    assert_eq!(stages[1].items(), Some(2));
     let paths = &set.paths;
     assert_eq!(
         (paths.finite, paths.at_infinity, paths.retracked),
-        (3, 1, 3)
+        (2, 2, 2)
     );
     assert!(set.settled(), "{:?}", set.warnings);
 }

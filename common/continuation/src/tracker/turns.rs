@@ -142,73 +142,7 @@ impl<R: Real> Lockstep<'_, R> {
                     .follow(lane, Complex64::new(radius, 0.0), 0.1 * from);
                 self.lanes[lane].phase = Phase::Inward;
             }
-            cauchy::Next::Settled(settled) => {
-                self.point.clear();
-                self.point.extend_from_slice(&settled.endpoint);
-                let mut report = self.refiner.refine(&mut self.point, target);
-                // A condition number that stops growing towards t = 0 belongs to a regular
-                // endpoint; one that grows with the accuracy of the point to a singular one.
-                let near = self.refiner.condition_at(
-                    self.lanes[lane].cauchy.start(),
-                    Complex64::new(settled.radius, 0.0),
-                    target,
-                );
-                let moved = distance(&self.point, &settled.endpoint) / norm(&settled.endpoint);
-                let farthest = 1e3 * settled.accuracy.max(1e-12);
-                let mut regular = settled.winding_number == 1
-                    && report.converged
-                    && report.condition <= 100.0 * near
-                    && moved <= farthest;
-                if !regular && settled.winding_number == 1 {
-                    let end = &settled.endpoint;
-                    let found = self.regular_in_own_units(end, target);
-                    let beside = |point: &Vec<_>| distance(point, end) <= farthest * norm(end);
-                    if let Some(point) = found.filter(beside) {
-                        regular = true;
-                        report = self.refiner.report(&point, target);
-                        report.accuracy = f64::EPSILON;
-                        self.point = point;
-                    }
-                }
-                // In doubles a multiple point and points that are only close are the same (a
-                // perturbation by the unit roundoff takes a double point apart by its square root). Deflated
-                // equations tell; where they did not the path is tracked again, and the next rung tells.
-                let again = self.stage.attempt() > 0;
-                if !regular && again && self.tracking.bits == DOUBLE && self.tracking.up {
-                    let path = &mut self.lanes[lane];
-                    let begin = path.last_turn.take().or(path.first_turn.take());
-                    let (radius, point) = begin.expect("turns begin somewhere");
-                    self.hand_off_from(lane, Complex64::new(radius, 0.0), point, Handoff::Up);
-                    return;
-                }
-                // Newton's method converges, to what rounding makes of the equations.
-                if regular && report.accuracy > BLURRED {
-                    if self.tracking.up {
-                        return self.follow_endgame(lane, cauchy::Next::Finer);
-                    }
-                    return self.follow_endgame(lane, cauchy::Next::Unsettled);
-                }
-                let outcome = if regular {
-                    PathOutcome::Regular
-                } else {
-                    self.point.clear();
-                    self.point.extend_from_slice(&settled.endpoint);
-                    report = self.refiner.report(&self.point, target);
-                    if report.residual > SOLVES.max(SOLVES_WITHIN * settled.accuracy) {
-                        let next = self.lanes[lane].cauchy.agreed_on_none(&self.settings);
-                        return self.follow_endgame(lane, next);
-                    }
-                    report.accuracy = settled.accuracy;
-                    PathOutcome::Singular
-                };
-                self.finish(
-                    lane,
-                    outcome,
-                    report,
-                    Some(settled.winding_number),
-                    settled.infinity_turns,
-                );
-            }
+            cauchy::Next::Settled(settled) => self.settle(lane, settled),
             cauchy::Next::Diverging {
                 winding_number,
                 infinity_turns,
@@ -258,6 +192,76 @@ impl<R: Real> Lockstep<'_, R> {
         path.effort += u64::from(found.evaluations);
         path.cauchy
             .with_precise_samples(found.samples, &self.settings)
+    }
+
+    /// Two radii agree on where a path ends: it does, at a regular point or a singular one, unless that is no solution.
+    fn settle(&mut self, lane: usize, settled: cauchy::Settled) {
+        let target = self.lanes[lane].target;
+        self.point.clear();
+        self.point.extend_from_slice(&settled.endpoint);
+        let mut report = self.refiner.refine(&mut self.point, target);
+        // A condition number that stops growing towards t = 0 belongs to a regular
+        // endpoint; one that grows with the accuracy of the point to a singular one.
+        let near = self.refiner.condition_at(
+            self.lanes[lane].cauchy.start(),
+            Complex64::new(settled.radius, 0.0),
+            target,
+        );
+        let moved = distance(&self.point, &settled.endpoint) / norm(&settled.endpoint);
+        let farthest = 1e3 * settled.accuracy.max(1e-12);
+        let mut regular = settled.winding_number == 1
+            && report.converged
+            && report.condition <= 100.0 * near
+            && moved <= farthest;
+        if !regular && settled.winding_number == 1 {
+            let end = &settled.endpoint;
+            let found = self.regular_in_own_units(end, target);
+            let beside = |point: &Vec<_>| distance(point, end) <= farthest * norm(end);
+            if let Some(point) = found.filter(beside) {
+                regular = true;
+                report = self.refiner.report(&point, target);
+                report.accuracy = f64::EPSILON;
+                self.point = point;
+            }
+        }
+        // In doubles a multiple point and points that are only close are the same (a
+        // perturbation by the unit roundoff takes a double point apart by its square root). Deflated
+        // equations tell; where they did not the path is tracked again, and the next rung tells.
+        let again = self.stage.attempt() > 0;
+        if !regular && again && self.tracking.bits == DOUBLE && self.tracking.up {
+            let path = &mut self.lanes[lane];
+            let begin = path.last_turn.take().or(path.first_turn.take());
+            let (radius, point) = begin.expect("turns begin somewhere");
+            self.hand_off_from(lane, Complex64::new(radius, 0.0), point, Handoff::Up);
+            return;
+        }
+        // Newton's method converges, to what rounding makes of the equations.
+        if regular && report.accuracy > BLURRED {
+            if self.tracking.up {
+                return self.follow_endgame(lane, cauchy::Next::Finer);
+            }
+            return self.follow_endgame(lane, cauchy::Next::Unsettled);
+        }
+        let outcome = if regular {
+            PathOutcome::Regular
+        } else {
+            self.point.clear();
+            self.point.extend_from_slice(&settled.endpoint);
+            report = self.refiner.report(&self.point, target);
+            if report.residual > SOLVES.max(SOLVES_WITHIN * settled.accuracy) {
+                let next = self.lanes[lane].cauchy.agreed_on_none(&self.settings);
+                return self.follow_endgame(lane, next);
+            }
+            report.accuracy = settled.accuracy;
+            PathOutcome::Singular
+        };
+        self.finish(
+            lane,
+            outcome,
+            report,
+            Some(settled.winding_number),
+            settled.infinity_turns,
+        );
     }
 
     /// Turns have taken a path for one to infinity: it is, unless it ends far out.
