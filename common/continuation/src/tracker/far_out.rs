@@ -39,6 +39,16 @@ pub(super) enum Place {
     Unresolved,
 }
 
+/// Whether a homogenising coordinate that is this part of the largest, and has digits of its own, is clearly not 0.
+pub(super) fn is_finite(settings: &Settings, coordinate: f64) -> bool {
+    coordinate
+        > if settings.exact_data {
+            0.0
+        } else {
+            WITHIN_DATA * BAND
+        }
+}
+
 /// Where a regular end near a point of the chart is.
 pub(super) fn resolve(
     homotopy: &Homotopy,

@@ -171,13 +171,22 @@ impl<R: Real> Lockstep<'_, R> {
         }
     }
 
-    /// The regular solution at a point of the chart, whose coordinates may be of very different sizes; `None` where there
-    /// is none.
-    fn regular_in_own_units(&self, point: &[Complex64], target: u64) -> Option<Vec<Complex64>> {
+    /// The regular solution at a point of the chart, whose coordinates may be of very different sizes: the point of the
+    /// chart, and normalised homogeneous coordinates, each with digits of its own. `None` where there is none, or one that
+    /// coefficients within their accuracy may take to infinity.
+    fn regular_in_own_units(
+        &self,
+        point: &[Complex64],
+        target: u64,
+    ) -> Option<(Vec<Complex64>, Vec<Complex64>)> {
         let (homotopy, affine) = (self.tracking.homotopy, self.stage.homotopy());
         let there = affine.chart().point(&homotopy.endpoint(point))?;
         let found = scaled_newton::regular_nearby(affine, &there, target)?;
-        homotopy.chart().point(&affine.chart().homogeneous(&found))
+        let endpoint = affine.endpoint(&found);
+        let is_finite =
+            far_out::is_finite(&self.settings, homotopy.smallest_homogenizing(&endpoint));
+        let point = homotopy.chart().point(&affine.chart().homogeneous(&found));
+        Some((point.filter(|_| is_finite)?, endpoint))
     }
 
     /// What the endgame wants once it has the samples of the present turns with the digits of double-doubles.
@@ -209,19 +218,28 @@ impl<R: Real> Lockstep<'_, R> {
         );
         let moved = distance(&self.point, &settled.endpoint) / norm(&settled.endpoint);
         let farthest = 1e3 * settled.accuracy.max(1e-12);
-        let mut regular = settled.winding_number == 1
+        let regular = settled.winding_number == 1
             && report.converged
             && report.condition <= 100.0 * near
             && moved <= farthest;
         if !regular && settled.winding_number == 1 {
             let end = &settled.endpoint;
-            let found = self.regular_in_own_units(end, target);
-            let beside = |point: &Vec<_>| distance(point, end) <= farthest * norm(end);
-            if let Some(point) = found.filter(beside) {
-                regular = true;
-                report = self.refiner.report(&point, target);
-                report.accuracy = f64::EPSILON;
-                self.point = point;
+            let beside = |(point, _): &(Vec<_>, _)| distance(point, end) <= farthest * norm(end);
+            let found = self.regular_in_own_units(end, target).filter(beside);
+            if let Some((point, endpoint)) = found {
+                let report = self.refiner.report(&point, target);
+                let end = End {
+                    outcome: PathOutcome::Regular,
+                    t: Complex64::default(),
+                    report: Report {
+                        accuracy: f64::EPSILON,
+                        ..report
+                    },
+                    winding_number: Some(1),
+                    infinity_turns: Vec::new(),
+                };
+                self.record(lane, end, endpoint);
+                return self.refill(lane);
             }
         }
         // In doubles a multiple point and points that are only close are the same (a
