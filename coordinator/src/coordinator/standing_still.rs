@@ -4,6 +4,7 @@ use super::{Coordinator, CoordinatorError};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{JobRow, WorkerRow};
 use crate::ledger::rules::PRESENT_MS;
+use crate::results::store::StoreError;
 use tokio::time::Instant;
 
 /// Workers that are looked at.
@@ -21,6 +22,7 @@ impl Coordinator {
         for line in &mut lines {
             line.insert_str(0, "trouble: nothing is given out, because ");
         }
+        lines.extend(self.lost_objects(row).await?);
         let now = self.ledger.now().await?;
         let wanted = row.asked.numerics_revision;
         let is_here = |worker: &WorkerRow| {
@@ -68,5 +70,41 @@ impl Coordinator {
             ));
         }
         Ok(lines)
+    }
+
+    /// What workers need for the stages that go on, and storage has lost: no worker can do them until it is back.
+    async fn lost_objects(&self, row: &JobRow) -> Result<Vec<String>, CoordinatorError> {
+        let mut found = vec![(
+            "the problem".to_owned(),
+            self.store.is_here(row.asked.problem).await,
+        )];
+        let stages = self.ledger.stages(row.job).await?;
+        for stage in stages.iter().filter(|stage| !stage.closed) {
+            let number = stage.stage.0;
+            let definition = match self.store.stage(stage.definition).await {
+                Ok(definition) => definition,
+                Err(error) => {
+                    found.push((format!("the definition of stage {number}"), Err(error)));
+                    continue;
+                }
+            };
+            for (what, digest) in [
+                ("the system", definition.system),
+                ("the start points", definition.start_points.object()),
+            ] {
+                if let Some(digest) = digest {
+                    let read = self.store.is_here(digest).await;
+                    found.push((format!("what has {what} of stage {number}"), read));
+                }
+            }
+        }
+        // Storage that cannot be reached is a trouble of its own.
+        let lost = found.into_iter().filter_map(|(what, read)| {
+            let error = read.err().filter(StoreError::is_loss)?;
+            Some(format!(
+                "storage: {what} is lost, and the job waits until it is back from a backup: {error}"
+            ))
+        });
+        Ok(lost.collect())
     }
 }

@@ -44,3 +44,32 @@ async fn results_that_storage_loses_are_tracked_again() {
         "{happened:?}"
     );
 }
+
+/// A job whose stage cannot be told to any worker says so.
+#[tokio::test]
+async fn what_storage_has_lost_is_named_where_the_job_stands_still() {
+    let clock = Arc::new(ManualClock::default());
+    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    let mut cluster = Cluster::new(ledger, Store::in_memory(), clock, policy(5), 1);
+    cluster.start_coordinator();
+    let problem = &problem();
+    cluster.submit(problem).await;
+    while cluster
+        .ledger
+        .stages(cluster.row().await.job)
+        .await
+        .unwrap()
+        .is_empty()
+    {
+        cluster.drive(0).await;
+    }
+    let job = cluster.row().await.job;
+    let stages = cluster.ledger.stages(job).await.unwrap();
+    let explained = cluster.coordinator(0).explain(job).await.unwrap();
+    assert!(!explained.text.contains("is lost"), "{}", explained.text);
+
+    cluster.store.lose(stages[0].definition).await.unwrap();
+    let explained = cluster.coordinator(0).explain(job).await.unwrap();
+    let expected = "storage: the definition of stage 0 is lost, and the job waits";
+    assert!(explained.text.contains(expected), "{}", explained.text);
+}

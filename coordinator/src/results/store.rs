@@ -220,6 +220,12 @@ impl Store {
         }
     }
 
+    /// Loses an object, as a broken disk does.
+    #[cfg(test)]
+    pub(crate) async fn lose(&self, digest: Digest) -> Result<(), StoreError> {
+        Ok(self.objects.delete(&object_address(digest)).await?)
+    }
+
     /// Writes an object unless it is there; true if it was not.
     async fn create(&self, address: &Address, bytes: Bytes) -> Result<bool, StoreError> {
         // It would make the folder where another is to be mounted.
@@ -272,6 +278,16 @@ impl Store {
             return Err(damaged(&address, "its bytes have another digest"));
         }
         Ok(bytes)
+    }
+
+    /// An error where no object of this digest can be read; its bytes are not looked at.
+    pub async fn is_here(&self, digest: Digest) -> Result<(), StoreError> {
+        let address = object_address(digest);
+        match self.objects.head(&address).await {
+            Ok(_) => Ok(()),
+            Err(object_store::Error::NotFound { .. }) => self.read(&address).await.map(drop),
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// Keeps a checked system; its digest is the problem's.

@@ -9,7 +9,7 @@
 //! endpoint counts when they do, and when two radii agree on it and on c.
 
 use super::circle::VERTICES;
-use super::infinity::{Homogenizing, Infinity, Zero, at_exact_vertex, vanishes};
+use super::infinity::{Homogenizing, Infinity, Zero, at_exact_vertex, beside_vertex, vanishes};
 use super::winding::Winding;
 use crate::chart::norm;
 use crate::tracker::settings::Settings;
@@ -121,10 +121,8 @@ pub struct Settled {
 /// A sample of a path with more digits than it was followed in.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PreciseSample {
-    /// Values of the homogenising coordinates.
+    /// Values of the homogenising coordinates at the vertex itself.
     pub homogenizing: Vec<Homogenizing>,
-    /// t x'/x of the homogenising coordinates x.
-    pub valuations: Vec<Complex64>,
     /// Relative error of the point, at most.
     pub noise: f64,
 }
@@ -439,10 +437,14 @@ impl Cauchy {
         }
     }
 
-    /// Where the samples of the closed turns were taken, in t, and the points there, one after another; the last one is
-    /// the first again.
-    pub(crate) fn samples(&self) -> (&[Complex64], &[Complex64]) {
-        (&self.places, &self.points)
+    /// Where the samples of the closed turns were taken, in t, and how far beside it each one's vertex is; the points
+    /// there, one after another. The last sample is the first again.
+    pub(crate) fn samples(&self) -> (Vec<[Complex64; 2]>, &[Complex64]) {
+        let beside = |(&t, vertex)| [t, beside_vertex(t, self.radius, vertex)];
+        (
+            self.places.iter().zip(0..).map(beside).collect(),
+            &self.points,
+        )
     }
 
     /// [`Next::PreciseSamples`] are these; `None` where Newton's method finds none. At small radii all sheets of a cycle
@@ -458,11 +460,8 @@ impl Cauchy {
         };
         let mut noise = 0.0f64;
         let mut exact = Vec::with_capacity(samples.len() * self.infinity.len());
-        for ((sample, &t), vertex) in samples.iter().zip(&self.places).zip(0..) {
-            let both = sample.homogenizing.iter().zip(&sample.valuations);
-            exact.extend(both.map(|(value, &valuation)| {
-                at_exact_vertex(value, valuation, t, self.radius, vertex)
-            }));
+        for sample in &samples {
+            exact.extend_from_slice(&sample.homogenizing);
             noise = noise.max(sample.noise);
         }
         let again = exact.split_off(exact.len() - self.infinity.len());

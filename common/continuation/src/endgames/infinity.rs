@@ -222,6 +222,13 @@ fn radius_ratio(wanted: f64, error: f64) -> f64 {
     ratio
 }
 
+/// How far a vertex of the circle is from the double `t` next to it.
+pub(super) fn beside_vertex(t: Complex64, radius: f64, vertex: u32) -> Complex64 {
+    let mut off = exact_vertex(radius, vertex);
+    off.sub(&Complex::from_f64((), t.re, t.im));
+    off.lane(0)
+}
+
 /// The value at a vertex of the circle itself, from that at the double `t` next to it.
 ///
 /// `valuation`: t x'/x there. A power of the value would show the rounding of `t`.
@@ -232,9 +239,7 @@ pub(super) fn at_exact_vertex(
     radius: f64,
     vertex: u32,
 ) -> Homogenizing {
-    let mut off = exact_vertex(radius, vertex);
-    off.sub(&Complex::from_f64((), t.re, t.im));
-    let change = valuation * off.lane(0) / t;
+    let change = valuation * beside_vertex(t, radius, vertex) / t;
     let mut moved = *value;
     moved.mul_add(&Complex::from_f64((), change.re, change.im), value);
     moved

@@ -33,6 +33,12 @@ const MOST_CUTS: usize = 2;
 /// Gauss-Newton steps on one slice: towards a set of multiplicity 3 each makes the error smaller by a
 /// third only.
 const MOST_STEPS: usize = 60;
+/// Steps of one direction differ by no more than this part of their length,
+const SAME_DIRECTION: f64 = 0.2;
+/// ... and are shorter by a factor in this range where the point or set is multiple.
+const LEAST_SHRINKING: f64 = 0.35;
+/// The other end of the range: a multiplicity of 5.
+const MOST_SHRINKING: f64 = 0.82;
 /// Points farther away than this many distances of the slice are not near.
 const REACH: f64 = 30.0;
 /// Singular values below this part of the largest are rounding errors of the Jacobian in doubles.
@@ -219,6 +225,7 @@ impl<'a> Slices<'a> {
         let mut x = PrecisePoint::new(&self.around.split.point);
         x.add(&offset);
         let mut without_gain = 0;
+        let mut before: Option<Vec<Complex64>> = None;
         for _ in 0..MOST_STEPS {
             let Around { system, target, .. } = self.around;
             let found = system.linearize_precisely(x.coordinates(), target);
@@ -243,12 +250,32 @@ impl<'a> Slices<'a> {
                     column.push(l * scale);
                 }
             }
-            let step = newton_step(columns, &values, distance);
+            let mut step = newton_step(columns, &values, distance);
+            match before.take().and_then(|before| shrinking(&before, &step)) {
+                // The sum of all the steps to come.
+                Some(ratio) => step.iter_mut().for_each(|s| *s /= 1.0 - ratio),
+                None => before = Some(step.clone()),
+            }
             x.add(&step);
             offset.iter_mut().zip(&step).for_each(|(o, s)| *o += s);
         }
         best
     }
+}
+
+/// By how much a step is shorter than the one before, where it has the same direction and Newton's method converges as it
+/// does towards a multiple point or set: steps that shrink by 1/2 in the singular directions if its multiplicity is 2,
+/// by 2/3 if it is 3 (Griewank: On solving nonlinear equations with simple singularities, SIAM Review 27, 1985).
+fn shrinking(before: &[Complex64], step: &[Complex64]) -> Option<f64> {
+    let product: Complex64 = before.iter().zip(step).map(|(b, s)| b.conj() * s).sum();
+    let ratio = product.re / square(before);
+    let turned: Vec<Complex64> = before
+        .iter()
+        .zip(step)
+        .map(|(b, s)| s - b * ratio)
+        .collect();
+    let same = square(&turned) <= SAME_DIRECTION * SAME_DIRECTION * square(step);
+    (same && (LEAST_SHRINKING..=MOST_SHRINKING).contains(&ratio)).then_some(ratio)
 }
 
 /// The least-squares Newton step.

@@ -1,13 +1,16 @@
 //! Precise samples: points at which doubles have followed a path around t = 0, with the digits of double-doubles.
 //!
 //! Whether several sheets run to infinity together lies below the noise of doubles, which follow them well enough all
-//! the same. Newton's method with more digits, at eight samples at a time, takes that noise away; the path need not be
-//! followed again.
+//! the same. Newton's method with more digits takes that noise away, at eight samples at a time; the path need not be
+//! followed again. Residuals alone need the digits: the Jacobian's elimination in doubles makes each correction shorter by
+//! its condition number times their unit roundoff (iterative refinement: Higham, Accuracy and Stability of Numerical
+//! Algorithms, 2002, chapter 12).
 
 use super::digits::Digits;
 use crate::chart::LEAST_NORM;
 use crate::endgames::cauchy::PreciseSample;
 use crate::homotopies::Homotopy;
+use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSet, dispatch_set};
 use cognate_numeric::lanes::double_doubles::{DoubleDoubleLanes, WIDTH};
 use cognate_numeric::linear_algebra::lu::eliminate;
@@ -26,7 +29,7 @@ const CONTRACTION: f64 = 1e-3;
 /// or what rounding makes of them, which is no more than this.
 const ROUNDING: f64 = 1e-18;
 /// Newton steps at most.
-const ROUNDS: u32 = 4;
+const ROUNDS: u32 = 7;
 
 /// What became of the samples of one path.
 pub(super) struct Found {
@@ -38,9 +41,9 @@ pub(super) struct Found {
 
 /// Newton's method at samples of paths of one homotopy.
 pub(super) trait NewtonAtSamples {
-    /// `places`: where the samples were taken, in t; `points`: the points there, one after another; `target`: which of
-    /// the homotopy's targets the path goes to.
-    fn precise(&mut self, places: &[Complex64], points: &[Complex64], target: u64) -> Found;
+    /// `places`: where the samples were taken, in t, and how far beside it the vertex is; `points`: the points there, one
+    /// after another; `target`: which of the homotopy's targets the path goes to.
+    fn precise(&mut self, places: &[[Complex64; 2]], points: &[Complex64], target: u64) -> Found;
 }
 
 /// Work space for one homotopy.
@@ -62,7 +65,9 @@ impl<'a> JobOfSet for Made<'a> {
 struct InLanes<'a, S: CompiledSet> {
     homotopy: &'a Homotopy,
     scratch: <Interpreter as Evaluate<DoubleDoubleLanes<S>>>::Scratch,
+    /// [J | H | H_t], and [J | H] at the vertices, rounded.
     matrix: Matrix<DoubleDoubleLanes<S>>,
+    rounded: Matrix<Lanes<WIDTH>>,
     x: Vec<Complex<DoubleDoubleLanes<S>>>,
     p: Vec<Complex<DoubleDoubleLanes<S>>>,
     dp: Vec<Complex<DoubleDoubleLanes<S>>>,
@@ -77,6 +82,7 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
             homotopy,
             scratch: Evaluate::<DoubleDoubleLanes<S>>::scratch(homotopy.program(), ()),
             matrix: Matrix::zeros((), n, n + 2),
+            rounded: Matrix::zeros((), n, n + 1),
             x: vec![zero; n],
             p: vec![zero; homotopy.parameter_count()],
             dp: vec![zero; homotopy.parameter_count()],
@@ -85,34 +91,19 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
     }
 
     /// The sample in one lane, where the last Newton step led.
-    fn sample(&self, lane: usize, t: Complex64, noise: f64) -> PreciseSample {
-        let n = self.x.len();
+    fn sample(&self, lane: usize, noise: f64) -> PreciseSample {
         let one =
             |z: &Complex<DoubleDoubleLanes<S>>| Digits::of(z, lane).value::<DoubleDouble<f64>>(());
         let here: Vec<_> = self.x.iter().map(one).collect();
-        // The column of H_t is the tangent with the other sign.
-        let mut back = here.clone();
-        for (i, z) in back.iter_mut().enumerate() {
-            z.add(&one(self.matrix.at(i, n + 1)));
-        }
-        let homogenizing = self.homotopy.homogenizing((), &here);
-        let before = self.homotopy.homogenizing((), &back);
-        let valuation = |(x, back): (&Complex<DoubleDouble<f64>>, Complex<DoubleDouble<f64>>)| {
-            let mut change = *x;
-            change.sub(&back);
-            t * change.lane(0) / x.lane(0)
-        };
-        let valuations = homogenizing.iter().zip(before).map(valuation).collect();
         PreciseSample {
-            homogenizing,
-            valuations,
+            homogenizing: self.homotopy.homogenizing((), &here),
             noise,
         }
     }
 }
 
 impl<S: CompiledSet> NewtonAtSamples for InLanes<'_, S> {
-    fn precise(&mut self, places: &[Complex64], points: &[Complex64], target: u64) -> Found {
+    fn precise(&mut self, places: &[[Complex64; 2]], points: &[Complex64], target: u64) -> Found {
         let n = self.x.len();
         let mut samples = Vec::with_capacity(places.len());
         let mut evaluations = 0;
@@ -131,8 +122,8 @@ impl<S: CompiledSet> NewtonAtSamples for InLanes<'_, S> {
                     evaluations,
                 };
             };
-            let in_lanes = places.iter().zip(last).enumerate();
-            samples.extend(in_lanes.map(|(lane, (&t, noise))| self.sample(lane, t, noise)));
+            let in_lanes = last.into_iter().enumerate().take(places.len());
+            samples.extend(in_lanes.map(|(lane, noise)| self.sample(lane, noise)));
         }
         Found {
             samples: Some(samples),
@@ -144,7 +135,7 @@ impl<S: CompiledSet> NewtonAtSamples for InLanes<'_, S> {
 /// Newton's method at as many samples as there are lanes.
 struct Newton<'r, 'a, S: CompiledSet> {
     space: &'r mut InLanes<'a, S>,
-    places: &'r [Complex64],
+    places: &'r [[Complex64; 2]],
     points: &'r [Complex64],
     target: u64,
 }
@@ -163,10 +154,12 @@ impl<S: CompiledSet> Job for Newton<'_, '_, S> {
         let space = self.space;
         let n = space.x.len();
         let mut t = Complex::from_f64((), 0.0, 0.0);
+        let mut beside: Complex<Lanes<WIDTH>> = t;
         // Lanes without a sample of their own have the last one.
         for lane in 0..WIDTH {
             let sample = lane.min(self.places.len() - 1);
-            t.set_lane(lane, self.places[sample]);
+            t.set_lane(lane, self.places[sample][0]);
+            beside.set_lane(lane, self.places[sample][1]);
             for (x, z) in space.x.iter_mut().zip(&self.points[sample * n..]) {
                 x.set_lane(lane, *z);
             }
@@ -182,7 +175,7 @@ impl<S: CompiledSet> Job for Newton<'_, '_, S> {
         let mut before = f64::INFINITY;
         let mut rounds = 0;
         let last = loop {
-            let last = space.step();
+            let last = space.step(&beside);
             rounds += 1;
             let largest = last.iter().copied().fold(0.0, f64::max);
             let is_number = last.iter().all(|c| c.is_finite());
@@ -206,18 +199,31 @@ impl<S: CompiledSet> Job for Newton<'_, '_, S> {
 }
 
 impl<S: CompiledSet> InLanes<'_, S> {
-    /// A Newton step in every lane; the corrections, relative to the largest coordinate.
+    /// A Newton step towards the path beside t in every lane; the corrections, relative to the largest coordinate.
     #[inline(always)]
-    fn step(&mut self) -> [f64; WIDTH] {
+    fn step(&mut self, beside: &Complex<Lanes<WIDTH>>) -> [f64; WIDTH] {
         let n = self.x.len();
         let (program, scratch) = (self.homotopy.program(), &mut self.scratch);
         program.linearize(&self.x, &self.p, &self.dp, &mut self.matrix, scratch);
-        let mut exchanges = Real::from_f64((), 0.0);
-        eliminate::<DoubleDoubleLanes<S>, 2>(&mut self.matrix, &mut exchanges);
+        let beside = Complex::<DoubleDoubleLanes<S>>::from_control((), beside);
+        let rounded = |z: &Complex<DoubleDoubleLanes<S>>| Complex {
+            re: z.re.control(),
+            im: z.im.control(),
+        };
+        for i in 0..n {
+            for j in 0..n {
+                *self.rounded.at_mut(i, j) = rounded(self.matrix.at(i, j));
+            }
+            let mut value = *self.matrix.at(i, n);
+            value.mul_add(&beside, self.matrix.at(i, n + 1));
+            *self.rounded.at_mut(i, n) = rounded(&value);
+        }
+        let mut exchanges = Lanes::from_f64((), 0.0);
+        eliminate::<Lanes<WIDTH>, 1>(&mut self.rounded, &mut exchanges);
         let mut largest = [(0.0f64, LEAST_NORM * LEAST_NORM); WIDTH];
         for (i, x) in self.x.iter_mut().enumerate() {
-            let delta = self.matrix.at(i, n);
-            x.sub(delta);
+            let delta = self.rounded.at(i, n);
+            x.sub(&Complex::from_control((), delta));
             for (lane, (correction, size)) in largest.iter_mut().enumerate() {
                 let here = delta.lane(lane).norm_sqr();
                 if here > *correction || here.is_nan() {

@@ -196,7 +196,7 @@ impl<R: Real> Lockstep<'_, R> {
         let newton = newton.get_or_insert_with(|| newton_at_samples(homotopy));
         let path = &mut self.lanes[lane];
         let (places, points) = path.cauchy.samples();
-        let found = newton.precise(places, points, path.target);
+        let found = newton.precise(&places, points, path.target);
         path.evaluations += found.evaluations;
         path.effort += u64::from(found.evaluations);
         path.cauchy

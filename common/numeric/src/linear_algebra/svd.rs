@@ -5,7 +5,7 @@
 //! SIAM J. Matrix Anal. Appl. 13, 1992). For single small matrices at the end of a
 //! path; nothing here is in an inner loop.
 
-use super::vector::{inner, square};
+use super::vector::inner;
 use num_complex::Complex64;
 
 /// A matrix as columns, and A V = U S with orthonormal V and the singular values S.
@@ -25,13 +25,64 @@ const ORTHOGONAL: f64 = 1e-15;
 /// More sweeps than any matrix needs; convergence is quadratic.
 const MOST_SWEEPS: usize = 60;
 
-/// Two columns turned by the rotation that makes the columns orthogonal.
-fn turn(p: &mut [Complex64], q: &mut [Complex64], c: f64, s: f64, phase: Complex64) {
-    for (a, b) in p.iter_mut().zip(q) {
-        let turned = *b * phase.conj();
-        let (x, y) = (*a * c - turned * s, *a * s + turned * c);
-        *a = x;
-        *b = y;
+/// A column of A V above the same column of V, real and imaginary parts apart; rows are filled up with 0 to a multiple
+/// of [`AT_ONCE`] before V begins.
+struct Column {
+    re: Vec<f64>,
+    im: Vec<f64>,
+    /// Squared length of the part of A V.
+    square: f64,
+}
+
+/// Terms that are summed apart, so that sums are not one chain of additions.
+const AT_ONCE: usize = 4;
+
+fn terms(part: &[f64]) -> &[[f64; AT_ONCE]] {
+    part.as_chunks().0
+}
+
+impl Column {
+    /// The part of A V, `rows` long.
+    fn parts(&self, rows: usize) -> (&[f64], &[f64]) {
+        (&self.re[..rows], &self.im[..rows])
+    }
+
+    fn measure(&mut self, rows: usize) {
+        let (re, im) = self.parts(rows);
+        let mut sums = [0.0; AT_ONCE];
+        for (re, im) in terms(re).iter().zip(terms(im)) {
+            for k in 0..AT_ONCE {
+                sums[k] += re[k] * re[k] + im[k] * im[k];
+            }
+        }
+        self.square = sums.iter().sum();
+    }
+
+    /// The inner product of two columns of A V.
+    fn inner(&self, other: &Self, rows: usize) -> Complex64 {
+        let ((a, b), (x, y)) = (self.parts(rows), other.parts(rows));
+        let (mut re, mut im) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
+        let left = terms(a).iter().zip(terms(b));
+        let right = terms(x).iter().zip(terms(y));
+        for ((a, b), (x, y)) in left.zip(right) {
+            for k in 0..AT_ONCE {
+                re[k] += a[k] * x[k] + b[k] * y[k];
+                im[k] += a[k] * y[k] - b[k] * x[k];
+            }
+        }
+        Complex64::new(re.iter().sum(), im.iter().sum())
+    }
+
+    /// This column and another turned by the rotation that makes them orthogonal.
+    fn turn(&mut self, other: &mut Self, c: f64, s: f64, phase: Complex64) {
+        let left = self.re.iter_mut().zip(&mut self.im);
+        let right = other.re.iter_mut().zip(&mut other.im);
+        for ((a, b), (x, y)) in left.zip(right) {
+            let re = *x * phase.re + *y * phase.im;
+            let im = *y * phase.re - *x * phase.im;
+            (*a, *x) = (*a * c - re * s, *a * s + re * c);
+            (*b, *y) = (*b * c - im * s, *b * s + im * c);
+        }
     }
 }
 
@@ -46,51 +97,41 @@ impl Svd {
             columns.windows(2).all(|w| w[0].len() == w[1].len()),
             "a matrix has columns of one length"
         );
-        let mut images = columns;
-        let mut domain: Vec<Vec<Complex64>> = (0..n)
-            .map(|j| {
-                let mut unit = vec![Complex64::default(); n];
-                unit[j] = Complex64::new(1.0, 0.0);
-                unit
-            })
-            .collect();
-        for _ in 0..MOST_SWEEPS {
-            let mut turned = false;
-            let largest = images.iter().map(|c| square(c)).fold(0.0, f64::max);
-            for p in 0..n {
-                for q in p + 1..n {
-                    let (alpha, beta) = (square(&images[p]), square(&images[q]));
-                    let gamma = inner(&images[p], &images[q]);
-                    let size = gamma.norm_sqr().sqrt();
-                    // Columns that are rounding errors of the largest have no direction.
-                    let noise = 1e-34 * largest;
-                    if !(size > ORTHOGONAL * (alpha * beta).sqrt() && size > noise) {
-                        continue;
-                    }
-                    turned = true;
-                    let zeta = (beta - alpha) / (2.0 * size);
-                    let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
-                    let c = 1.0 / (1.0 + t * t).sqrt();
-                    let s = c * t;
-                    let phase = gamma / size;
-                    let (left, right) = images.split_at_mut(q);
-                    turn(&mut left[p], &mut right[0], c, s, phase);
-                    let (left, right) = domain.split_at_mut(q);
-                    turn(&mut left[p], &mut right[0], c, s, phase);
-                }
+        let length = columns.first().map_or(0, Vec::len);
+        let rows = length.next_multiple_of(AT_ONCE);
+        let column = |(j, from): (usize, &Vec<Complex64>)| {
+            let mut column = Column {
+                re: vec![0.0; rows + n],
+                im: vec![0.0; rows + n],
+                square: 0.0,
+            };
+            for (i, z) in from.iter().enumerate() {
+                (column.re[i], column.im[i]) = (z.re, z.im);
             }
-            if !turned {
+            column.re[rows + j] = 1.0;
+            column.measure(rows);
+            column
+        };
+        let mut turned: Vec<Column> = columns.iter().enumerate().map(column).collect();
+        for _ in 0..MOST_SWEEPS {
+            if !sweep(&mut turned, rows) {
                 break;
             }
         }
-        let sizes: Vec<f64> = images.iter().map(|c| square(c).sqrt()).collect();
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&a, &b| sizes[b].total_cmp(&sizes[a]).then(a.cmp(&b)));
-        let take = |from: &[Vec<Complex64>]| order.iter().map(|&k| from[k].clone()).collect();
+        turned.sort_by(|a, b| b.square.total_cmp(&a.square));
+        let take = |range: std::ops::Range<usize>| {
+            let part = |column: &Column| {
+                let both = column.re[range.clone()]
+                    .iter()
+                    .zip(&column.im[range.clone()]);
+                both.map(|(&re, &im)| Complex64::new(re, im)).collect()
+            };
+            turned.iter().map(part).collect()
+        };
         Self {
-            values: order.iter().map(|&k| sizes[k]).collect(),
-            domain: take(&domain),
-            images: take(&images),
+            values: turned.iter().map(|column| column.square.sqrt()).collect(),
+            domain: take(rows..rows + n),
+            images: take(0..length),
         }
     }
 
@@ -106,6 +147,40 @@ impl Svd {
         }
         x
     }
+}
+
+/// Every pair of columns made orthogonal in turn, the longest first (de Rijk: A one-sided Jacobi algorithm for computing
+/// the singular value decomposition on a vector computer, SIAM J. Sci. Stat. Comput. 10, 1989); whether one was not.
+fn sweep(columns: &mut [Column], rows: usize) -> bool {
+    let mut any = false;
+    // Columns that are rounding errors of the largest have no direction.
+    let noise = 1e-34 * columns.iter().map(|c| c.square).fold(0.0, f64::max);
+    for p in 0..columns.len() {
+        let longest = (p..columns.len()).max_by(|&a, &b| {
+            columns[a]
+                .square
+                .total_cmp(&columns[b].square)
+                .then(b.cmp(&a))
+        });
+        columns.swap(p, longest.unwrap_or(p));
+        let (left, right) = columns.split_at_mut(p + 1);
+        let this = &mut left[p];
+        for other in right {
+            let gamma = this.inner(other, rows);
+            let size = gamma.norm_sqr().sqrt();
+            if !(size > ORTHOGONAL * (this.square * other.square).sqrt() && size > noise) {
+                continue;
+            }
+            any = true;
+            let zeta = (other.square - this.square) / (2.0 * size);
+            let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
+            let c = 1.0 / (1.0 + t * t).sqrt();
+            this.turn(other, c, c * t, gamma / size);
+            this.measure(rows);
+            other.measure(rows);
+        }
+    }
+    any
 }
 
 #[cfg(test)]
