@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 const FILES: [&str; 5] = [
     "problem.proto",
-    "path.proto",
     "solution.proto",
+    "path.proto",
     "client_api.proto",
     "worker_api.proto",
 ];

@@ -3,21 +3,61 @@
 //! The result is resolved: the file's settings are merged, every setting and
 //! the seed are named, start solutions are an object.
 
-use crate::api::error::ApiError;
 use crate::api::visible::visible;
 use crate::coordinator::NewProblem;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_numeric::precision::DOUBLE;
+use cognate_protocol::error::ProtocolError;
 use cognate_protocol::file_settings::{MOST_BITS, arithmetic, of_file, precision_warning};
+use cognate_protocol::option_misfit::OptionMisfit;
 use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartSolutions, Submission,
 };
 use cognate_protocol::{digest, from_proto, to_proto};
-use cognate_systems::formats::{self, FileSettings};
+use cognate_systems::formats::{self, FileSettings, FormatError};
 use cognate_systems::system::System;
 
+/// Why a submission is not taken.
+#[derive(Debug, thiserror::Error)]
+pub enum IntakeError {
+    /// The system is none that a message can carry.
+    #[error(transparent)]
+    Message(#[from] ProtocolError),
+    /// A file that was sent is malformed.
+    #[error(transparent)]
+    File(#[from] FormatError),
+    /// Options do not go with each other.
+    #[error(transparent)]
+    Options(#[from] OptionMisfit),
+    /// What a field holds does not go with the rest of the problem.
+    #[error("{field}: {what}")]
+    Field {
+        /// The field, as a path from the problem.
+        field: &'static str,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A later version will.
+    #[error("not in this version: {0}")]
+    NotInThisVersion(String),
+}
+
+impl IntakeError {
+    /// The field of the request that is at fault, as a path from the outermost message; `None` where it is not
+    /// one field.
+    pub fn field(&self) -> Option<String> {
+        match self {
+            Self::Message(error) => Some(error.field().to_owned()),
+            Self::File(_) => Some("problem.text".to_owned()),
+            Self::Options(misfit) => Some(format!("problem.options.{}", misfit.field())),
+            Self::Field { field, .. } => Some(format!("problem.{field}")),
+            Self::NotInThisVersion(_) => None,
+        }
+    }
+}
+
 /// Checks and resolves a submission.
-pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
+pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
     let Submission {
         source,
         mut options,
@@ -99,11 +139,11 @@ pub fn take(submission: Submission) -> Result<NewProblem, ApiError> {
 }
 
 /// What fits together; the rest is the planner's business.
-fn check_options(options: &Options) -> Result<(), ApiError> {
+fn check_options(options: &Options) -> Result<(), IntakeError> {
     if let PrecisionChoice::Bits(bits) = options.precision
         && bits > MOST_BITS
     {
-        return Err(ApiError::NotInThisVersion(format!(
+        return Err(IntakeError::NotInThisVersion(format!(
             "precision of {bits} bits; paths are tracked with {MOST_BITS} at most"
         )));
     }
@@ -111,8 +151,8 @@ fn check_options(options: &Options) -> Result<(), ApiError> {
 }
 
 /// Start solutions have a coordinate for each variable.
-pub fn check_points(points: &StoredPoints, system: &System) -> Result<(), ApiError> {
-    let wrong = |what: String| ApiError::Field {
+fn check_points(points: &StoredPoints, system: &System) -> Result<(), IntakeError> {
+    let wrong = |what: String| IntakeError::Field {
         field: "options.start_solutions",
         what,
     };
@@ -135,7 +175,7 @@ mod tests {
     use cognate_continuation::tracker::settings::{Preset, Settings};
     use cognate_protocol::submission::StartKind;
 
-    fn text(content: &str, options: Options) -> Result<NewProblem, ApiError> {
+    fn text(content: &str, options: Options) -> Result<NewProblem, IntakeError> {
         take(Submission {
             source: Source::Text {
                 name: "a.txt".to_owned(),
@@ -221,10 +261,11 @@ mod tests {
     fn what_cannot_be_is_said_with_its_place() {
         let said = |content: &str, options: Options| {
             let error = text(content, options).expect_err("this is no job");
-            (error.code(), error.to_string())
+            let message = error.to_string();
+            (error, message)
         };
-        let (code, message) = said("variable_group x; function f; f = (x;", Options::default());
-        assert_eq!(code, tonic::Code::InvalidArgument);
+        let (error, message) = said("variable_group x; function f; f = (x;", Options::default());
+        assert_eq!(error.field().as_deref(), Some("problem.text"));
         assert!(message.starts_with("a.txt:"), "{message}");
         let (_, message) = said("", Options::default());
         assert!(message.starts_with("a.txt:"), "{message}");
@@ -238,8 +279,11 @@ mod tests {
             precision: PrecisionChoice::Bits(MOST_BITS + 1),
             ..Options::default()
         };
-        let (code, message) = said(CIRCLES, options);
-        assert_eq!(code, tonic::Code::Unimplemented);
+        let (error, message) = said(CIRCLES, options);
+        assert!(
+            matches!(error, IntakeError::NotInThisVersion(_)),
+            "{error:?}"
+        );
         assert!(message.starts_with("not in this version"), "{message}");
         let options = Options {
             groups: Some(vec![vec!["x".to_owned(), "z".to_owned()]]),

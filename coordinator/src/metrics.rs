@@ -59,9 +59,9 @@ pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<Strin
     let mut micros = 0;
     let mut speculative = [0; 2];
     let mut standing = HashMap::new();
-    for job in ledger.jobs(ROWS).await? {
+    for (job, stages) in ledger.overviews(ROWS).await? {
         *states.entry(job.state.name()).or_default() += 1;
-        for stage in ledger.stages(job.job).await? {
+        for stage in stages {
             if !job.state.has_ended() {
                 chunks[0] += stage.ready.chunks;
                 chunks[1] += stage.leased.chunks;

@@ -37,7 +37,7 @@ impl<C> Reports<C> {
         assert!(before.is_none(), "a lease's chunk is finished once");
     }
 
-    /// Those to be sent now; they count as sent from here on.
+    /// Reports to be sent now; they count as sent from here on.
     pub fn send_due(&mut self, now: Moment) -> Vec<(LeaseId, Arc<C>)> {
         let due = self
             .kept

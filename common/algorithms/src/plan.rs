@@ -423,10 +423,7 @@ fn plan_given(
             targets: options.target_parameters.clone(),
         }
     };
-    let number = start.count.checked_mul(match &homotopy {
-        HomotopyKind::Parameter { targets, .. } => targets.len() as u64,
-        _ => 1,
-    });
+    let number = start.count.checked_mul(homotopy.targets());
     // Orbits and named sets need all results.
     let limit = match PathFilter::suits(system) {
         true => MAX_STREAMED_PATHS,

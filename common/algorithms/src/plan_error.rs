@@ -38,7 +38,7 @@ pub enum PlanError {
     /// Parameters without values.
     #[error("the system has parameters ({names}) and no values for them: give target parameters")]
     ParametersWithoutValues {
-        /// Their names.
+        /// Names of the parameters.
         names: String,
     },
     /// The wrong number of values.

@@ -8,7 +8,7 @@ use std::iter::Sum;
 /// One stage of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StageProgress {
-    /// Its number.
+    /// Number of the stage within the job.
     pub id: StageId,
     /// What is done with its items.
     pub work: Work,

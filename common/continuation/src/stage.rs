@@ -116,16 +116,7 @@ impl<'a> Checked<'a> {
             Cow::Borrowed(system)
         };
         let system: &System = &tracked;
-        // Between two generic members of a family almost all paths stay near: they are tracked in
-        // the system's own coordinates, and go on in projective patches where they run far out.
-        let affine = matches!(
-            stage.homotopy,
-            HomotopyKind::Parameter { .. }
-                | HomotopyKind::Toric
-                | HomotopyKind::Generic { .. }
-                | HomotopyKind::MoveSlice { .. }
-                | HomotopyKind::ProductToEquation { .. }
-        );
+        let affine = stage.homotopy.begins_in_affine_coordinates();
         let exchange = stage.start_points.exchange();
         if exchange.is_some_and(|exchange| overdetermined || !exchange.fits(system)) {
             return Err(PrepareError::StartPoints(
@@ -150,9 +141,7 @@ impl<'a> Checked<'a> {
         let items = stage
             .items()
             .ok_or_else(|| PrepareError::StartPoints("they are more than fit in 64 bits".into()))?;
-        let toric = matches!(stage.homotopy, HomotopyKind::Toric);
-        let of_generic = matches!(stage.homotopy, HomotopyKind::Generic { .. });
-        let generic = match toric || of_generic {
+        let generic = match stage.homotopy.has_the_generic_system() {
             true => Some(generic_system(system, overdetermined, stage.seed)?),
             false => None,
         };
@@ -458,14 +447,7 @@ impl PreparedStage {
     /// The path's index in the stage that first started it, and its target.
     pub(crate) fn item(&self, item: u64) -> (u64, u64) {
         let origin = self.stage.origin(item);
-        match self.stage.homotopy {
-            HomotopyKind::Parameter { .. } | HomotopyKind::MoveSlice { .. } => {
-                (origin, origin / self.starts)
-            }
-            // Its cell is found by the path.
-            HomotopyKind::Toric => (origin, origin),
-            _ => (origin, 0),
-        }
+        (origin, self.stage.homotopy.target_of(origin, self.starts))
     }
 
     /// The start point of the path with this origin, in the chart; `None` where it lies on no patch.

@@ -12,9 +12,9 @@ use num_complex::Complex64;
 enum Reach {
     /// All of them.
     Round,
-    /// Those on both sides of the direction to the other pivot.
+    /// Directions on both sides of the one to the other pivot.
     Toward,
-    /// Those on both sides of the opposite direction.
+    /// Directions on both sides of the opposite one.
     Away,
     /// Two ranges, one on each side of the ground.
     TwoRanges,

@@ -6,9 +6,9 @@ use cognate_systems::straight_line_program::instruction::{Assignment, Operand, O
 
 /// Constants as the assignments number them, in doubles.
 pub(crate) struct Constants {
-    /// Those that fill all lanes.
+    /// Constants that fill all lanes.
     pub full: Vec<Complex<f64>>,
-    /// Those that stand once.
+    /// Constants that stand once.
     pub single: Vec<Complex<f64>>,
 }
 

@@ -144,7 +144,7 @@ pub struct DeclaredSets {
 pub const ASKED: usize = 5;
 
 impl DeclaredSets {
-    /// Those of a checked system.
+    /// The sets that a checked system declares.
     pub fn of(system: &System) -> Self {
         let of_equations = |(name, set): (&String, &DegenerateSet)| match set {
             DegenerateSet::Equations(roots) => Some((name.clone(), roots.clone())),

@@ -36,7 +36,7 @@ pub enum NotInvariant {
     },
     /// The image of an equation is no combination of the equations.
     Equation {
-        /// Its name.
+        /// Name of the equation.
         equation: String,
         /// True when pairs of conjugates were named.
         pairs: bool,

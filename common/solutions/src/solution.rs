@@ -18,7 +18,7 @@ pub struct NamedValues(pub Vec<NamedValue>);
 pub struct NamedValue {
     /// The variable.
     pub name: String,
-    /// Its value.
+    /// Its value, rounded to doubles.
     pub value: Complex64,
     /// Real and imaginary part with all digits, where there are more than a double holds.
     pub digits: Option<[String; 2]>,

@@ -71,7 +71,7 @@ impl FailureReason {
 pub struct FailedPath {
     /// Its index in the stage that first started it.
     pub path: u64,
-    /// Why.
+    /// Why the path failed.
     pub reason: FailureReason,
     /// Where it stopped, as |t|.
     pub t: f64,

@@ -92,7 +92,7 @@ pub struct SolutionCounts {
     pub positive_dimensional: Option<bool>,
     /// Solutions in each named set of endpoints that are no answers.
     pub degenerate: BTreeMap<String, u64>,
-    /// Those that were brought to more digits; null where that was not asked for.
+    /// Solutions that were brought to more digits; null where that was not asked for.
     #[serde(default)]
     pub sharpened: Option<SharpenedCounts>,
     /// Finite singular points of which it is not known whether they are isolated; in no other count.

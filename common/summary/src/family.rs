@@ -36,7 +36,7 @@ pub struct CarriedBlock {
 /// A component to which witness points came.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BecomesBlock {
-    /// Its name.
+    /// Name of the component.
     pub id: String,
     /// How many points came.
     pub points: u64,

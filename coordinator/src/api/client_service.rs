@@ -252,7 +252,7 @@ fn progress(progress: JobProgress, warnings: Vec<String>) -> v1::JobProgress {
 fn overview((row, stages): (JobRow, Vec<StageRow>)) -> v1::JobOverview {
     v1::JobOverview {
         job: row.job.to_string(),
-        // Those of an earlier version were kept as they came.
+        // Names that an earlier version took were kept as they came.
         name: visible(&row.asked.label),
         tenant: row.asked.tenant.to_string(),
         state: state(row.state).into(),
@@ -267,7 +267,7 @@ fn overview((row, stages): (JobRow, Vec<StageRow>)) -> v1::JobOverview {
 
 fn classified(path: &ClassifiedPath) -> v1::ClassifiedPath {
     v1::ClassifiedPath {
-        result: Some(to_proto::path::path_result(&path.result)),
+        result: Some(to_proto::path::ended_path(&path.result)),
         class: to_proto::solution::class(path.verdict).into(),
         solution: path.solution,
     }

@@ -4,14 +4,13 @@
 //! is logged, and the caller hears that it is not his fault.
 
 use crate::coordinator::CoordinatorError;
+use crate::intake::IntakeError;
 use crate::jobs::planning::PlanningError;
 use crate::ledger::LedgerError;
 use crate::ledger::identity::IdentityError;
 use crate::results::store::StoreError;
 use cognate_algorithms::plan_error::PlanError;
 use cognate_protocol::error::ProtocolError;
-use cognate_protocol::option_misfit::OptionMisfit;
-use cognate_systems::formats::FormatError;
 use tonic::{Code, Status};
 use tonic_types::{ErrorDetails, StatusExt};
 
@@ -21,23 +20,12 @@ pub enum ApiError {
     /// A message is malformed.
     #[error(transparent)]
     Message(#[from] ProtocolError),
-    /// A file that was sent is malformed.
+    /// A problem is not taken.
     #[error(transparent)]
-    File(#[from] FormatError),
+    Intake(#[from] IntakeError),
     /// A name is none.
     #[error(transparent)]
     Identity(#[from] IdentityError),
-    /// Options do not go with each other.
-    #[error(transparent)]
-    Options(#[from] OptionMisfit),
-    /// What a field holds does not go with the rest of the problem.
-    #[error("{field}: {what}")]
-    Field {
-        /// The field, as a path from the problem.
-        field: &'static str,
-        /// What is wrong with it.
-        what: String,
-    },
     /// A client asks for what is another tenant's.
     #[error("this token is of tenant {own}, and the request is for tenant {asked}")]
     OtherTenant {
@@ -46,9 +34,6 @@ pub enum ApiError {
         /// The request's tenant.
         asked: String,
     },
-    /// A later version will.
-    #[error("not in this version: {0}")]
-    NotInThisVersion(String),
     /// The coordinator did not do it.
     #[error(transparent)]
     Coordinator(#[from] CoordinatorError),
@@ -87,14 +72,13 @@ impl ApiError {
     /// The status code that says what kind of error it is.
     pub fn code(&self) -> Code {
         match self {
-            Self::Message(ProtocolError::Limit { .. }) => Code::ResourceExhausted,
-            Self::Message(_)
-            | Self::File(_)
-            | Self::Identity(_)
-            | Self::Options(_)
-            | Self::Field { .. } => Code::InvalidArgument,
+            Self::Message(ProtocolError::Limit { .. })
+            | Self::Intake(IntakeError::Message(ProtocolError::Limit { .. })) => {
+                Code::ResourceExhausted
+            }
+            Self::Intake(IntakeError::NotInThisVersion(_)) => Code::Unimplemented,
+            Self::Message(_) | Self::Intake(_) | Self::Identity(_) => Code::InvalidArgument,
             Self::OtherTenant { .. } => Code::PermissionDenied,
-            Self::NotInThisVersion(_) => Code::Unimplemented,
             Self::Coordinator(error) => code(error),
             Self::Stopping => Code::Unavailable,
             Self::Panic(_) => Code::Internal,
@@ -108,14 +92,10 @@ impl ApiError {
     fn field(&self) -> Option<String> {
         match self {
             Self::Message(error) => Some(error.field().to_owned()),
-            Self::File(_) => Some("problem.text".to_owned()),
+            Self::Intake(error) => error.field(),
             Self::Identity(error) => error.field().map(str::to_owned),
-            Self::Options(misfit) => Some(format!("problem.options.{}", misfit.field())),
-            Self::Field { field, .. } => Some(format!("problem.{field}")),
             Self::OtherTenant { .. } => Some("tenant".to_owned()),
-            Self::NotInThisVersion(_) | Self::Coordinator(_) | Self::Stopping | Self::Panic(_) => {
-                None
-            }
+            Self::Coordinator(_) | Self::Stopping | Self::Panic(_) => None,
         }
     }
 }

@@ -121,20 +121,15 @@ impl Coordinator {
         limit: u32,
         tenant: Option<&Tenant>,
     ) -> Result<Vec<(JobRow, Vec<StageRow>)>, CoordinatorError> {
-        let mut jobs = Vec::new();
         let wanted = skip.saturating_add(limit);
-        // Those of one tenant may stand behind many of others.
+        // Jobs of one tenant may stand behind many of others.
         let looked = match tenant {
             Some(_) => wanted.max(LATEST_JOBS),
             None => wanted,
         };
-        let rows = self.ledger.jobs(looked).await?.into_iter().rev();
-        let own = rows.filter(|row| tenant.is_none_or(|tenant| row.asked.tenant == *tenant));
-        for row in own.skip(skip as usize).take(limit as usize) {
-            let stages = self.ledger.stages(row.job).await?;
-            jobs.push((row, stages));
-        }
-        Ok(jobs)
+        let jobs = self.ledger.overviews(looked).await?.into_iter().rev();
+        let own = jobs.filter(|(row, _)| tenant.is_none_or(|tenant| row.asked.tenant == *tenant));
+        Ok(own.skip(skip as usize).take(limit as usize).collect())
     }
 
     /// The workers that were heard of last, latest first.

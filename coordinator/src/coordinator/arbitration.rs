@@ -26,7 +26,7 @@ const LOOK: Duration = Duration::from_secs(1);
 
 /// What became of results in doubt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Ruling {
     /// The coordinator found the same.
     Right,
     /// The coordinator found something else.
@@ -115,26 +115,26 @@ impl Coordinator {
     }
 
     /// Whether a result that cannot be right is what its item gives.
-    pub(super) async fn verdict(
+    pub(super) async fn ruling(
         &self,
         lease: LeaseId,
         stage: &Arc<Stage>,
         doubt: &Doubt,
         results: &[ItemResult],
-    ) -> Verdict {
+    ) -> Ruling {
         let item = lease.chunk.first + doubt.place as u64;
         let truth = self.compute(lease.chunk.job, Arc::clone(stage), item);
         match truth.await {
             Ok(truth) => {
                 let said = records::encode([&results[doubt.place]]);
                 match said == records::encode([&truth]) {
-                    true => Verdict::Right,
-                    false => Verdict::Wrong,
+                    true => Ruling::Right,
+                    false => Ruling::Wrong,
                 }
             }
             Err(error) => {
                 tracing::warn!(%lease, item, %error, "the coordinator could not do an item itself");
-                Verdict::Undecided
+                Ruling::Undecided
             }
         }
     }

@@ -33,6 +33,8 @@ mod tests_of_limits;
 mod tests_of_removal;
 #[cfg(test)]
 mod tests_of_storage;
+#[cfg(test)]
+mod tests_of_upgrades;
 mod work;
 
 pub use answers::{ClassifiedPath, Explanation};

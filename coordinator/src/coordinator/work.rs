@@ -1,6 +1,6 @@
 //! What workers call: pull, renew, report, give back.
 
-use super::arbitration::Verdict;
+use super::arbitration::Ruling;
 use super::{Coordinator, CoordinatorError, job_row};
 use crate::chunks::audit::is_audited;
 use crate::chunks::plausibility::{Doubt, EndCheck};
@@ -270,9 +270,9 @@ impl Coordinator {
             }
         })?;
         let (results, doubt) = self.doubt(lease, &stage, results).await?;
-        let verdict = match &doubt {
-            Some(doubt) => self.verdict(lease, &stage, doubt, &results).await,
-            None => Verdict::Right,
+        let ruling = match &doubt {
+            Some(doubt) => self.ruling(lease, &stage, doubt, &results).await,
+            None => Ruling::Right,
         };
         let object = match self
             .store
@@ -294,7 +294,7 @@ impl Coordinator {
             Err(error) => return Err(error.into()),
         };
         let address = object.address.clone();
-        let is_right = verdict == Verdict::Right;
+        let is_right = ruling == Ruling::Right;
         let is_audited = is_audited(lease.chunk, self.policy.audit_percent);
         if let Some(Doubt { why, .. }) = doubt.as_ref().filter(|_| !is_right) {
             self.events.count(ChunkEvent::Doubted, 1);
@@ -303,7 +303,7 @@ impl Coordinator {
             self.failed(&by.worker, why);
         }
         let completion = self
-            .write_down(lease, &by, object, verdict, is_audited)
+            .write_down(lease, &by, object, ruling, is_audited)
             .await?;
         match completion {
             Completion::Unconfirmed => {
@@ -351,16 +351,16 @@ impl Coordinator {
         lease: LeaseId,
         by: &Speaker,
         object: ResultObject,
-        verdict: Verdict,
+        ruling: Ruling,
         is_audited: bool,
     ) -> Result<Completion, CoordinatorError> {
-        let why = match (verdict, is_audited) {
-            (Verdict::Right, false) => return Ok(self.ledger.complete(lease, object).await?),
-            (Verdict::Right, true) => Confirmation::Audit,
-            (Verdict::Undecided, _) => Confirmation::Doubt,
-            (Verdict::Wrong, _) => Confirmation::Wrong,
+        let why = match (ruling, is_audited) {
+            (Ruling::Right, false) => return Ok(self.ledger.complete(lease, object).await?),
+            (Ruling::Right, true) => Confirmation::Audit,
+            (Ruling::Undecided, _) => Confirmation::Doubt,
+            (Ruling::Wrong, _) => Confirmation::Wrong,
         };
-        if verdict == Verdict::Wrong {
+        if ruling == Ruling::Wrong {
             tracing::error!(%lease, worker = %by.worker,
                 "a worker computes wrongly: it gets no more work");
             self.events.count(ChunkEvent::Struck, 1);

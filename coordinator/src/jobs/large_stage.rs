@@ -135,7 +135,7 @@ pub async fn all(
     }
 }
 
-/// Those of a stage's results whose paths are named, ascending.
+/// Results of a stage whose paths are named, ascending.
 async fn fetch(
     tools: &Tools<'_>,
     job: JobId,

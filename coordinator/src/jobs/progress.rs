@@ -13,7 +13,7 @@ pub struct JobProgress {
     /// State of the job.
     pub state: JobState,
     /// Every stage opened so far, in order.
-    pub stages: Vec<StageProgress>,
+    pub stages: Vec<StageItems>,
     /// How the paths of finished chunks ended, in all stages together.
     pub outcomes: Outcomes,
     /// Why it failed or was cancelled, else empty.
@@ -24,7 +24,7 @@ pub struct JobProgress {
 
 /// Items of one stage: ready, leased, accepted and failed make up the total.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StageProgress {
+pub struct StageItems {
     /// Number of the stage within the job, from 0.
     pub stage: StageId,
     /// All items.
@@ -62,7 +62,7 @@ impl JobProgress {
             );
             outcomes.add(row.outcomes);
             let (purpose, mixed_cells) = purpose(row);
-            StageProgress {
+            StageItems {
                 stage: row.stage,
                 total: row.items,
                 ready: row.ready.items,

@@ -677,6 +677,14 @@ pub async fn stages_open_and_close_in_order(ledger: &dyn Ledger, _: &ManualClock
         }
     );
     assert_eq!(stages[0].outcomes.regular, 5);
+    let (other, _) = running(ledger, "another", "t", 2, 2).await;
+    let row = |job| async move { ledger.job(job).await.unwrap().unwrap() };
+    let overviews = [
+        (row(job).await, stages),
+        (row(other).await, ledger.stages(other).await.unwrap()),
+    ];
+    assert_eq!(ledger.overviews(10).await.unwrap(), overviews);
+    assert_eq!(ledger.overviews(1).await.unwrap(), overviews[1..]);
 }
 
 pub async fn leases_are_cut_to_size(ledger: &dyn Ledger, _: &ManualClock) {

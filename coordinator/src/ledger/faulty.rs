@@ -121,6 +121,9 @@ impl Ledger for FaultyLedger {
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
         self.inner.stages(job).await
     }
+    async fn overviews(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, LedgerError> {
+        self.inner.overviews(limit).await
+    }
     async fn steward(
         &self,
         job: JobId,

@@ -159,16 +159,29 @@ impl Ledger for MemoryLedger {
     }
 
     async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError> {
-        let tables = self.tables();
-        let mut rows: Vec<JobRow> = tables.jobs.values().map(|j| j.row.clone()).collect();
-        rows.sort_by_key(|row| row.number);
-        Ok(rows.split_off(rows.len().saturating_sub(limit as usize)))
+        let overviews = self.overviews(limit).await?.into_iter();
+        Ok(overviews.map(|(row, _)| row).collect())
     }
 
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
         let mut tables = self.tables();
         let stages = &tables.job(job)?.stages;
         Ok(stages.values().map(|stage| stage.row.clone()).collect())
+    }
+
+    async fn overviews(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, LedgerError> {
+        let tables = self.tables();
+        let mut jobs: Vec<_> = tables.jobs.values().collect();
+        jobs.sort_by_key(|job| job.row.number);
+        let latest = jobs.len().saturating_sub(limit as usize);
+        let overview = |job: &Job| {
+            let stages = job.stages.values();
+            (
+                job.row.clone(),
+                stages.map(|stage| stage.row.clone()).collect(),
+            )
+        };
+        Ok(jobs[latest..].iter().map(|job| overview(job)).collect())
     }
 
     async fn steward(

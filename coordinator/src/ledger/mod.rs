@@ -106,6 +106,8 @@ pub trait Ledger: Send + Sync {
     async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError>;
     /// The job's stages with their counts, in order.
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError>;
+    /// What [`Self::jobs`] gives, each job with what [`Self::stages`] gives, by few questions for all of them.
+    async fn overviews(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, LedgerError>;
 
     // The steward.
 

@@ -506,7 +506,7 @@ async fn failures(mut calls: Calls, job: &str) -> Result<Response<Body>, Fault> 
 }
 
 /// A failed path, and the command that follows it again.
-fn failure(path: &v1::PathResult, problem: &cognate_summary::solve::ProblemBlock) -> Value {
+fn failure(path: &v1::EndedPath, problem: &cognate_summary::solve::ProblemBlock) -> Value {
     let outcome = path.outcome().as_str_name();
     let outcome = outcome.trim_start_matches("PATH_OUTCOME_");
     let t = path.t.unwrap_or_default();

@@ -24,7 +24,7 @@ impl Wanted {
         Self { by_head }
     }
 
-    /// Those that these bytes name.
+    /// Objects that these bytes name by their digests.
     pub fn named_in(&self, bytes: &[u8]) -> BTreeSet<Digest> {
         let mut named = BTreeSet::new();
         for window in bytes.windows(32) {

@@ -72,7 +72,7 @@ pub enum ListenError {
 pub enum Callers {
     /// Anybody's: callers show who they are, or nobody is asked.
     All,
-    /// Those of this process's user, on this machine.
+    /// Callers of this process's user, on this machine.
     SameUser,
 }
 

@@ -155,5 +155,5 @@ impl<Fact> ClosingStage<Fact> {
 
 /// Whether a homotopy has several targets.
 fn several(homotopy: &HomotopyKind) -> bool {
-    matches!(homotopy, HomotopyKind::Parameter { targets, .. } if targets.len() > 1)
+    homotopy.parameter_sets() > 1
 }

@@ -30,12 +30,12 @@ pub struct DecompositionCosts {
     pub paths: BTreeMap<&'static str, Option<u64>>,
     /// The way that is taken without a choice.
     pub choice: &'static str,
-    /// Why.
+    /// Why it is taken.
     pub why: String,
 }
 
 impl DecompositionCosts {
-    /// Those of a system; nothing is followed.
+    /// The costs of decomposing a system; no path is followed.
     pub fn of(system: &System, options: &DecompositionOptions) -> Result<Self, ProblemError> {
         let problem = Problem::of_options(system, options)?;
         let bounds = Method::ALL.map(|method| (method.name(), bound(&problem, method)));

@@ -46,7 +46,7 @@ pub enum OperandError {
         id: ComponentId,
         /// The degree that it says it has.
         degree: u64,
-        /// Its points.
+        /// How many points it has.
         points: usize,
     },
     /// A point is not where equations and slice meet regularly.

@@ -90,7 +90,7 @@ pub(crate) struct Problem {
     /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
     /// others that are never reached.
     pub staircase: Arc<System>,
-    /// Their degrees.
+    /// Degrees of the rows of the staircase.
     pub row_degrees: Vec<u32>,
     /// Rank of the Jacobian at a random point: no component has a smaller dimension than the variables
     /// that it leaves.

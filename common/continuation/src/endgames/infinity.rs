@@ -182,7 +182,7 @@ pub(super) fn vanishes(
 
 /// The mean of a power over the samples of a closed path: its power sum at t = 0.
 struct PowerMean {
-    /// Its modulus.
+    /// Modulus of the mean.
     mean: f64,
     /// Estimated error of replacing the integral by a sum.
     aliasing: f64,

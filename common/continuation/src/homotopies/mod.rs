@@ -139,6 +139,80 @@ impl HomotopyKind {
         }
     }
 
+    /// To which of the ends a path with this origin goes, where so many start points are given. The end of a path
+    /// from mixed cells is that of its own cell, found by the path.
+    pub fn target_of(&self, origin: u64, starts: u64) -> u64 {
+        match self {
+            Self::Parameter { .. } | Self::MoveSlice { .. } => origin / starts,
+            Self::Toric => origin,
+            Self::StraightLine { .. }
+            | Self::PathVariable { .. }
+            | Self::Generic { .. }
+            | Self::ProductToEquation { .. }
+            | Self::Sections { .. } => 0,
+        }
+    }
+
+    /// Whether paths begin in the coordinates of the system, at solutions of systems like it: almost all stay near, and
+    /// those that run far out go on in projective patches.
+    pub fn begins_in_affine_coordinates(&self) -> bool {
+        match self {
+            Self::Parameter { .. }
+            | Self::Toric
+            | Self::Generic { .. }
+            | Self::MoveSlice { .. }
+            | Self::ProductToEquation { .. } => true,
+            Self::StraightLine { .. } | Self::PathVariable { .. } | Self::Sections { .. } => false,
+        }
+    }
+
+    /// Whether paths begin at solutions of the generic system with the monomials of the system.
+    pub fn begins_at_the_generic_system(&self) -> bool {
+        match self {
+            Self::Generic { .. } => true,
+            Self::StraightLine { .. }
+            | Self::Parameter { .. }
+            | Self::PathVariable { .. }
+            | Self::Toric
+            | Self::MoveSlice { .. }
+            | Self::ProductToEquation { .. }
+            | Self::Sections { .. } => false,
+        }
+    }
+
+    /// Whether paths begin or end at solutions of that generic system.
+    pub fn has_the_generic_system(&self) -> bool {
+        match self {
+            Self::Toric | Self::Generic { .. } => true,
+            Self::StraightLine { .. }
+            | Self::Parameter { .. }
+            | Self::PathVariable { .. }
+            | Self::MoveSlice { .. }
+            | Self::ProductToEquation { .. }
+            | Self::Sections { .. } => false,
+        }
+    }
+
+    /// Where it is a level of a regeneration: the order of the equations, how many of them hold already, and where the
+    /// slice moves, to how many forms.
+    pub(crate) fn level(&self) -> Option<(&[u32], u32, Option<u32>)> {
+        match self {
+            Self::MoveSlice {
+                order,
+                level,
+                forms,
+                ..
+            } => Some((order, *level, Some(*forms))),
+            Self::ProductToEquation { order, level, .. } => Some((order, *level, None)),
+            Self::StraightLine { .. }
+            | Self::Parameter { .. }
+            | Self::PathVariable { .. }
+            | Self::Toric
+            | Self::Generic { .. }
+            | Self::Sections { .. } => None,
+        }
+    }
+
     /// Whether its paths are all that there are: those of a start system, not of points that are given.
     pub fn takes_all_paths(&self) -> bool {
         match self {

@@ -227,6 +227,17 @@ impl StartSystem {
             Self::Toric(_) => panic!("a straight-line homotopy has a start system"),
         }
     }
+
+    /// The start of a toric homotopy, where it is one.
+    fn toric(&self) -> Option<Arc<ToricStart>> {
+        match self {
+            Self::Toric(toric) => Some(Arc::clone(toric)),
+            Self::Generic(_)
+            | Self::TotalDegree(_)
+            | Self::Multihomogeneous(_)
+            | Self::LinearProduct(_) => None,
+        }
+    }
 }
 
 /// A homotopy that is being made.
@@ -345,14 +356,12 @@ impl<'a> Build<'a> {
     fn shared_scales(&mut self) -> Option<[Vec<i32>; 2]> {
         let (system, degrees) = (self.system, self.degrees);
         let mut beside = RandomStream::new(self.seed, Purpose::Probe, 1);
-        match (self.kind, self.start_system) {
-            (
-                HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters },
-                Some(start),
-            ) => {
-                let stream = match self.kind {
-                    HomotopyKind::StraightLine { .. } => &mut self.probe,
-                    _ => &mut beside,
+        match self.kind {
+            HomotopyKind::StraightLine { parameters } | HomotopyKind::Generic { parameters } => {
+                let start = self.start_system?;
+                let stream = match self.kind.begins_at_the_generic_system() {
+                    true => &mut beside,
+                    false => &mut self.probe,
                 };
                 let equations = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
                     start.equations(system, degrees, out, coordinates)
@@ -366,10 +375,13 @@ impl<'a> Build<'a> {
                             .map(|i| exponents[i.min(exchanged(i))])
                             .collect()
                     }),
-                    _ => both,
+                    StartSystem::TotalDegree(_)
+                    | StartSystem::LinearProduct(_)
+                    | StartSystem::Toric(_)
+                    | StartSystem::Generic(_) => both,
                 })
             }
-            (HomotopyKind::ProductToEquation { parameters, .. }, _) => self.level.map(|level| {
+            HomotopyKind::ProductToEquation { parameters, .. } => self.level.map(|level| {
                 let degree = degrees.total[level.next()];
                 let product = |out: &mut Expressions, coordinates: &[Vec<NodeId>]| {
                     vec![level.product(out, &coordinates[0], degree)]
@@ -377,7 +389,11 @@ impl<'a> Build<'a> {
                 let (chart, stream) = (self.first_chart, &mut beside);
                 scales_of_both(system, degrees, parameters, product, chart, stream)
             }),
-            _ => None,
+            HomotopyKind::Parameter { .. }
+            | HomotopyKind::PathVariable { .. }
+            | HomotopyKind::Toric
+            | HomotopyKind::MoveSlice { .. }
+            | HomotopyKind::Sections { .. } => None,
         }
     }
 
@@ -441,13 +457,17 @@ impl<'a> Build<'a> {
         for (equation, start) in equations.iter_mut().zip(starts) {
             *equation = joined_by(out, parameters, *equation, start);
         }
-        let gamma = match (self.kind, start_system) {
-            (HomotopyKind::Generic { parameters }, StartSystem::Generic(generic)) => {
-                generic.gamma(self.system, parameters, self.seed)
+        let gamma = match start_system {
+            StartSystem::Generic(generic) => {
+                let parameters = self.kind.end_parameters(0, None).unwrap_or_default();
+                generic.gamma(self.system, &parameters, self.seed)
             }
-            _ => generic_unit(self.seed, Purpose::Gamma),
+            StartSystem::TotalDegree(_)
+            | StartSystem::Multihomogeneous(_)
+            | StartSystem::LinearProduct(_)
+            | StartSystem::Toric(_) => generic_unit(self.seed, Purpose::Gamma),
         };
-        if matches!(self.kind, HomotopyKind::Generic { .. }) {
+        if self.kind.begins_at_the_generic_system() {
             // Both together as this chart would have them.
             let (n, both) = (self.dimension, [ONE, gamma]);
             normalize(out, &mut equations, n, &both, &mut self.probe);
@@ -506,10 +526,10 @@ impl<'a> Build<'a> {
     /// Degrees of the rows in this order; none where residuals are taken as they are.
     fn row_degrees(&self, order: &[usize]) -> Vec<Vec<u32>> {
         let own = &self.degrees.by_group;
-        let of_rows = match (self.kind, self.level) {
-            (HomotopyKind::Toric | HomotopyKind::Generic { .. }, _) => own.clone(),
-            (_, Some(level)) => level.row_degrees(own),
-            _ => return Vec::new(),
+        let of_rows = match self.level {
+            Some(level) => level.row_degrees(own),
+            None if self.kind.has_the_generic_system() => own.clone(),
+            None => Vec::new(),
         };
         match of_rows.is_empty() {
             true => Vec::new(),
@@ -556,10 +576,7 @@ impl Homotopy {
         begins: &[Vec<Complex64>],
         seed: u64,
     ) -> Self {
-        let toric = match (kind, start_system) {
-            (HomotopyKind::Toric, Some(StartSystem::Toric(toric))) => Some(Arc::clone(toric)),
-            _ => None,
-        };
+        let toric = start_system.and_then(StartSystem::toric);
         let mut build = Build::new(
             system,
             degrees,

@@ -11,7 +11,7 @@ use num_complex::Complex64;
 pub(crate) struct Level<'a> {
     pub order: &'a [u32],
     pub level: usize,
-    /// `None` where the slice moves.
+    /// How many forms the slice moves to; `None` where a product of forms becomes the equation.
     slides: Option<u32>,
     seed: u64,
 }
@@ -19,19 +19,10 @@ pub(crate) struct Level<'a> {
 impl<'a> Level<'a> {
     /// The level of a homotopy that is one of a regeneration.
     pub(crate) fn of(kind: &'a HomotopyKind, seed: u64) -> Option<Self> {
-        let (order, level, slides) = match kind {
-            HomotopyKind::MoveSlice {
-                order,
-                level,
-                forms,
-                ..
-            } => (order, level, Some(*forms)),
-            HomotopyKind::ProductToEquation { order, level, .. } => (order, level, None),
-            _ => return None,
-        };
+        let (order, level, slides) = kind.level()?;
         Some(Self {
             order,
-            level: *level as usize,
+            level: level as usize,
             slides,
             seed,
         })

@@ -60,7 +60,7 @@ impl DualSpace {
         }
     }
 
-    /// Its dimension.
+    /// Dimension of the dual space.
     pub(super) fn dimension(&self) -> usize {
         self.basis.len()
     }

@@ -16,7 +16,7 @@ pub struct SolvedFamily {
     pub number: u64,
     /// Who has published that number.
     pub source: &'static str,
-    /// Its equations.
+    /// Makes the equations of the family.
     pub equations: fn() -> Equations,
     /// The general member that is kept, with its positions.
     pub known_member: fn() -> Option<KnownMember>,

@@ -176,17 +176,8 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
         winding_number: r.winding_number,
         infinity_turns: r.infinity_turns.clone(),
         precision_bits: r.precision_bits,
-        counts: Some(v1::Counts {
-            steps: r.counts.steps,
-            rejections: r.counts.rejections,
-            evaluations: r.counts.evaluations,
-            exchanges: r.counts.exchanges,
-            turns: r.counts.turns,
-        }),
-        asked: r.asked.map(|fit| v1::AskedFit {
-            residual: fit.residual,
-            correction: fit.correction,
-        }),
+        counts: Some(counts(r)),
+        asked: asked_fit(r),
         local_dimension: r.local_dimension.as_ref().map(|found| v1::LocalDimension {
             dual_dimensions: found.dual_dimensions.clone(),
             bound: found.bound,
@@ -199,6 +190,42 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
         }),
         ..v1::PathResult::default()
     }
+}
+
+/// What clients are told of the result of one path.
+pub fn ended_path(r: &PathResult) -> v1::EndedPath {
+    v1::EndedPath {
+        origin: r.origin.0,
+        attempt: r.attempt.into(),
+        outcome: outcome(r.outcome).into(),
+        endpoint: pairs(r.endpoint.to_double()),
+        t: Some(complex(&r.t)),
+        residual: r.residual,
+        condition: r.condition,
+        accuracy: r.accuracy,
+        winding_number: r.winding_number,
+        infinity_turns: r.infinity_turns.clone(),
+        precision_bits: r.precision_bits,
+        counts: Some(counts(r)),
+        asked: asked_fit(r),
+    }
+}
+
+fn counts(r: &PathResult) -> v1::Counts {
+    v1::Counts {
+        steps: r.counts.steps,
+        rejections: r.counts.rejections,
+        evaluations: r.counts.evaluations,
+        exchanges: r.counts.exchanges,
+        turns: r.counts.turns,
+    }
+}
+
+fn asked_fit(r: &PathResult) -> Option<v1::AskedFit> {
+    r.asked.map(|fit| v1::AskedFit {
+        residual: fit.residual,
+        correction: fit.correction,
+    })
 }
 
 /// The result of one item of any kind.

@@ -18,7 +18,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Those of a system.
+    /// The groups of variables of a system.
     pub fn of(system: &System) -> Self {
         let variables = |homogeneous| {
             let of_kind = system

@@ -49,7 +49,7 @@ pub(crate) fn joined(
     sorted.sort_unstable_by(|a, b| a.from.total_cmp(&b.from).then(a.place.cmp(&b.place)));
 
     let mut sets = DisjointSets::new(sorted.len());
-    // Those that the next ones may still meet, or others that stand for them.
+    // Points that the next ones may still meet, or others that stand for them.
     let mut open: Vec<Reach> = Vec::new();
     for new in sorted {
         let mut needed = true;

@@ -58,13 +58,13 @@ pub struct CurveEdge {
 pub struct RealCurve {
     /// The component.
     pub id: ComponentId,
-    /// Its degree.
+    /// Degree of the component.
     pub degree: u64,
     /// Coefficients of the form, real and imaginary part for each variable.
     pub form: Vec<[i32; 2]>,
-    /// Its vertices.
+    /// Where arcs begin and end.
     pub vertices: Vec<CurveVertex>,
-    /// Its arcs.
+    /// The arcs, each from a vertex to a vertex.
     pub edges: Vec<CurveEdge>,
     /// What is not clear.
     pub doubts: Vec<String>,

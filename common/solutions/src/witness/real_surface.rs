@@ -33,7 +33,7 @@ pub struct MeshCounts {
 pub struct RealSurface {
     /// The component.
     pub id: ComponentId,
-    /// Its degree.
+    /// Degree of the component.
     pub degree: u64,
     /// Whether it is bounded; else the mesh ends at the border of a window.
     pub compact: bool,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// A component's name, such as `1.3`: the third of dimension 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ComponentId {
-    /// Its dimension.
+    /// Dimension of the component.
     pub dimension: u32,
     /// Its place among those of the dimension, from 1.
     pub number: u32,
@@ -44,7 +44,7 @@ pub enum Irreducible {
 /// A component, or points of one dimension that could not be told apart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WitnessSet {
-    /// Its name.
+    /// Name of the component.
     pub id: ComponentId,
     /// Number of its witness points.
     pub degree: u64,
@@ -79,7 +79,7 @@ impl std::str::FromStr for ComponentId {
 }
 
 impl WitnessSet {
-    /// Its dimension.
+    /// Dimension of the component.
     pub fn dimension(&self) -> u32 {
         self.id.dimension
     }

@@ -63,7 +63,7 @@ pub(crate) fn roots(system: &System, equations_only: bool) -> Vec<NodeId> {
 pub(crate) struct Sharing {
     /// The nodes in the order of their definitions.
     pub order: Vec<NodeId>,
-    /// Their names.
+    /// Names of these nodes.
     pub names: HashMap<NodeId, String>,
 }
 

@@ -16,7 +16,7 @@ pub enum JoinError {
     Variable {
         /// The variable.
         name: String,
-        /// Those of the first system.
+        /// Variables of the first system, separated by commas.
         expected: String,
     },
     /// Together they are none, as where an equation is not homogeneous in a homogeneous group.

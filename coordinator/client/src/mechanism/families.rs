@@ -12,7 +12,7 @@ pub struct SolvedMember {
     pub parameters: Vec<(String, Complex64)>,
     /// The variables, in the order of the points.
     pub variables: Vec<String>,
-    /// Its positions.
+    /// Positions of the member.
     pub positions: Vec<Vec<Complex64>>,
     /// Paths of the solve.
     pub paths: u64,

@@ -90,14 +90,14 @@ fn cannot_write(path: &Path, source: io::Error) -> ClientError {
 
 /// Names and values of all columns.
 fn columns(rows: &[v1::ClassifiedPath], coordinates: usize) -> Vec<(String, Values)> {
-    let none = v1::PathResult::default();
-    let results: Vec<&v1::PathResult> = rows
+    let none = v1::EndedPath::default();
+    let results: Vec<&v1::EndedPath> = rows
         .iter()
         .map(|r| r.result.as_ref().unwrap_or(&none))
         .collect();
     let int =
-        |value: fn(&v1::PathResult) -> i64| Values::Int(results.iter().map(|r| value(r)).collect());
-    let double = |value: fn(&v1::PathResult) -> f64| {
+        |value: fn(&v1::EndedPath) -> i64| Values::Int(results.iter().map(|r| value(r)).collect());
+    let double = |value: fn(&v1::EndedPath) -> f64| {
         Values::Double(results.iter().map(|r| value(r)).collect())
     };
     let count = |value: fn(&v1::Counts) -> u32| {
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn every_column_has_a_value_for_every_path() {
         let row = |origin: u64, endpoint: Vec<f64>| v1::ClassifiedPath {
-            result: Some(v1::PathResult {
+            result: Some(v1::EndedPath {
                 origin,
                 endpoint,
                 outcome: v1::PathOutcome::StepTooSmall.into(),

@@ -258,7 +258,7 @@ fn arrived(solution: &Solution) -> Result<Arrived, ClientError> {
     })
 }
 
-fn without_solution(path: &v1::ClassifiedPath, result: &v1::PathResult) -> PathEnd {
+fn without_solution(path: &v1::ClassifiedPath, result: &v1::EndedPath) -> PathEnd {
     match path.class() {
         v1::PathClass::AtInfinity => PathEnd::AtInfinity,
         v1::PathClass::PositiveDimensional => PathEnd::PositiveDimensional,

@@ -26,6 +26,7 @@ use super::{Ledger, LedgerError};
 use crate::measures::StorageMeasures;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -205,6 +206,29 @@ impl Ledger for SqlLedger {
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError> {
         let rows = query("SELECT * FROM stages WHERE job = ? ORDER BY stage").bind(job.to_string());
         self.rows_of(job, rows, stage_row).await
+    }
+
+    async fn overviews(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, LedgerError> {
+        let jobs = self.jobs(limit).await?;
+        let rows = query(
+            "SELECT * FROM stages WHERE job IN (SELECT job FROM jobs ORDER BY number DESC LIMIT ?) ORDER BY stage",
+        )
+        .bind(limit)
+        .read_all(&self.readers)
+        .await?;
+        let mut stages: HashMap<JobId, Vec<StageRow>> = HashMap::new();
+        for row in &rows {
+            stages
+                .entry(job_id(row)?)
+                .or_default()
+                .push(stage_row(row)?);
+        }
+        // Jobs that came or went between the two questions have no stages, or are not asked for.
+        let overview = |job: JobRow| {
+            let stages = stages.remove(&job.job).unwrap_or_default();
+            (job, stages)
+        };
+        Ok(jobs.into_iter().map(overview).collect())
     }
 
     async fn steward(

@@ -35,7 +35,7 @@ use std::sync::Arc;
 
 /// Ends nearer than this, relative to their size, are one point.
 const SAME: f64 = 1e-6;
-/// Those that are known to few digits may be as far from each other as this.
+/// Ends that are known to few digits may be as far from each other as this and be one point.
 const MOST_APART: f64 = 1e-4;
 
 /// What is cut out of each component.

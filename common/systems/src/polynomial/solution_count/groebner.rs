@@ -227,7 +227,7 @@ impl Basis {
 #[derive(Default)]
 struct Columns {
     all: HashSet<Monomial>,
-    /// Those of which it is not known yet whether an element takes them away.
+    /// Monomials of which it is not known yet whether an element takes them away.
     open: Vec<Monomial>,
 }
 

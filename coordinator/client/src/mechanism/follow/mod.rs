@@ -21,7 +21,7 @@ use segment::{Equations, Segment};
 pub struct Path {
     /// The samples.
     pub samples: Vec<Sample>,
-    /// Their positions.
+    /// Positions at each of the samples.
     pub answers: Vec<TargetAnswer>,
     /// The branches: those within limits first, longer ones first.
     pub branches: Vec<Branch>,
