@@ -1,5 +1,6 @@
 //! Job: one stage of a decomposition with its repetitions, and the system that it is of.
 
+use super::moved::MovedPoints;
 use crate::opening::Opening;
 use crate::polyhedral_solve::PolyhedralSolve;
 use crate::retried_stage::RetriedStage;
@@ -160,6 +161,15 @@ enum Doing {
         opening: Option<Box<Opening>>,
         results: Option<Vec<ItemResult>>,
     },
+    /// Points of which only sums of second derivatives are wanted.
+    Summed {
+        /// The stage that asks how they move, until it is open.
+        opening: Option<Box<Opening>>,
+        /// What is held of a point, of so many unknowns.
+        moved: MovedPoints,
+        unknowns: usize,
+        absorbed: bool,
+    },
 }
 
 /// One stage, and all that belongs to it.
@@ -306,6 +316,23 @@ impl Job {
         Self::ask(system, Work::Bend, homotopy, stored(points), with)
     }
 
+    /// The same where only sums of second derivatives in the first variables are wanted: no more than these need is held.
+    #[must_use]
+    pub fn for_sums(mut self, own: usize) -> Self {
+        if let Doing::Asked { opening, .. } = &mut self.work {
+            let objects = opening.iter().flat_map(|opening| &opening.objects);
+            let counts = objects.map(|points| (points.len(), points.dimension));
+            let (points, unknowns) = counts.last().unwrap_or_default();
+            self.work = Doing::Summed {
+                opening: opening.take(),
+                moved: MovedPoints::with_capacity(points, own),
+                unknowns,
+                absorbed: false,
+            };
+        }
+        self
+    }
+
     fn ask(
         system: StageSystem,
         work: Work,
@@ -333,6 +360,13 @@ impl Job {
                 (None, None) => Next::Wait,
                 (None, Some(_)) => Next::Done,
             },
+            Doing::Summed {
+                opening, absorbed, ..
+            } => match (opening.take(), absorbed) {
+                (Some(opening), _) => numbers.open(*opening, &mut Vec::new()),
+                (None, false) => Next::Wait,
+                (None, true) => Next::Done,
+            },
         }
     }
 
@@ -342,6 +376,29 @@ impl Job {
             Doing::Tracked(stages) => stages.absorb(id, taken),
             Doing::Polyhedral(solve) => solve.absorb(id, taken),
             Doing::Asked { results, .. } => *results = Some(taken.collect()),
+            Doing::Summed {
+                moved,
+                unknowns,
+                absorbed,
+                ..
+            } => {
+                for result in taken {
+                    let ItemResult::Bend(result) = result else {
+                        unreachable!("a stage that asks for derivatives has no {result:?}")
+                    };
+                    let bend = result.fact().map(|bend| &**bend);
+                    moved.push(bend.filter(|bend| bend.acceleration.len() == *unknowns));
+                }
+                *absorbed = true;
+            }
+        }
+    }
+
+    /// How the points moved of which sums were wanted; none where that was not asked.
+    pub fn moved(&self) -> Option<&MovedPoints> {
+        match &self.work {
+            Doing::Summed { moved, .. } => Some(moved),
+            _ => None,
         }
     }
 
@@ -350,7 +407,7 @@ impl Job {
         match &self.work {
             Doing::Tracked(stages) => Some(stages),
             Doing::Polyhedral(solve) => solve.last_leg(),
-            Doing::Asked { .. } => None,
+            Doing::Asked { .. } | Doing::Summed { .. } => None,
         }
     }
 
@@ -358,7 +415,7 @@ impl Job {
     fn legs(&self) -> impl Iterator<Item = &RetriedStage> {
         let first = match &self.work {
             Doing::Polyhedral(solve) => Some(solve.first_leg()),
-            Doing::Tracked(_) | Doing::Asked { .. } => None,
+            Doing::Tracked(_) | Doing::Asked { .. } | Doing::Summed { .. } => None,
         };
         first.into_iter().chain(self.ending())
     }
@@ -377,7 +434,7 @@ impl Job {
     pub fn lost(&self) -> u64 {
         match &self.work {
             Doing::Polyhedral(solve) => solve.lost(),
-            Doing::Tracked(_) | Doing::Asked { .. } => 0,
+            Doing::Tracked(_) | Doing::Asked { .. } | Doing::Summed { .. } => 0,
         }
     }
 
@@ -389,7 +446,7 @@ impl Job {
     /// What was said about its points, in their order; none where it tracks paths.
     pub fn answers(&self) -> &[ItemResult] {
         match &self.work {
-            Doing::Tracked(_) | Doing::Polyhedral(_) => &[],
+            Doing::Tracked(_) | Doing::Polyhedral(_) | Doing::Summed { .. } => &[],
             Doing::Asked { results, .. } => results.as_deref().unwrap_or(&[]),
         }
     }

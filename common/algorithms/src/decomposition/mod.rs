@@ -60,7 +60,7 @@ use problem::Problem;
 pub use problem::ProblemError;
 use proof::Proving;
 use resumed::Resumed;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use slices::Slices;
 use split::Split;
 use std::sync::Arc;
@@ -125,8 +125,8 @@ struct State {
 }
 
 /// A whole decomposition, as a plan that asks for paths and learns from results.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(into = "State", try_from = "State")]
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "State")]
 pub struct DecompositionSolve {
     state: State,
     /// Made of the system and the options, and made again where the state is read back.
@@ -144,9 +144,10 @@ impl PartialEq for DecompositionSolve {
     }
 }
 
-impl From<DecompositionSolve> for State {
-    fn from(solve: DecompositionSolve) -> Self {
-        solve.state
+impl Serialize for DecompositionSolve {
+    /// As its state, which is not copied: it may be a large part of the memory.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.state.serialize(serializer)
     }
 }
 

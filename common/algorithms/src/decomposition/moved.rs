@@ -59,6 +59,13 @@ impl MovedPoints {
         self.errors.push(bend.error);
     }
 
+    /// Takes these points, too.
+    pub fn extend(&mut self, more: &Self) {
+        self.second.extend_from_slice(&more.second);
+        self.lengths.extend_from_slice(&more.lengths);
+        self.errors.extend_from_slice(&more.errors);
+    }
+
     /// The sum of second derivatives over these points.
     pub fn trace(&self, points: impl Iterator<Item = usize>) -> Trace {
         let mut sum = vec![Number::zero(()); self.own];

@@ -14,7 +14,6 @@ use super::proof::moving_slices;
 use super::search::Search;
 use cognate_continuation::bend::{length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
@@ -139,17 +138,15 @@ impl Split {
             let Some(job) = done else {
                 return Some(self.ask_bends(problem));
             };
-            let mut moved = MovedPoints::with_capacity(self.set.points.len(), own);
-            self.read_bends(job.answers(), &mut moved);
-            self.bends = Some(moved);
+            self.bends = job.moved().cloned();
             let next = self.next_loop(problem, deflations);
             return next.or_else(|| self.mirror(problem, deflations));
         };
         let mut points = self.travelling();
         if let Some(job) = done.filter(|_| self.search.asks_bends()) {
-            let mut moved = self.bends.take().unwrap_or_default();
-            self.read_bends(job.answers(), &mut moved);
-            self.bends = Some(moved);
+            if let (Some(known), Some(moved)) = (&mut self.bends, job.moved()) {
+                known.extend(moved);
+            }
             self.search.bends_are_known();
         } else if let Some(job) = done {
             let arrived = arrivals(job);
@@ -212,21 +209,8 @@ impl Split {
         let ends = moving_slices(problem, dimension);
         let known = self.bends.as_ref().map_or(0, MovedPoints::count);
         let points = self.set.doubles().split_off(known);
-        Job::bend(self.set.whole(), ends, &points, &problem.tracking)
-    }
-
-    /// What workers found of the points that have not moved yet; where one found nothing, any error may be in the
-    /// derivatives.
-    fn read_bends(&self, results: &[ItemResult], moved: &mut MovedPoints) {
-        let points = &self.set.points[moved.count()..];
-        for (result, point) in results.iter().zip(points) {
-            let ItemResult::Bend(result) = result else {
-                unreachable!("a stage that asks for derivatives has no {result:?}")
-            };
-            let known = result.fact().map(|bend| &**bend);
-            let length = point.point.len();
-            moved.push(known.filter(|bend| bend.acceleration.len() == length));
-        }
+        let job = Job::bend(self.set.whole(), ends, &points, &problem.tracking);
+        job.for_sums(problem.variables())
     }
 
     /// The next loop, where there are classes that it may bring together.

@@ -6,6 +6,7 @@
 //! ICMS 2016). Both derivatives are linear equations with the Jacobian at the point. They are solved in doubles by
 //! reflections, and corrected; where the matrix is not known to be well-conditioned, by its singular values.
 
+mod in_lanes;
 pub mod stage;
 
 use cognate_numeric::lanes::dispatch::{Job, dispatch_single};

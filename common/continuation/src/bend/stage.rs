@@ -1,6 +1,7 @@
 //! BendStage: the witness points of a stage, each with its derivatives along a moving slice.
 
-use super::{Bend, Number, SlicedEquations, exactly};
+use super::in_lanes::bends_in_lanes;
+use super::{Bend, Number, RefinedPoint, SlicedEquations, exactly};
 use crate::homotopies::HomotopyKind;
 use crate::item_result::{ItemResult, PointResult};
 use crate::points_at_targets::PointsAtTargets;
@@ -8,6 +9,7 @@ use crate::prepared_items::PreparedItems;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StoredPoints};
 use crate::work::Stage;
+use cognate_numeric::lanes::double_doubles::WIDTH;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::ops::Range;
@@ -71,19 +73,39 @@ impl BendStage {
     /// When `items` reaches beyond the stage.
     pub fn run(&self, items: Range<u64>) -> Vec<PointResult<Box<Bend>>> {
         assert!(items.end <= self.items(), "a chunk lies within its stage");
-        items.map(|item| self.item(item)).collect()
+        let Some(mut in_lanes) = bends_in_lanes(&self.equations, &self.direction) else {
+            return items.map(|item| self.alone(item)).collect();
+        };
+        let mut results = Vec::with_capacity((items.end - items.start) as usize);
+        let mut first = items.start;
+        while first < items.end {
+            let together = first..items.end.min(first + WIDTH as u64);
+            let unknowns: Vec<_> = together.clone().map(|item| self.unknowns(item)).collect();
+            let bends = in_lanes.bends(&unknowns);
+            first = together.end;
+            results.extend(together.zip(bends).map(|(item, found)| match found {
+                Some((refined, bend)) => self.result(item, &refined, bend),
+                None => self.alone(item),
+            }));
+        }
+        results
     }
 
-    fn item(&self, item: u64) -> PointResult<Box<Bend>> {
-        let unknowns = self
-            .points
-            .scaling()
-            .to_unknowns(self.points.item(item).point);
-        let start: Vec<Number> = unknowns.into_iter().map(exactly).collect();
+    fn unknowns(&self, item: u64) -> Vec<Complex64> {
+        let point = self.points.item(item).point;
+        self.points.scaling().to_unknowns(point)
+    }
+
+    fn alone(&self, item: u64) -> PointResult<Box<Bend>> {
+        let start: Vec<Number> = self.unknowns(item).into_iter().map(exactly).collect();
         let Some(refined) = self.equations.refine(&start) else {
             return self.points.result(item, None);
         };
         let bend = self.equations.bend(&refined, &self.direction);
+        self.result(item, &refined, bend)
+    }
+
+    fn result(&self, item: u64, refined: &RefinedPoint, bend: Bend) -> PointResult<Box<Bend>> {
         let fact = bend.is_sound().then(|| Box::new(bend));
         PointResult {
             residual: refined.residual,

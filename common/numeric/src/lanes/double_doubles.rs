@@ -68,6 +68,12 @@ operations! {
 }
 
 impl<S: CompiledSet> DoubleDoubleLanes<S> {
+    /// The number in one lane, with all its digits.
+    #[inline(always)]
+    pub fn single(&self, lane: usize) -> Single {
+        self.number.single(lane)
+    }
+
     /// `self - other`.
     #[inline(always)]
     fn difference(&self, other: &Self) -> Lanes<WIDTH> {

@@ -1,5 +1,6 @@
-//! The approximate inverse of one small matrix, in any arithmetic: what preconditions a proof.
+//! The approximate inverse of a small matrix: of one in any arithmetic, which preconditions a proof, and of one in each lane.
 
+use super::lu::eliminate_columns;
 use super::matrix::Matrix;
 use crate::scalar::{Complex, Real};
 
@@ -53,9 +54,29 @@ pub fn inverse<R: Real<Mask = bool, Control = f64>>(
     Some(right)
 }
 
+/// Writes the inverses of the n x n matrices in the first n columns of `work`, one in each lane, into its last n columns;
+/// what was in both is lost. A singular matrix gives infinities or NaN in its lanes.
+#[inline(always)]
+pub fn invert<R: Real>(work: &mut Matrix<R>) {
+    let n = work.rows();
+    debug_assert!(
+        work.columns() == 2 * n,
+        "the inverse stands behind the matrix"
+    );
+    let context = work.at(0, 0).re.context();
+    for i in 0..n {
+        for j in 0..n {
+            let entry = Complex::from_f64(context, if i == j { 1.0 } else { 0.0 }, 0.0);
+            work.at_mut(i, n + j).set(&entry);
+        }
+    }
+    eliminate_columns(work, n, &mut R::Control::from_f64((), 0.0));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::Lanes;
     use crate::random::{Purpose, RandomStream};
     use crate::scalar::MultiplePrecision;
 
@@ -88,5 +109,42 @@ mod tests {
     fn a_matrix_times_its_inverse_is_one() {
         check::<f64>((), 1e-13);
         check::<MultiplePrecision>(200, 1e-55);
+    }
+
+    #[test]
+    fn lanes_have_their_own_inverses() {
+        let mut random = RandomStream::new(6, Purpose::Test, 0);
+        let n = 5;
+        let mut work = Matrix::<Lanes<8>>::zeros((), n, 2 * n);
+        let mut single = vec![Matrix::<f64>::zeros((), n, n); 8];
+        for i in 0..n {
+            for j in 0..n {
+                for (lane, single) in single.iter_mut().enumerate() {
+                    // One asks for an exchange, the last is singular.
+                    let by = if lane == 3 && (i, j) == (0, 0) || lane == 7 && i == 2 {
+                        0.0
+                    } else {
+                        1.0
+                    };
+                    let z = random.unit() * by;
+                    work.at_mut(i, j).set_lane(lane, z);
+                    *single.at_mut(i, j) = Complex::from_f64((), z.re, z.im);
+                }
+            }
+        }
+        invert(&mut work);
+        for (lane, single) in single.iter().enumerate() {
+            let Some(expected) = inverse((), single) else {
+                assert_eq!(lane, 7);
+                assert!(!work.at(2, n).lane(lane).is_finite());
+                continue;
+            };
+            for i in 0..n {
+                for j in 0..n {
+                    let difference = work.at(i, n + j).lane(lane) - expected.at(i, j).lane(0);
+                    assert!(difference.norm_sqr().sqrt() < 1e-11, "{difference}");
+                }
+            }
+        }
     }
 }

@@ -7,6 +7,7 @@
 //! type like the others.
 
 use super::Real;
+use crate::lanes::Lanes;
 use crate::rational::Rational;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +29,17 @@ impl DoubleDouble<f64> {
     /// is no rounding error of the first.
     pub fn from_parts([hi, lo]: [f64; 2]) -> Option<Self> {
         (hi.is_finite() && lo.is_finite() && hi + lo == hi).then_some(Self { hi, lo })
+    }
+}
+
+impl<const W: usize> DoubleDouble<Lanes<W>> {
+    /// The number in one lane, with all its digits.
+    #[inline(always)]
+    pub fn single(&self, lane: usize) -> DoubleDouble<f64> {
+        DoubleDouble {
+            hi: self.hi.0[lane],
+            lo: self.lo.0[lane],
+        }
     }
 }
 
