@@ -321,8 +321,8 @@ impl Job {
     pub fn for_sums(mut self, own: usize) -> Self {
         if let Doing::Asked { opening, .. } = &mut self.work {
             let objects = opening.iter().flat_map(|opening| &opening.objects);
-            let counts = objects.map(|points| (points.len(), points.dimension));
-            let (points, unknowns) = counts.last().unwrap_or_default();
+            let mut counts = objects.map(|points| (points.len(), points.dimension));
+            let (points, unknowns) = counts.next_back().unwrap_or_default();
             self.work = Doing::Summed {
                 opening: opening.take(),
                 moved: MovedPoints::with_capacity(points, own),
