@@ -2,6 +2,7 @@
 
 use crate::tracking_by_hand::HandWorker;
 use cognate_continuation::item_result::ItemResult;
+use cognate_protocol::to_proto;
 use cognate_protocol::v1::Verdict;
 use cognate_tests::builders::katsura;
 use cognate_tests::client::{Submission, accepted};
@@ -56,12 +57,8 @@ fn a_report_counts_once_and_another_one_is_noticed() {
     assert_eq!(answer.counts.solutions_distinct, 16);
     for (index, result) in results.iter().enumerate() {
         let path = &answer.paths[lease.first as usize + index];
-        let reported = cognate_protocol::to_proto::path::item_result(result);
-        assert_eq!(
-            path.result.as_ref(),
-            Some(&reported),
-            "the first accepted result stands"
-        );
+        let reported = result.path().map(to_proto::path::ended_path);
+        assert_eq!(path.result, reported, "the first accepted result stands");
     }
     cluster.stop();
 }
