@@ -202,8 +202,9 @@ impl Coordinator {
                 late => late?,
             };
             for (address, bytes) in late {
-                self.store.remove_results(&address).await?;
-                collected.results += Amount::one(bytes);
+                if self.store.remove_results(&address).await? {
+                    collected.results += Amount::one(bytes);
+                }
             }
             self.tidied(job);
         }

@@ -5,7 +5,7 @@
 //! and ledger row finds its object again. Every object is checked when it is
 //! read: a damaged one is reported, never believed.
 
-use super::trash::{JOBS, OBJECTS};
+use super::trash::{JOBS, OBJECTS, done};
 use crate::ledger::identity::{ItemRange, LeaseId, digest_of};
 use crate::ledger::rows::{Outcomes, ResultObject};
 use crate::measures::StorageMeasures;
@@ -421,11 +421,11 @@ impl Store {
         }
     }
 
-    /// Removes the results of a lease that the ledger does not name and never will.
-    pub async fn remove_results(&self, address: &str) -> Result<(), StoreError> {
+    /// Removes the results of a lease that the ledger does not name and never will; false where somebody else did.
+    pub async fn remove_results(&self, address: &str) -> Result<bool, StoreError> {
         let address =
             Address::parse(address).map_err(|error| damaged(&Address::from(address), error))?;
-        Ok(self.objects.delete(&address).await?)
+        done(self.objects.delete(&address).await)
     }
 
     /// The paths that an object of a stage that tracks holds, in the order of its items.
@@ -603,6 +603,8 @@ mod tests {
         assert_ne!(again.address, object.address);
         assert_eq!(again.hash, object.hash);
         // It may go, where the ledger names the other.
+        store.remove_results(&again.address).await.unwrap();
+        // Two may remove at the same time.
         store.remove_results(&again.address).await.unwrap();
         let gone = store.results(&again, Work::Track).await;
         assert!(matches!(gone, Err(StoreError::Missing(_))));

@@ -93,8 +93,9 @@ impl Store {
     pub async fn remove_results_of(&self, job: JobId) -> Result<Amount, StoreError> {
         let mut removed = Amount::default();
         for (address, bytes) in self.results_of(job).await? {
-            self.remove_results(&address).await?;
-            removed += Amount::one(bytes);
+            if self.remove_results(&address).await? {
+                removed += Amount::one(bytes);
+            }
         }
         self.remove_empty_folder(&format!("{JOBS}/{job}"));
         Ok(removed)
@@ -197,7 +198,7 @@ impl Store {
 }
 
 /// Whether the object was there.
-fn done(result: Result<(), object_store::Error>) -> Result<bool, StoreError> {
+pub(super) fn done(result: Result<(), object_store::Error>) -> Result<bool, StoreError> {
     match result {
         Ok(()) => Ok(true),
         Err(object_store::Error::NotFound { .. }) => Ok(false),
