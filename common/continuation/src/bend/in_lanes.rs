@@ -149,11 +149,7 @@ impl<S: CompiledSet> BendsInLanes for InLanes<'_, S> {
         }
         let (refined, moved) = S::call(Bending(self));
         let numbers = |numbers: &[Complex<Wide<S>>], lane: usize| -> Vec<Number> {
-            let single = |z: &Complex<Wide<S>>| Complex {
-                re: z.re.single(lane),
-                im: z.im.single(lane),
-            };
-            numbers.iter().map(single).collect()
+            numbers.iter().map(|z| z.single(lane)).collect()
         };
         let answer = |lane: usize| {
             refined.good.lane(lane).then(|| {
@@ -258,6 +254,8 @@ impl<S: CompiledSet> InLanes<'_, S> {
                 .jacobian(&moved, p, &mut self.beside, scratch);
             for (i, beside) in self.sizes_beside.iter_mut().enumerate() {
                 *beside = size(&self.beside, i);
+                // A point without small rows has none because of those that share the lanes.
+                beside.select(small.not(), &splat(1.0));
             }
         } else if first {
             self.sizes_beside.fill(splat(1.0));
@@ -531,6 +529,35 @@ mod tests {
             "(x^2 - 1 + (y - 2)*(x + 3*y))*(x - 3 + y/1000)/100000",
             &near,
         );
+    }
+
+    /// A row that is larger than 1 where the corrections begin and smaller where they end, beside a point at which it is
+    /// small from the start.
+    #[test]
+    fn rows_that_become_small_are_the_same_beside_small_ones() {
+        let unit = 13.0f64.sqrt();
+        for margin in [1e-9, 1e-8, 3e-8] {
+            let scale = (1.0 - margin) / unit;
+            let text = format!(
+                "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f;f = {scale:e}*(x^2 - 1 + (y - 2)*(x + y));\nEND;\n"
+            );
+            let system = cognate_systems::formats::read("test", text.as_bytes());
+            let system = slice(&system.unwrap().system, 1, 2);
+            let number = |re: f64| Complex64::new(re, 0.0);
+            let direction = [number(0.6), number(0.3), number(0.2)];
+            let slice = [number(-2.0), number(0.0), number(1.0)];
+            let equations = SlicedEquations::at_parameters(&system, &slice);
+            let mut lanes = bends_in_lanes(&equations, &direction).unwrap();
+            let points = [
+                vec![number(1.0 + 3e-7), number(2.0)],
+                vec![number(-1.0), number(2.0)],
+            ];
+            let together = lanes.bends(&points);
+            assert!(together.iter().all(Option::is_some));
+            for (found, point) in together.iter().zip(&points) {
+                assert_eq!(found, &lanes.bends(std::slice::from_ref(point))[0]);
+            }
+        }
     }
 
     #[test]

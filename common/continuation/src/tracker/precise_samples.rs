@@ -6,7 +6,6 @@
 //! its condition number times their unit roundoff (iterative refinement: Higham, Accuracy and Stability of Numerical
 //! Algorithms, 2002, chapter 12).
 
-use super::digits::Digits;
 use crate::chart::LEAST_NORM;
 use crate::endgames::cauchy::PreciseSample;
 use crate::homotopies::Homotopy;
@@ -15,7 +14,7 @@ use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSe
 use cognate_numeric::lanes::double_doubles::{DoubleDoubleLanes, WIDTH};
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
-use cognate_numeric::scalar::{Complex, DoubleDouble, Real};
+use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
 use std::marker::PhantomData;
@@ -92,9 +91,7 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
 
     /// The sample in one lane, where the last Newton step led.
     fn sample(&self, lane: usize, noise: f64) -> PreciseSample {
-        let one =
-            |z: &Complex<DoubleDoubleLanes<S>>| Digits::of(z, lane).value::<DoubleDouble<f64>>(());
-        let here: Vec<_> = self.x.iter().map(one).collect();
+        let here: Vec<_> = self.x.iter().map(|z| z.single(lane)).collect();
         PreciseSample {
             homogenizing: self.homotopy.homogenizing((), &here),
             noise,
@@ -206,17 +203,13 @@ impl<S: CompiledSet> InLanes<'_, S> {
         let (program, scratch) = (self.homotopy.program(), &mut self.scratch);
         program.linearize(&self.x, &self.p, &self.dp, &mut self.matrix, scratch);
         let beside = Complex::<DoubleDoubleLanes<S>>::from_control((), beside);
-        let rounded = |z: &Complex<DoubleDoubleLanes<S>>| Complex {
-            re: z.re.control(),
-            im: z.im.control(),
-        };
         for i in 0..n {
             for j in 0..n {
-                *self.rounded.at_mut(i, j) = rounded(self.matrix.at(i, j));
+                *self.rounded.at_mut(i, j) = self.matrix.at(i, j).control();
             }
             let mut value = *self.matrix.at(i, n);
             value.mul_add(&beside, self.matrix.at(i, n + 1));
-            *self.rounded.at_mut(i, n) = rounded(&value);
+            *self.rounded.at_mut(i, n) = value.control();
         }
         let mut exchanges = Lanes::from_f64((), 0.0);
         eliminate::<Lanes<WIDTH>, 1>(&mut self.rounded, &mut exchanges);

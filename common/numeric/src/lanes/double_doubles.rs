@@ -8,7 +8,7 @@
 use super::dispatch::{CompiledSet, Job};
 use super::{LaneMask, Lanes};
 use crate::rational::Rational;
-use crate::scalar::{DoubleDouble, Real};
+use crate::scalar::{Complex, DoubleDouble, Real};
 use std::marker::PhantomData;
 
 /// Numbers of so many paths.
@@ -67,13 +67,18 @@ operations! {
     Sqrt: sqrt();
 }
 
-impl<S: CompiledSet> DoubleDoubleLanes<S> {
+impl<S: CompiledSet> Complex<DoubleDoubleLanes<S>> {
     /// The number in one lane, with all its digits.
     #[inline(always)]
-    pub fn single(&self, lane: usize) -> Single {
-        self.number.single(lane)
+    pub fn single(&self, lane: usize) -> Complex<Single> {
+        Complex {
+            re: self.re.number.single(lane),
+            im: self.im.number.single(lane),
+        }
     }
+}
 
+impl<S: CompiledSet> DoubleDoubleLanes<S> {
     /// `self - other`.
     #[inline(always)]
     fn difference(&self, other: &Self) -> Lanes<WIDTH> {

@@ -2,8 +2,8 @@
 //!
 //! Slower than bidiagonalisation and simpler, and small singular values keep
 //! their digits (Demmel, Veselic: Jacobi's method is more accurate than QR,
-//! SIAM J. Matrix Anal. Appl. 13, 1992). For single small matrices at the end of a
-//! path; nothing here is in an inner loop.
+//! SIAM J. Matrix Anal. Appl. 13, 1992). For small matrices at the ends of paths; a solve of which many paths end on sets
+//! spends much of its time here.
 
 use super::vector::inner;
 use num_complex::Complex64;
