@@ -159,17 +159,35 @@ enum Doing {
     Asked {
         /// The stage that asks, until it is open.
         opening: Option<Box<Opening>>,
-        results: Option<Vec<ItemResult>>,
-    },
-    /// Points of which only sums of second derivatives are wanted.
-    Summed {
-        /// The stage that asks how they move, until it is open.
-        opening: Option<Box<Opening>>,
-        /// What is held of a point, of so many unknowns.
-        moved: MovedPoints,
-        unknowns: usize,
+        answers: Answers,
         absorbed: bool,
     },
+}
+
+/// What is held of the answers about points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Answers {
+    /// All of them.
+    Whole(Vec<ItemResult>),
+    /// What sums of second derivatives of points in so many unknowns need.
+    Sums { moved: MovedPoints, unknowns: usize },
+}
+
+impl Answers {
+    fn take(&mut self, taken: &mut dyn Iterator<Item = ItemResult>) {
+        match self {
+            Self::Whole(results) => results.extend(taken),
+            Self::Sums { moved, unknowns } => {
+                for result in taken {
+                    let ItemResult::Bend(result) = result else {
+                        unreachable!("a stage that asks for derivatives has no {result:?}")
+                    };
+                    let bend = result.fact().map(|bend| &**bend);
+                    moved.push(bend.filter(|bend| bend.acceleration.len() == *unknowns));
+                }
+            }
+        }
+    }
 }
 
 /// One stage, and all that belongs to it.
@@ -316,21 +334,22 @@ impl Job {
         Self::ask(system, Work::Bend, homotopy, stored(points), with)
     }
 
-    /// The same where only sums of second derivatives in the first variables are wanted: no more than these need is held.
-    #[must_use]
-    pub fn for_sums(mut self, own: usize) -> Self {
-        if let Doing::Asked { opening, .. } = &mut self.work {
-            let objects = opening.iter().flat_map(|opening| &opening.objects);
-            let mut counts = objects.map(|points| (points.len(), points.dimension));
-            let (points, unknowns) = counts.next_back().unwrap_or_default();
-            self.work = Doing::Summed {
-                opening: opening.take(),
-                moved: MovedPoints::with_capacity(points, own),
-                unknowns,
-                absorbed: false,
+    /// The same where only sums of second derivatives in the first `own` variables are wanted: what these need is held.
+    pub fn bend_for_sums(
+        system: StageSystem,
+        ends: [Vec<Complex64>; 2],
+        points: &[Vec<Complex64>],
+        own: usize,
+        with: &Tracking,
+    ) -> Self {
+        let mut job = Self::bend(system, ends, points, with);
+        if let Doing::Asked { answers, .. } = &mut job.work {
+            *answers = Answers::Sums {
+                moved: MovedPoints::with_capacity(points.len(), own),
+                unknowns: points.first().map_or(0, Vec::len),
             };
         }
-        self
+        job
     }
 
     fn ask(
@@ -345,7 +364,8 @@ impl Job {
             system,
             work: Doing::Asked {
                 opening: Some(Box::new(opening)),
-                results: None,
+                answers: Answers::Whole(Vec::new()),
+                absorbed: false,
             },
         }
     }
@@ -355,12 +375,7 @@ impl Job {
         match &mut self.work {
             Doing::Tracked(stages) => stages.next_stage(numbers),
             Doing::Polyhedral(solve) => solve.next(numbers),
-            Doing::Asked { opening, results } => match (opening.take(), results) {
-                (Some(opening), _) => numbers.open(*opening, &mut Vec::new()),
-                (None, None) => Next::Wait,
-                (None, Some(_)) => Next::Done,
-            },
-            Doing::Summed {
+            Doing::Asked {
                 opening, absorbed, ..
             } => match (opening.take(), absorbed) {
                 (Some(opening), _) => numbers.open(*opening, &mut Vec::new()),
@@ -375,20 +390,10 @@ impl Job {
         match &mut self.work {
             Doing::Tracked(stages) => stages.absorb(id, taken),
             Doing::Polyhedral(solve) => solve.absorb(id, taken),
-            Doing::Asked { results, .. } => *results = Some(taken.collect()),
-            Doing::Summed {
-                moved,
-                unknowns,
-                absorbed,
-                ..
+            Doing::Asked {
+                answers, absorbed, ..
             } => {
-                for result in taken {
-                    let ItemResult::Bend(result) = result else {
-                        unreachable!("a stage that asks for derivatives has no {result:?}")
-                    };
-                    let bend = result.fact().map(|bend| &**bend);
-                    moved.push(bend.filter(|bend| bend.acceleration.len() == *unknowns));
-                }
+                answers.take(taken);
                 *absorbed = true;
             }
         }
@@ -397,8 +402,11 @@ impl Job {
     /// How the points moved of which sums were wanted; none where that was not asked.
     pub fn moved(&self) -> Option<&MovedPoints> {
         match &self.work {
-            Doing::Summed { moved, .. } => Some(moved),
-            _ => None,
+            Doing::Asked {
+                answers: Answers::Sums { moved, .. },
+                ..
+            } => Some(moved),
+            Doing::Asked { .. } | Doing::Tracked(_) | Doing::Polyhedral(_) => None,
         }
     }
 
@@ -407,7 +415,7 @@ impl Job {
         match &self.work {
             Doing::Tracked(stages) => Some(stages),
             Doing::Polyhedral(solve) => solve.last_leg(),
-            Doing::Asked { .. } | Doing::Summed { .. } => None,
+            Doing::Asked { .. } => None,
         }
     }
 
@@ -415,7 +423,7 @@ impl Job {
     fn legs(&self) -> impl Iterator<Item = &RetriedStage> {
         let first = match &self.work {
             Doing::Polyhedral(solve) => Some(solve.first_leg()),
-            Doing::Tracked(_) | Doing::Asked { .. } | Doing::Summed { .. } => None,
+            Doing::Tracked(_) | Doing::Asked { .. } => None,
         };
         first.into_iter().chain(self.ending())
     }
@@ -434,7 +442,7 @@ impl Job {
     pub fn lost(&self) -> u64 {
         match &self.work {
             Doing::Polyhedral(solve) => solve.lost(),
-            Doing::Tracked(_) | Doing::Asked { .. } | Doing::Summed { .. } => 0,
+            Doing::Tracked(_) | Doing::Asked { .. } => 0,
         }
     }
 
@@ -443,11 +451,14 @@ impl Job {
         self.ending().map_or(&[], RetriedStage::results)
     }
 
-    /// What was said about its points, in their order; none where it tracks paths.
+    /// What was said about its points, in their order; none where it tracks paths or only sums are wanted.
     pub fn answers(&self) -> &[ItemResult] {
         match &self.work {
-            Doing::Tracked(_) | Doing::Polyhedral(_) | Doing::Summed { .. } => &[],
-            Doing::Asked { results, .. } => results.as_deref().unwrap_or(&[]),
+            Doing::Asked {
+                answers: Answers::Whole(results),
+                ..
+            } => results,
+            Doing::Asked { .. } | Doing::Tracked(_) | Doing::Polyhedral(_) => &[],
         }
     }
 

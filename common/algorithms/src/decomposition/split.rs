@@ -209,8 +209,8 @@ impl Split {
         let ends = moving_slices(problem, dimension);
         let known = self.bends.as_ref().map_or(0, MovedPoints::count);
         let points = self.set.doubles().split_off(known);
-        let job = Job::bend(self.set.whole(), ends, &points, &problem.tracking);
-        job.for_sums(problem.variables())
+        let own = problem.variables();
+        Job::bend_for_sums(self.set.whole(), ends, &points, own, &problem.tracking)
     }
 
     /// The next loop, where there are classes that it may bring together.
