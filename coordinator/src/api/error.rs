@@ -160,3 +160,33 @@ impl From<ApiError> for Status {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_intake_refuses_has_the_code_of_its_kind() {
+        let later = IntakeError::NotInThisVersion("precision of 9999 bits".into());
+        let field = IntakeError::Field {
+            field: "options.start_solutions",
+            what: "too few".into(),
+        };
+        let text =
+            cognate_systems::formats::read("a.txt", b"variable_group x; function f; f = (x;");
+        let text = IntakeError::File(text.expect_err("this is no system"));
+        for (error, code, named) in [
+            (later, Code::Unimplemented, None),
+            (
+                field,
+                Code::InvalidArgument,
+                Some("problem.options.start_solutions"),
+            ),
+            (text, Code::InvalidArgument, Some("problem.text")),
+        ] {
+            let error = ApiError::from(error);
+            assert_eq!(error.code(), code, "{error}");
+            assert_eq!(error.field().as_deref(), named, "{error}");
+        }
+    }
+}
