@@ -19,6 +19,10 @@ const MOST_WORK: usize = 40_000_000;
 /// More multiplications than this are not made for that: it would take seconds.
 const MOST_WORK_ONCE: usize = 600_000_000;
 
+/// Singular values that count as 0 are below this at most: those of the equations by which functionals are symmetric are
+/// about 1.
+const LARGEST_CUT: f64 = 0.1;
+
 /// Leading coefficients below this, squared, are rounding errors.
 const LEADING: f64 = 1e-12;
 
@@ -38,6 +42,8 @@ pub(super) enum Stop {
     Whole,
     /// Finding them would take too long.
     TooLarge,
+    /// Errors hide even that products with two variables are the same in either order.
+    Noise,
 }
 
 impl DualSpace {
@@ -81,6 +87,9 @@ impl DualSpace {
         let work = unknowns * unknowns * rows;
         if work > MOST_WORK_ONCE {
             return Err(Stop::TooLarge);
+        }
+        if CUT * noise > LARGEST_CUT {
+            return Err(Stop::Noise);
         }
         let mut columns = vec![vec![Complex64::default(); rows]; unknowns];
         // Products with two variables are the same in either order.

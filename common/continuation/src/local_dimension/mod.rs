@@ -112,7 +112,7 @@ pub fn local_dimension(
         };
         let noise = reduced.noise(&monomials, order, error);
         let stop = space.extend(&monomials, &reduced.equations, noise, &mut found.margin);
-        if let Err(Stop::TooLarge) = stop {
+        if let Err(Stop::TooLarge | Stop::Noise) = stop {
             break;
         }
         found.dual_dimensions.push(space.dimension() as u32);

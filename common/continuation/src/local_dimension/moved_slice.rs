@@ -23,10 +23,11 @@ use num_complex::Complex64;
 const DISTANCES: [f64; 6] = [0.1, 0.0125, 0.0016, 0.0002, 1e-5, 2e-7];
 /// A slice has at least this many times the point's error as its distance.
 const ABOVE_ERROR: f64 = 40.0;
-/// Directions, within the null space, in which the first point on a slice is sought: at first,
-const FEW_DIRECTIONS: u64 = 2;
-/// ... and where dual spaces of a low order did not stop.
-const MANY_DIRECTIONS: u64 = 12;
+/// Directions, within the null space, in which the first point on a slice is sought.
+const DIRECTIONS: u64 = 2;
+/// Normals of the hyperplanes that are tried one after another where dual spaces of a low order did not stop. Where two
+/// branches have one tangent space, Newton's method on a slice leads to the one that is nearer there.
+const MANY_NORMALS: u64 = 8;
 /// Most hyperplanes through the point that cut a set besides the one that is moved, except as many as
 /// the null space has dimensions.
 const MOST_CUTS: usize = 2;
@@ -54,7 +55,7 @@ const ROUNDING: f64 = 1e-28;
 /// Where points on slices are sought.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search<'a> {
-    /// In many directions instead of a few.
+    /// On hyperplanes with many normals instead of one.
     pub(super) many: bool,
     /// A direction that is likely to be a tangent, by its components in the null space.
     pub(super) tangent: Option<&'a [Complex64]>,
@@ -81,14 +82,17 @@ impl Around<'_> {
             cuts.push(kernel - 1);
         }
         cuts.reverse();
+        let normals = if search.many { MANY_NORMALS } else { 1 };
         let mut best = Vec::new();
-        for cut in cuts {
-            let found = Slices::new(*self, cut).meet(search);
-            if meets(&found) {
-                return found;
-            }
-            if nearer(&found, &best) {
-                best = found;
+        for normal in 0..normals {
+            for &cut in &cuts {
+                let found = Slices::new(*self, cut, normal).meet(search);
+                if meets(&found) {
+                    return found;
+                }
+                if nearer(&found, &best) {
+                    best = found;
+                }
             }
         }
         best
@@ -118,12 +122,29 @@ struct Slices<'a> {
     forms: Vec<Vec<Complex64>>,
 }
 
+/// What comes nearest to a solution on a slice.
+struct Nearest {
+    residual: f64,
+    /// Where it is, from the point.
+    offset: Vec<Complex64>,
+}
+
+impl Default for Nearest {
+    fn default() -> Self {
+        Self {
+            residual: f64::INFINITY,
+            offset: Vec::new(),
+        }
+    }
+}
+
 impl<'a> Slices<'a> {
-    /// With so many hyperplanes besides the one that is moved.
-    fn new(around: Around<'a>, cuts: usize) -> Self {
+    /// With so many hyperplanes besides the one that is moved. `normal`: which of the
+    /// normals that are tried.
+    fn new(around: Around<'a>, cuts: usize, normal: u64) -> Self {
         let split = around.split;
         // The same forms at all distances: the points that are met are those of one curve.
-        let mut random = RandomStream::new(cuts as u64, Purpose::Probe, 3);
+        let mut random = RandomStream::new(cuts as u64 + (normal << 32), Purpose::Probe, 3);
         let forms = (0..=cuts).map(|_| {
             let mut form = vec![Complex64::default(); split.point.len()];
             for direction in &split.kernel {
@@ -143,38 +164,16 @@ impl<'a> Slices<'a> {
     }
 
     fn meet(&self, search: Search<'_>) -> Vec<MovedSlice> {
-        let size = norm(&self.around.split.point);
-        let slices = DISTANCES.iter().map(|distance| distance * size);
         let mut found: Vec<MovedSlice> = Vec::new();
         // Where a slice was met, the next one is met in the same direction.
-        let mut direction: Option<Vec<Complex64>> = search.tangent.map(|t| self.along(t));
-        for distance in slices.filter(|&distance| distance > ABOVE_ERROR * self.around.error) {
-            let mut best = (f64::INFINITY, Vec::new());
-            let attempts = match search.many {
-                true => MANY_DIRECTIONS,
-                false => FEW_DIRECTIONS,
-            };
-            let known = direction.iter().cloned();
-            let others = (0..attempts).map(|attempt| self.direction(attempt));
-            for begin in known.chain(others) {
-                let tried = self.nearest(&begin, distance);
-                if tried.0 < best.0 {
-                    best = tried;
-                }
-                if best.0 <= MET {
-                    break;
-                }
-            }
-            let (residual, offset) = best;
-            let slice = MovedSlice {
-                distance: distance / size,
-                residual,
-                reached: square(&offset).sqrt() / size,
-            };
+        let mut direction = search.tangent.map(|components| self.along(components));
+        for distance in self.distances() {
+            let nearest = self.nearest_of(direction.as_deref(), distance);
+            let slice = self.slice(distance, &nearest);
             let met = slice.near_residual() <= MET;
             found.push(slice);
             if met {
-                direction = Some(offset);
+                direction = Some(nearest.offset);
             }
             // Only the farthest slice may miss a set.
             if found.len() > 1 && !met {
@@ -182,6 +181,40 @@ impl<'a> Slices<'a> {
             }
         }
         found
+    }
+
+    /// Distances that the point's error allows, farthest first.
+    fn distances(&self) -> impl Iterator<Item = f64> {
+        let size = norm(&self.around.split.point);
+        let least = ABOVE_ERROR * self.around.error;
+        let all = DISTANCES.iter().map(move |distance| distance * size);
+        all.filter(move |&distance| distance > least)
+    }
+
+    fn slice(&self, distance: f64, nearest: &Nearest) -> MovedSlice {
+        let size = norm(&self.around.split.point);
+        MovedSlice {
+            distance: distance / size,
+            residual: nearest.residual,
+            reached: square(&nearest.offset).sqrt() / size,
+        }
+    }
+
+    /// The nearest to a solution that is found in a direction that is known and in several others.
+    fn nearest_of(&self, known: Option<&[Complex64]>, distance: f64) -> Nearest {
+        let known = known.map(<[Complex64]>::to_vec).into_iter();
+        let others = (0..DIRECTIONS).map(|attempt| self.direction(attempt));
+        let mut best = Nearest::default();
+        for begin in known.chain(others) {
+            let tried = self.nearest(&begin, distance);
+            if tried.residual < best.residual {
+                best = tried;
+            }
+            if best.residual <= MET {
+                break;
+            }
+        }
+        best
     }
 
     /// A direction within the null space: that of l_0 at first, then others at random.
@@ -213,9 +246,9 @@ impl<'a> Slices<'a> {
 
     /// The least residual that Gauss-Newton steps find near p on the slice at this distance, beginning in
     /// this direction, and where that is, from p.
-    fn nearest(&self, direction: &[Complex64], distance: f64) -> (f64, Vec<Complex64>) {
+    fn nearest(&self, direction: &[Complex64], distance: f64) -> Nearest {
         let value = apply(&self.forms[0], direction);
-        let mut best = (f64::INFINITY, Vec::new());
+        let mut best = Nearest::default();
         // Nearly parallel to the slice.
         if value.norm_sqr() < 1e-4 * square(direction) {
             return best;
@@ -233,10 +266,13 @@ impl<'a> Slices<'a> {
             if !residual.is_finite() || square(&offset).sqrt() > REACH * distance {
                 break;
             }
-            let gained = residual < 0.8 * best.0;
+            let gained = residual < 0.8 * best.residual;
             without_gain = if gained { 0 } else { without_gain + 1 };
-            if residual < best.0 {
-                best = (residual, offset.clone());
+            if residual < best.residual {
+                best = Nearest {
+                    residual,
+                    offset: offset.clone(),
+                };
             }
             if residual <= ROUNDING || without_gain > 6 {
                 break;

@@ -213,6 +213,7 @@ impl<'a, S: Real> TaylorProbe<'a, S> {
     }
 
     /// J^-1 of a vector.
+    #[inline(always)]
     fn solve(&mut self, b: &[Complex<S>]) -> Vec<Complex<S>> {
         let n = b.len();
         for i in 0..n {

@@ -2,6 +2,7 @@
 //! differentiation of whatever is written for a scalar.
 
 use super::Real;
+use crate::lanes::dispatch::{Job, dispatch_single};
 use crate::rational::Rational;
 
 /// Coefficients that are kept: orders 0 to 4.
@@ -23,15 +24,57 @@ impl<S: Real> Jet<S> {
 
     /// `self += a*b`, or `self -= a*b`, term by term. A call of its own: written out at every place of the
     /// interpreter, with numbers of MPFR, it made a function of half a megabyte, the largest of the program.
-    #[inline(never)]
     fn accumulate(&mut self, a: &Self, b: &Self, minus: bool) {
+        dispatch_single(Product {
+            sum: self,
+            a,
+            b,
+            minus,
+        });
+    }
+}
+
+/// A product that is added to a sum or taken from it: fused operations are instructions only in what is compiled for
+/// an instruction set.
+struct Product<'a, S> {
+    sum: &'a mut Jet<S>,
+    a: &'a Jet<S>,
+    b: &'a Jet<S>,
+    minus: bool,
+}
+
+impl<S: Real> Job for Product<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
         for k in 0..TERMS {
             for j in 0..=k {
-                match minus {
-                    false => self.0[k].mul_add(&a.0[j], &b.0[k - j]),
-                    true => self.0[k].mul_sub(&a.0[j], &b.0[k - j]),
+                let (a, b) = (&self.a.0[j], &self.b.0[k - j]);
+                match self.minus {
+                    false => self.sum.0[k].mul_add(a, b),
+                    true => self.sum.0[k].mul_sub(a, b),
                 }
             }
+        }
+    }
+}
+
+/// A quotient in place of what is divided: each coefficient from those before it.
+struct Quotient<'a, S> {
+    divided: &'a mut Jet<S>,
+    by: &'a Jet<S>,
+}
+
+impl<S: Real> Job for Quotient<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        for k in 0..TERMS {
+            let (known, rest) = self.divided.0.split_at_mut(k);
+            for (j, quotient) in known.iter().enumerate() {
+                rest[0].mul_sub(quotient, &self.by.0[k - j]);
+            }
+            rest[0].div(&self.by.0[0]);
         }
     }
 }
@@ -92,22 +135,16 @@ impl<S: Real> Real for Jet<S> {
             own.sub(other);
         }
     }
-    #[inline(never)]
     fn mul(&mut self, other: &Self) {
         let a = self.clone();
         *self = Self::from_f64(a.context(), 0.0);
         self.accumulate(&a, other, false);
     }
-    /// q b = a: each coefficient of q from those before it.
-    #[inline(never)]
     fn div(&mut self, other: &Self) {
-        for k in 0..TERMS {
-            let (known, rest) = self.0.split_at_mut(k);
-            for (j, quotient) in known.iter().enumerate() {
-                rest[0].mul_sub(quotient, &other.0[k - j]);
-            }
-            rest[0].div(&other.0[0]);
-        }
+        dispatch_single(Quotient {
+            divided: self,
+            by: other,
+        });
     }
     #[inline(always)]
     fn mul_add(&mut self, a: &Self, b: &Self) {
