@@ -194,6 +194,11 @@ impl PrimeField {
 
     fn rational(&self, value: &Rational) -> Option<u64> {
         let part = |n: &Integer| {
+            // Most numbers are small, and take no memory.
+            if let Some(small) = n.to_i64() {
+                let rest = small.unsigned_abs() % self.prime;
+                return Some(if small < 0 { self.negate(&rest) } else { rest });
+            }
             let mut rest = Integer::from(n % self.prime);
             if rest < 0 {
                 rest += self.prime;
@@ -221,7 +226,12 @@ impl Field for PrimeField {
         self.times(*a, *b)
     }
     fn divide(&self, a: &u64, b: &u64) -> Option<u64> {
-        (*b != 0).then(|| self.times(*a, self.raise(*b, self.prime - 2)))
+        match b {
+            0 => None,
+            // Most numbers are whole: of their denominators no power is taken.
+            1 => Some(*a),
+            _ => Some(self.times(*a, self.raise(*b, self.prime - 2))),
+        }
     }
     fn root(&self, _: &u64, _: &Rational) -> Option<u64> {
         None
@@ -342,6 +352,11 @@ mod tests {
             assert_eq!(field.times(field.i, field.i), prime - 1);
             let third = field.constant(&ComplexRational::new((-1, 3), 0)).unwrap();
             assert_eq!(field.times(third, 3), prime - 1);
+            let whole = |n: Integer| field.constant(&ComplexRational::real(n));
+            for small in [7, -7, i64::MAX, i64::MIN] {
+                let large = Integer::from(prime) * u64::MAX + small;
+                assert_eq!(whole(small.into()), whole(large), "{small}");
+            }
             let conjugate = field.conjugate();
             let z = ComplexRational::new(2, 5);
             assert_eq!(
