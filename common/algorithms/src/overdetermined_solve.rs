@@ -25,6 +25,7 @@ use cognate_solutions::witness::{Decomposition, Doubt};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Equation by equation, to isolated points alone.
@@ -78,7 +79,7 @@ impl OverdeterminedSolve {
             dimension,
             coordinates: points.into_iter().flatten().copied().collect(),
         });
-        let parameters = self.parameters().to_vec();
+        let parameters = self.parameters().into_owned();
         let stage = Stage {
             homotopy: HomotopyKind::Parameter {
                 start: parameters.clone(),
@@ -97,11 +98,11 @@ impl OverdeterminedSolve {
         Some(stage.with_max_retries(self.max_retries))
     }
 
-    fn parameters(&self) -> &[Complex64] {
-        match &self.last.homotopy {
-            HomotopyKind::StraightLine { parameters } => parameters,
-            _ => &[],
-        }
+    /// Values of the parameters that are asked; none where the system has none.
+    fn parameters(&self) -> Cow<'_, [Complex64]> {
+        // Planning has put 0 in the place of a path variable.
+        let asked = self.last.homotopy.end_parameters(0, None);
+        asked.unwrap_or_default()
     }
 
     /// The last results of the paths that the answer counts: those at isolated points, and after them one that failed
@@ -222,7 +223,7 @@ impl Solve for OverdeterminedSolve {
         let (tolerances, seed) = (&self.tolerances, self.last.seed);
         let parameters = self.parameters();
         let results = self.results();
-        let mut set = SolutionSet::new(system, parameters, &results, &history, tolerances, seed);
+        let mut set = SolutionSet::new(system, &parameters, &results, &history, tolerances, seed);
         set.warnings.extend(doubts);
         Some(Answer::from(vec![set]))
     }

@@ -21,6 +21,9 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// What is said where a solve of another homotopy was made one of this kind.
+const MOVES: &str = "a parameter solve has a parameter homotopy";
+
 /// Many targets in one stage: item i starts at start point `i % starts` and
 /// goes to target `i / starts`. Crossings are looked for within each target.
 ///
@@ -60,9 +63,7 @@ impl ParameterSolve {
         tolerances: Tolerances,
     ) -> Self {
         let first = first.into();
-        let HomotopyKind::Parameter { targets, .. } = &first.stage.homotopy else {
-            panic!("a parameter solve has a parameter homotopy");
-        };
+        let targets = first.stage.homotopy.target_parameters().expect(MOVES);
         let count = targets.len() as u64;
         Self {
             paths: RetriedStage::with_shape(first, shape.clone(), tolerances, count),
@@ -110,10 +111,8 @@ impl ParameterSolve {
 
 impl ParameterSolve {
     fn targets(&self) -> &[Vec<Complex64>] {
-        match &self.paths.first().homotopy {
-            HomotopyKind::Parameter { targets, .. } => targets,
-            _ => unreachable!("checked when it was made"),
-        }
+        let homotopy = &self.paths.first().homotopy;
+        homotopy.target_parameters().expect(MOVES)
     }
 
     /// A stage that stays at one target: in the place of paths that failed it starts at what the

@@ -613,7 +613,7 @@ fn finish(
     why: String,
     options: &SolveOptions,
 ) -> Plan {
-    let several = matches!(first.homotopy, HomotopyKind::Parameter { .. });
+    let several = first.homotopy.target_parameters().is_some();
     let paths = first.items();
     assert!(paths.is_some(), "the number of paths is under the limit");
     let tolerances = options.tracking.tolerances.clone();

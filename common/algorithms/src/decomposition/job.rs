@@ -400,8 +400,8 @@ impl Job {
     }
 
     /// How the points moved of which sums were wanted; none where that was not asked.
-    pub fn moved(&self) -> Option<&MovedPoints> {
-        match &self.work {
+    pub fn into_moved(self) -> Option<MovedPoints> {
+        match self.work {
             Doing::Asked {
                 answers: Answers::Sums { moved, .. },
                 ..

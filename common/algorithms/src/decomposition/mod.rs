@@ -268,7 +268,7 @@ impl DecompositionSolve {
             }
             Step::Split(split) => {
                 state.paths_of_loops.add(&paths);
-                split.advance(made, done.as_ref())
+                split.advance(made, done)
             }
             Step::Prove(proving) => proving.advance(made, done.as_ref()),
         }

@@ -60,10 +60,10 @@ impl MovedPoints {
     }
 
     /// Takes these points, too.
-    pub fn extend(&mut self, more: &Self) {
-        self.second.extend_from_slice(&more.second);
-        self.lengths.extend_from_slice(&more.lengths);
-        self.errors.extend_from_slice(&more.errors);
+    pub fn extend(&mut self, more: Self) {
+        self.second.extend(more.second);
+        self.lengths.extend(more.lengths);
+        self.errors.extend(more.errors);
     }
 
     /// The sum of second derivatives over these points.

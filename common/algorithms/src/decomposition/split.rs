@@ -121,7 +121,7 @@ impl Split {
     pub fn advance(
         &mut self,
         (problem, deflations): (&Problem, &mut Deflations),
-        done: Option<&Job>,
+        done: Option<Job>,
     ) -> Option<Job> {
         let own = problem.variables();
         if self.set.dimension == 0 {
@@ -130,7 +130,7 @@ impl Split {
             return None;
         }
         if self.mirroring {
-            let ends = done.and_then(arrivals);
+            let ends = done.as_ref().and_then(arrivals);
             self.mirrored = ends.and_then(|ends| self.images(&ends, own));
             return None;
         }
@@ -138,18 +138,20 @@ impl Split {
             let Some(job) = done else {
                 return Some(self.ask_bends(problem));
             };
-            self.bends = job.moved().cloned();
+            self.bends = job.into_moved();
             let next = self.next_loop(problem, deflations);
             return next.or_else(|| self.mirror(problem, deflations));
         };
         let mut points = self.travelling();
-        if let Some(job) = done.filter(|_| self.search.asks_bends()) {
-            if let (Some(known), Some(moved)) = (&mut self.bends, job.moved()) {
-                known.extend(moved);
+        if self.search.asks_bends() {
+            if let Some(job) = done {
+                if let (Some(known), Some(moved)) = (&mut self.bends, job.into_moved()) {
+                    known.extend(moved);
+                }
+                self.search.bends_are_known();
             }
-            self.search.bends_are_known();
         } else if let Some(job) = done {
-            let arrived = arrivals(job);
+            let arrived = arrivals(&job);
             self.leg += 1;
             match (arrived, self.leg == LEGS) {
                 (Some(ends), false) => points = ends,

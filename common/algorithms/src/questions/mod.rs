@@ -371,21 +371,20 @@ impl QuestionSolve {
                 state.crossings_left += job.crossings_left();
             }
         }
-        let done = done.as_ref();
         let mut with = self.sets.context();
         let job = match &mut state.asking {
-            Asking::Check(asking) => asking.advance(&mut with, done),
-            Asking::Certify(asking) => asking.advance(&mut with, done),
-            Asking::Member(asking) => asking.advance(&mut with, done),
-            Asking::Sample(asking) => asking.advance(&mut with, done),
-            Asking::Project(asking) => asking.advance(&mut with, done),
-            Asking::Multidegree(asking) => asking.advance(&mut with, done),
-            Asking::Mobility(asking) => asking.advance(&mut with, done),
-            Asking::RealCurve(asking) => asking.advance(&mut with, done),
+            Asking::Check(asking) => asking.advance(&mut with, done.as_ref()),
+            Asking::Certify(asking) => asking.advance(&mut with, done.as_ref()),
+            Asking::Member(asking) => asking.advance(&mut with, done.as_ref()),
+            Asking::Sample(asking) => asking.advance(&mut with, done.as_ref()),
+            Asking::Project(asking) => asking.advance(&mut with, done.as_ref()),
+            Asking::Multidegree(asking) => asking.advance(&mut with, done.as_ref()),
+            Asking::Mobility(asking) => asking.advance(&mut with, done.as_ref()),
+            Asking::RealCurve(asking) => asking.advance(&mut with, done.as_ref()),
             Asking::Locus(asking) => asking.advance(&mut with, done),
             Asking::RealPoints(asking) => asking.advance(&mut with, done),
             Asking::RealSurface(asking) => {
-                let job = asking.advance(&mut with, done);
+                let job = asking.advance(&mut with, done.as_ref());
                 if asking.has_child() {
                     return None;
                 }

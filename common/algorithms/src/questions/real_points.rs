@@ -81,14 +81,14 @@ impl RealPoints {
         }
     }
 
-    pub fn advance(&mut self, with: &mut Context<'_>, mut done: Option<&Job>) -> Option<Job> {
+    pub fn advance(&mut self, with: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
         loop {
             let place = self.found.len();
             let operand = with.operands.get(place)?;
             let job = match (&mut self.phase, done.take()) {
                 (Phase::Begin, _) => self.begin(with, operand),
                 (Phase::Mirror, Some(job)) => {
-                    self.mirrored(with, operand, job);
+                    self.mirrored(with, operand, &job);
                     None
                 }
                 (Phase::Mirror, None) => unreachable!("it waits for a stage"),
@@ -99,7 +99,7 @@ impl RealPoints {
                     }
                     next
                 }
-                (Phase::Singular { .. }, job) => self.singular(with, operand, job),
+                (Phase::Singular { .. }, job) => self.singular(with, operand, job.as_ref()),
             };
             if job.is_some() {
                 return job;

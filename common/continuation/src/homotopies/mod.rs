@@ -112,6 +112,21 @@ impl HomotopyKind {
         }
     }
 
+    /// The values of the parameters that paths lead to from start parameters, one set for each target; `None` where
+    /// paths begin at another system, or parameters do not move.
+    pub fn target_parameters(&self) -> Option<&[Vec<Complex64>]> {
+        match self {
+            Self::Parameter { targets, .. } => Some(targets),
+            Self::StraightLine { .. }
+            | Self::PathVariable { .. }
+            | Self::Toric
+            | Self::Generic { .. }
+            | Self::MoveSlice { .. }
+            | Self::ProductToEquation { .. }
+            | Self::Sections { .. } => None,
+        }
+    }
+
     /// Values of the system's parameters where paths to end number `target` end, with 0 for the path variable of
     /// the system: all ends have the one set, where there is one. `None` where paths end at a system without them.
     ///

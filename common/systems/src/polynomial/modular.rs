@@ -55,7 +55,12 @@ impl Field {
     }
 
     pub(super) fn inverse(self, a: u64) -> Option<u64> {
-        (a != 0).then(|| self.power(a, self.prime - 2))
+        match a {
+            0 => None,
+            // Most numbers are whole: of their denominators no power is taken.
+            1 => Some(1),
+            _ => Some(self.power(a, self.prime - 2)),
+        }
     }
 
     fn rational(self, q: &Rational) -> Option<u64> {

@@ -139,8 +139,8 @@ impl Locus {
     }
 
     /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(&mut self, with: &mut Context<'_>, mut done: Option<&Job>) -> Option<Job> {
-        if let Some(job) = done {
+    pub fn advance(&mut self, with: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
+        if let Some(job) = &done {
             match self.phase {
                 Phase::Split(_) => self.paths_of_loops.add(&job.paths()),
                 _ => self.paths.add(&job.paths()),
@@ -152,19 +152,19 @@ impl Locus {
                 (Phase::Begin, _) if self.place[0] >= self.end => self.gathered(with),
                 (Phase::Begin, _) if self.wanted == Wanted::Others => self.pair(with),
                 (Phase::Begin, _) => self.begin(with),
-                (Phase::Start, Some(job)) => self.started(with, job),
+                (Phase::Start, Some(job)) => self.started(with, &job),
                 (Phase::Pair { dimension }, Some(job)) => {
                     let dimension = *dimension;
-                    self.paired(with, dimension, job)
+                    self.paired(with, dimension, &job)
                 }
                 (Phase::Start | Phase::Pair { .. }, None) => {
                     unreachable!("these phases wait for a stage")
                 }
-                (Phase::Cut(_), job) => self.cutting(with, job),
+                (Phase::Cut(_), job) => self.cutting(with, job.as_ref()),
                 (Phase::Sift(filter), job) => {
                     let mut sets = Vec::from(std::mem::take(&mut self.sets));
                     let made = (with.whole, &mut *with.whole_deflations);
-                    let next = filter.advance(made, job, &mut sets);
+                    let next = filter.advance(made, job.as_ref(), &mut sets);
                     self.sets = sets.into();
                     if next.is_none() {
                         self.dimensions = filter.dimensions();
