@@ -189,6 +189,42 @@ fn moved_slices_meet_sets_and_no_isolated_point() {
     }
 }
 
+/// The line u = 0 and, of the first equation alone, the line v = -u, at a point that the second equation embeds: on a
+/// slice Newton's method leads to the one that is nearer there, so that one hyperplane misses some of these.
+#[test]
+fn a_line_is_met_beside_another_of_which_only_one_point_is_a_solution() {
+    for k in 0..16 {
+        let angle = f64::from(k) * std::f64::consts::PI / 16.0;
+        let (sine, cosine) = angle.sin_cos();
+        let text = format!(
+            "variable_group x, y; function f, g; u = {cosine:.15}*x - {sine:.15}*y; \
+             v = {sine:.15}*x + {cosine:.15}*y; f = u*(v + u/16); g = u^2*(v - u);"
+        );
+        let found = tower(&read(&text), &[0.0, 0.0], 3, 1e-12, 1);
+        assert!(
+            moved_slice::meets(&found.moved_slices),
+            "at {k}/16 of a half-turn: {found:?}"
+        );
+    }
+}
+
+/// Where eliminating a variable magnifies errors until they hide everything, no more orders are told: not more
+/// functionals than there are derivatives.
+#[test]
+fn what_errors_hide_is_not_told() {
+    let steep = read(
+        "variable_group x, y, z; function f, g, h; f = z/100000 - x^2 - y^2 - z^2; g = x*y + z*y; \
+         h = y^3 + z^3*x;",
+    );
+    for error in [1e-10, 1e-8] {
+        let found = tower(&steep, &[0.0, 0.0, 0.0], u64::MAX, error, 1);
+        for (order, &dimension) in (0..).zip(&found.dual_dimensions) {
+            let most = Monomials::count_of(3, order) as u32;
+            assert!(dimension <= most, "{found:?}");
+        }
+    }
+}
+
 /// kss-6 has a point of multiplicity 42 (Dayton and Zeng 2005): more functionals than a matrix of all
 /// monomials could find in a second. Its tower was computed modulo 2^31 - 1.
 #[test]
