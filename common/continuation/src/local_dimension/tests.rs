@@ -193,17 +193,20 @@ fn moved_slices_meet_sets_and_no_isolated_point() {
 /// slice Newton's method leads to the one that is nearer there, so that one hyperplane misses some of these.
 #[test]
 fn a_line_is_met_beside_another_of_which_only_one_point_is_a_solution() {
-    for k in 0..16 {
-        let angle = f64::from(k) * std::f64::consts::PI / 16.0;
-        let (sine, cosine) = angle.sin_cos();
+    for k in 0..16i32 {
+        // Turned by the angle whose half has the tangent n/8.
+        let n = k - 8;
+        let turned = format!("(({0})*x - ({1})*y)", 64 - n * n, 16 * n);
+        let across = format!("(({1})*x + ({0})*y)", 64 - n * n, 16 * n);
         let text = format!(
-            "variable_group x, y; function f, g; u = {cosine:.15}*x - {sine:.15}*y; \
-             v = {sine:.15}*x + {cosine:.15}*y; f = u*(v + u/16); g = u^2*(v - u);"
+            "variable_group x, y; function f, g; u = {turned}/{length}; v = {across}/{length}; \
+             f = u*(v + u/16); g = u^2*(v - u);",
+            length = 64 + n * n
         );
         let found = tower(&read(&text), &[0.0, 0.0], 3, 1e-12, 1);
         assert!(
             moved_slice::meets(&found.moved_slices),
-            "at {k}/16 of a half-turn: {found:?}"
+            "at {n}/8: {found:?}"
         );
     }
 }
