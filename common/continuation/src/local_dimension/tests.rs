@@ -17,11 +17,20 @@ fn read(text: &str) -> System {
 
 /// Dimensions of the dual spaces at a point given by real values, moved by about `error`.
 fn tower(system: &System, at: &[f64], bound: u64, error: f64, seed: u64) -> LocalDimension {
-    let chart = Chart::new(system, seed, 0);
     let values: Vec<Complex64> = at.iter().map(|&x| Complex64::new(x, 0.0)).collect();
-    let mut point = chart
-        .from_variables(&values)
-        .expect("a patch that meets it");
+    tower_at(system, &values, bound, error, seed)
+}
+
+/// ... by complex values.
+fn tower_at(
+    system: &System,
+    values: &[Complex64],
+    bound: u64,
+    error: f64,
+    seed: u64,
+) -> LocalDimension {
+    let chart = Chart::new(system, seed, 0);
+    let mut point = chart.from_variables(values).expect("a patch that meets it");
     let mut random = RandomStream::new(seed, Purpose::Test, 3);
     for z in &mut point {
         *z += random.disc() * error;
@@ -189,25 +198,126 @@ fn moved_slices_meet_sets_and_no_isolated_point() {
     }
 }
 
-/// The line u = 0 and, of the first equation alone, the line v = -u, at a point that the second equation embeds: on a
-/// slice Newton's method leads to the one that is nearer there, so that one hyperplane misses some of these.
+/// Planes that touch a curve of degree 6 at x, y and z (`tritangents` of the tests of HomotopyContinuation.jl, other
+/// coefficients): a quadric and a cubic through each point, and a plane that contains the tangent there.
+fn tritangents() -> System {
+    let mut exponents = Vec::new();
+    for i in 0..4u32 {
+        for j in 0..4 - i {
+            exponents.extend((0..4 - i - j).map(|k| [i, j, k]));
+        }
+    }
+    let term = |factor: i32, exponents: [u32; 3], name: char| {
+        let powers = (1..).zip(exponents).map(|(k, e)| format!("{name}{k}^{e}"));
+        let powers: Vec<String> = powers.collect();
+        format!("({factor})*{}", powers.join("*"))
+    };
+    let cubic = |name: char| {
+        let terms = CUBIC
+            .iter()
+            .zip(&exponents)
+            .map(|(c, e)| term(*c, *e, name));
+        terms.collect::<Vec<_>>().join("+")
+    };
+    let derivative = |name: char, v: usize| {
+        let moving = CUBIC.iter().zip(&exponents).filter(|(_, e)| e[v] > 0);
+        let terms = moving.map(|(c, e)| {
+            let mut lower = *e;
+            lower[v] -= 1;
+            term(c * e[v] as i32, lower, name)
+        });
+        format!("({})", terms.collect::<Vec<_>>().join("+"))
+    };
+    let at_point = |(k, p): (usize, char)| {
+        let [a, b, c] = [0, 1, 2].map(|v| derivative(p, v));
+        format!(
+            "f{k}1 = h1*{p}1 + h2*{p}2 + h3*{p}3 - 1; f{k}2 = {p}3 - {p}1*{p}2; f{k}3 = {cubic}; \
+             f{k}4 = h1*(-{p}1*{c} - {b}) - h2*(-{p}2*{c} - {a}) + h3*(-{p}2*{b} + {p}1*{a});",
+            cubic = cubic(p)
+        )
+    };
+    let equations: Vec<String> = "xyz".chars().enumerate().map(at_point).collect();
+    read(&format!(
+        "variable_group h1, h2, h3, x1, x2, x3, y1, y2, y3, z1, z2, z3; \
+         function f01, f02, f03, f04, f11, f12, f13, f14, f21, f22, f23, f24; {}",
+        equations.concat()
+    ))
+}
+
+/// The cubic's coefficients, by exponents in ascending order.
+const CUBIC: [i32; 20] = [
+    -535, -241, 971, -231, -741, -604, 444, -910, -825, -719, -493, 662, 38, -571, -179, 315, -937,
+    -59, -1, -71,
+];
+
+/// Ends of three paths each on the curve of planes that touch twice, where those that touch in three points branch off
+/// tangent to its null space: two directions on slices with one normal lead to that branch, where no solution is.
+const ENDS: [[(f64, f64); 12]; 4] = [
+    [
+        (-0.08005914005143615, -7.750007627745088e-05),
+        (1.9849153297053796, 0.002760795271637679),
+        (0.04201753078849977, 0.0005746930882848425),
+        (-7.519367303337622, -3.2138089506172944),
+        (0.249311250103353, -0.13395985089767157),
+        (-2.3051842302196834, 0.20605459572819626),
+        (-7.484807260780728, 2.1310271132428515),
+        (0.244690195123126, 0.08896216797403342),
+        (-2.0210397411049645, -0.14442324063477244),
+        (-7.484807260780729, 2.131027113242852),
+        (0.24469019512312612, 0.08896216797403339),
+        (-2.0210397411049645, -0.14442324063477224),
+    ],
+    [
+        (-0.09418924432842048, -0.023143664249464485),
+        (-0.31730352287768376, 0.5500367751146675),
+        (-0.04503590738266887, -0.050046925551702266),
+        (-1.1383413888855098, -1.1008104895425743),
+        (-0.7117870105690721, -1.050409797676335),
+        (-0.34604550939854567, 1.9792675555404071),
+        (-12.043256900322795, 5.022548714889052),
+        (0.05590435705730489, 0.29919005138723775),
+        (-2.1759671419910425, -3.322440294182417),
+        (-1.138341388885536, -1.100810489542595),
+        (-0.7117870105690708, -1.0504097976763294),
+        (-0.34604550939854467, 1.9792675555404415),
+    ],
+    [
+        (-0.2268777415020159, -0.21527331611417264),
+        (-0.2311884329930082, 1.1584396605600658),
+        (0.37734721234964225, -0.13880816358215864),
+        (-55.47925463627889, 7.657607727636071),
+        (0.26959263722869975, 0.6652328423073209),
+        (-20.050890722806542, -34.84218758862617),
+        (0.4795266018462683, -0.21210779207254493),
+        (-0.03516993199199464, -1.138177548134963),
+        (-0.2582812446967317, -0.5383265953326982),
+        (0.4795266018462688, -0.21210779207254263),
+        (-0.03516993199199311, -1.138177548134962),
+        (-0.2582812446967278, -0.5383265953326991),
+    ],
+    [
+        (-0.1687851351940809, -0.04340324356386729),
+        (-0.21122965404432856, 1.1550559666293416),
+        (0.49425366996916587, -0.1939546400004405),
+        (1.6575435603237916, -2.3355784436083806),
+        (2.501011371968406, 3.0967249714468386),
+        (11.378179382997804, -0.7083517130732332),
+        (0.3296483997431365, -0.15717611719696503),
+        (-0.09299839740685781, -1.0411477993111122),
+        (-0.1943003414077321, -0.32859557892904573),
+        (0.3296483997431363, -0.1571761171969619),
+        (-0.09299839740685642, -1.04114779931111),
+        (-0.194300341407728, -0.32859557892904573),
+    ],
+];
+
 #[test]
-fn a_line_is_met_beside_another_of_which_only_one_point_is_a_solution() {
-    for k in 0..16i32 {
-        // Turned by the angle whose half has the tangent n/8.
-        let n = k - 8;
-        let turned = format!("(({0})*x - ({1})*y)", 64 - n * n, 16 * n);
-        let across = format!("(({1})*x + ({0})*y)", 64 - n * n, 16 * n);
-        let text = format!(
-            "variable_group x, y; function f, g; u = {turned}/{length}; v = {across}/{length}; \
-             f = u*(v + u/16); g = u^2*(v - u);",
-            length = 64 + n * n
-        );
-        let found = tower(&read(&text), &[0.0, 0.0], 3, 1e-12, 1);
-        assert!(
-            moved_slice::meets(&found.moved_slices),
-            "at {n}/8: {found:?}"
-        );
+fn a_curve_is_met_where_another_branch_leaves_it() {
+    let system = tritangents();
+    for end in ENDS {
+        let values: Vec<Complex64> = end.iter().map(|&(re, im)| Complex64::new(re, im)).collect();
+        let found = tower_at(&system, &values, 3, 1e-13, 1);
+        assert!(moved_slice::meets(&found.moved_slices), "{found:?}");
     }
 }
 
