@@ -100,16 +100,7 @@ impl HomotopyKind {
 
     /// How many sets of values of the parameters paths end at.
     pub fn parameter_sets(&self) -> usize {
-        match self {
-            Self::Parameter { targets, .. } => targets.len(),
-            Self::StraightLine { .. }
-            | Self::PathVariable { .. }
-            | Self::Toric
-            | Self::Generic { .. }
-            | Self::MoveSlice { .. }
-            | Self::ProductToEquation { .. }
-            | Self::Sections { .. } => 1,
-        }
+        self.target_parameters().map_or(1, <[_]>::len)
     }
 
     /// The values of the parameters that paths lead to from start parameters, one set for each target; `None` where
