@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, Span};
 use winnow::ascii::{digit0, digit1};
-use winnow::combinator::{alt, opt};
+use winnow::combinator::{alt, opt, repeat};
 use winnow::error::EmptyError;
 use winnow::prelude::*;
 use winnow::token::{any, one_of, take_while};
@@ -12,7 +12,7 @@ use winnow::token::{any, one_of, take_while};
 pub enum TokenKind<'a> {
     /// A number without a sign: `12`, `1.5`, `.5e-3`.
     Number(&'a str),
-    /// A name: a letter or `_`, then letters, digits, `_`, `[` and `]`.
+    /// A name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`.
     Name(&'a str),
     /// One of `+ - * / ^ ( ) ; , = :`; `**` is read as `^`.
     Symbol(char),
@@ -72,12 +72,16 @@ fn number<'a>(input: &mut &'a str) -> Lexed<&'a str> {
         .parse_next(input)
 }
 
+/// Letters, digits and `_`, and indices such as `[1]`: a bracket of a name is closed in it, so that names can
+/// stand in the lists of notations whose lists have brackets.
 fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
+    let letters = |input: &mut &'a str| {
+        take_while(1.., |c: char| c.is_alphanumeric() || c == '_').parse_next(input)
+    };
+    let index = ('[', letters, ']').take();
     (
         one_of(|c: char| c.is_alphabetic() || c == '_'),
-        take_while(0.., |c: char| {
-            c.is_alphanumeric() || matches!(c, '_' | '[' | ']')
-        }),
+        repeat::<_, _, (), _, _>(0.., alt((letters, index))),
     )
         .take()
         .parse_next(input)
@@ -218,6 +222,8 @@ mod tests {
             [Name("x"), Symbol('^'), Name("y"), Symbol('^'), Number("1."),]
         );
         assert_eq!(kinds("x[1]_2 @"), [Name("x[1]_2"), TokenKind::Unknown('@')]);
+        let open = [Name("x"), TokenKind::Unknown('['), Symbol('*'), Name("y")];
+        assert_eq!(kinds("x[*y"), open);
     }
 
     #[test]

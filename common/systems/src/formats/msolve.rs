@@ -99,6 +99,14 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     for &equation in &system.equations {
         let expanded = Polynomial::expand(&system.expressions, equation, system.variables.len(), 0);
         let expanded = expanded.ok_or(WriteError::TooLarge(format))?;
+        if expanded
+            .terms
+            .keys()
+            .flatten()
+            .all(|exponent| *exponent == 0)
+        {
+            return Err(inexpressible("equations in which all variables cancel"));
+        }
         let mut text = String::new();
         for (exponents, coefficient) in &expanded.terms {
             let factors = system.variables.iter().zip(exponents);

@@ -123,7 +123,8 @@ impl Scope {
     ) -> Result<u32, Fault> {
         if !is_name(&name.text) {
             let found = format!("\"{}\"", shorten(&name.text));
-            let expected = "a name: a letter or `_`, then letters, digits, `_`, `[` and `]`";
+            let expected =
+                "a name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`";
             return Err(Fault::expected(span, expected, found));
         }
         parse::check_free(&name.text, span, Dialect::BERTINI)?;

@@ -152,6 +152,13 @@ fn what_a_notation_cannot_say_is_refused() {
     let complex = "variable x; function f; f = x^2 - I; END;";
     let none = Err("msolve notation has no numbers that are not real".to_owned());
     assert_eq!(write(Format::Msolve, complex), none);
+    let no_variable = "msolve notation has no equations in which all variables cancel";
+    for text in [
+        "variable x; function f; f = x - 1 - x; END;",
+        "variable x; function f; f = (x + 1)^2 - x^2 - 2*x - 1; END;",
+    ] {
+        assert_eq!(write(Format::Msolve, text).unwrap_err(), no_variable);
+    }
     assert!(
         write(Format::Macaulay2, complex)
             .unwrap()

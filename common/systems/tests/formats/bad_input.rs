@@ -137,8 +137,8 @@ fn names() {
     );
     check(
         r#"{"variables": ["x y"], "equations": ["x"]}"#,
-        "test:1:16: variables[0]: expected a name: a letter or `_`, then letters, digits, `_`, \
-         `[` and `]`, found \"x y\"",
+        "test:1:16: variables[0]: expected a name: a letter or `_`, then letters, digits, `_` \
+         and indices such as `[1]`, found \"x y\"",
     );
 }
 
