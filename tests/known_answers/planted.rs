@@ -11,8 +11,9 @@ const SAMPLE: u64 = 4;
 /// Seeds and numbers of systems that were. The first six: of two roots nearer than 1e-12 one was a solution with small
 /// rational coordinates, and both were one double point. The others have roots beside each other, at 1e10 or on a set,
 /// which paths took for another, for infinity or for a point of a set: an exact count tells. Of the last two coordinates
-/// were wrong: condition numbers of 1e17, where Newton's method had not come to rest.
-const ONCE_WRONG: [(u64, u64); 18] = [
+/// were wrong: condition numbers of 1e17, where Newton's method had not come to rest. Then a line by a linear-product start
+/// that has no path, and solutions nearer to one another than their accuracy, of which two were one and no answer came.
+const ONCE_WRONG: [(u64, u64); 20] = [
     (21, 58),
     (21, 75),
     (21, 81),
@@ -31,6 +32,8 @@ const ONCE_WRONG: [(u64, u64); 18] = [
     (23, 881),
     (23, 97),
     (23, 862),
+    (4, 2049),
+    (5, 2424),
 ];
 
 /// No system of the sample is answered wrongly by an answer that is called settled.

@@ -234,6 +234,11 @@ fn plan_start_system(
             let (tracked, start, count) = start
                 .unwrap_or_else(none)
                 .map_err(PlanError::NoLinearProduct)?;
+            if count == 0 {
+                let why = "it has no path: a system with these sets has no isolated solution unless its \
+                           coefficients are special";
+                return Err(PlanError::NoLinearProduct(why.into()));
+            }
             if count > MAX_PATHS {
                 let (start, number) = (StartKind::LinearProduct, Some(count));
                 let instead = String::new();

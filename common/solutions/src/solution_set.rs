@@ -183,6 +183,7 @@ impl<'a> Draft<'a> {
         self.fail_what_still_crosses();
         self.settle_declared_sets();
         self.absorb_regular_ends();
+        self.fail_what_coincides();
         self.list_failures();
         self.count_paths(history);
         let representatives = self.merge(history);
@@ -281,6 +282,31 @@ impl<'a> Draft<'a> {
                 if finite(self.decisions[member].verdict) {
                     self.decisions[member].verdict = verdict;
                 }
+            }
+        }
+    }
+
+    /// Whether ends coincide depends a little on which others are looked at with them. What counts as regular is looked
+    /// at by itself, as [`Self::merge`] does, until no two are at one point.
+    fn fail_what_coincides(&mut self) {
+        loop {
+            let finite = |place: usize| self.decisions[place].verdict == Verdict::Finite;
+            let points = coincidences(
+                self.results,
+                &self.shape,
+                self.tolerances,
+                self.seed,
+                finite,
+            );
+            let others: Vec<usize> = points
+                .into_iter()
+                .flat_map(|members| members.into_iter().skip(1))
+                .collect();
+            if others.is_empty() {
+                return;
+            }
+            for place in others {
+                self.decisions[place].verdict = Verdict::Failed;
             }
         }
     }
@@ -670,6 +696,7 @@ fn some_of(paths: &[u64]) -> String {
 mod tests {
     use super::*;
     use crate::test_results::{failed, isolated, regular, roots_of_unity, singular};
+    use cognate_numeric::random::{Purpose, RandomStream};
     use cognate_systems::system::DegenerateSet;
 
     /// x^5 = x: a real equation in one variable; x must not vanish.
@@ -691,6 +718,30 @@ mod tests {
             complete_start: true,
             ..History::default()
         }
+    }
+
+    /// Which of inaccurate ends coincide depends on which are looked at together: a path is of one class all the same.
+    #[test]
+    fn regular_ends_that_nearly_coincide_are_counted_once() {
+        let mut random = RandomStream::new(3, Purpose::Test, 1);
+        let mut met = 0;
+        for _ in 0..400 {
+            let results: Vec<PathResult> = (0..5)
+                .map(|path| {
+                    let z = random.disc() * 2e-6;
+                    let accuracy = 1e-7 * (0.5 + random.uniform());
+                    PathResult {
+                        accuracy,
+                        ..regular(path, &[(0.5, 0.0), (0.5 + z.re, z.im)])
+                    }
+                })
+                .collect();
+            let set = set_of(&results, &complete());
+            assert_eq!(set.paths.finite + set.paths.failed, 5);
+            assert_eq!(set.counts.nonsingular, set.paths.finite);
+            met += set.paths.failed;
+        }
+        assert!((200..1800).contains(&met), "{met}");
     }
 
     #[test]

@@ -2,15 +2,17 @@
 //!
 //! `meta.json` of each instance says what is expected and by which independent programs that was found.
 
-use cognate_client::mechanism::answer::{Answer, answer};
 use cognate_client::mechanism::follow::samples::{Sample, samples};
 use cognate_client::mechanism::follow::{BranchEnd, Path, follow};
-use cognate_client::mechanism::preparation::AnswerOptions;
+use cognate_client::mechanism::preparation::{AnswerOptions, Preparation};
 use cognate_client::mechanism::solver::Solver;
+use cognate_client::mechanism::summary::Summary;
 use cognate_client::mechanism::target_answer::TargetAnswer;
 use cognate_kinematics::compile::{Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
-use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, Space, read, targets};
+use cognate_kinematics::mechanism::{
+    Body, Mechanism, MechanismError, ReadOptions, Space, read, targets,
+};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -37,6 +39,38 @@ fn question(problem: Problem) -> Question {
         inputs: None,
         locks: Vec::new(),
     }
+}
+
+/// The answers for all targets, with what is said of them together.
+#[derive(Debug)]
+struct Answer {
+    preparation: Preparation,
+    targets: Vec<TargetAnswer>,
+    warnings: Vec<String>,
+    settled: bool,
+}
+
+/// Answers a question; without targets there is one, with nothing given.
+fn answer(
+    mechanism: &Mechanism,
+    question: &Question,
+    targets: &[Target],
+    options: &AnswerOptions,
+) -> Result<Answer, MechanismError> {
+    let solver = Solver::new(mechanism, question, options)?;
+    let lone = [Target::Inputs(Vec::new())];
+    let targets = match targets {
+        [] => solver.solve(&lone)?,
+        targets => solver.solve(targets)?,
+    };
+    let mut summary = Summary::of(solver.preparation());
+    targets.iter().for_each(|target| summary.note(target));
+    Ok(Answer {
+        preparation: solver.preparation().clone(),
+        targets,
+        warnings: summary.warnings,
+        settled: summary.settled,
+    })
 }
 
 /// All seeds; each target of each must have these numbers of complex and real positions.

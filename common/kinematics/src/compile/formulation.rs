@@ -5,6 +5,7 @@ use crate::mechanism::chain::JointValue;
 use crate::mechanism::pose::Pose;
 use crate::mechanism::{Mechanism, MechanismError};
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// What is given and what is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,11 +64,11 @@ pub struct KnownMember {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
     /// Values of joints, in the file's order.
-    pub values: Vec<(String, JointValue)>,
+    pub values: Vec<(Arc<str>, JointValue)>,
     /// The output's pose.
     pub output: Option<Pose>,
     /// Poses of bodies or places of points, by name.
-    pub bodies: Vec<(String, Pose)>,
+    pub bodies: Vec<(Arc<str>, Pose)>,
     /// The largest gap of a loop, in parts of the mechanism's size and the solution's.
     pub residual: f64,
 }

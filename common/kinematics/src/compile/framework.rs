@@ -140,7 +140,7 @@ impl Formulation for Realisations {
             .framework
             .points
             .iter()
-            .cloned()
+            .map(|name| name.as_str().into())
             .zip(places.into_iter().map(pose));
         Lifted::Position(Box::new(Configuration {
             values: Vec::new(),

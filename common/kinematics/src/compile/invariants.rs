@@ -6,7 +6,7 @@
 //! `six_revolute`.
 
 use super::formulation::{Configuration, Family, Formulation, Lifted, Target};
-use super::postures::{position, turn_between};
+use super::postures::{Postures, turn_between};
 use super::text::{self, Equations, TextPose, dot, sum, times};
 use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::{Pose, Vector3};
@@ -44,7 +44,7 @@ pub fn compile(
         .map(|j| if j.is_angle { "R" } else { "P" })
         .collect();
     let mut shifted = Shifted {
-        chain: chain.clone(),
+        postures: Postures::of(chain.clone()),
         held,
         arm,
         order,
@@ -61,7 +61,7 @@ pub fn compile(
 }
 
 struct Shifted {
-    chain: Chain,
+    postures: Postures,
     held: Vec<Option<f64>>,
     /// The chain of six joints that are free.
     arm: Chain,
@@ -384,7 +384,7 @@ impl Formulation for Shifted {
         let values: Vec<JointValue> = self
             .held
             .iter()
-            .zip(&self.chain.joints)
+            .zip(&self.postures.chain.joints)
             .map(|(held, joint)| match held {
                 Some(x) => JointValue::of_real(*x, joint.is_angle),
                 // Rows keep theta and d, so that values of the arm are those of the file.
@@ -394,11 +394,8 @@ impl Formulation for Shifted {
             })
             .collect();
         let growth = point.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
-        let residual = self
-            .chain
-            .tool_pose(&values)
-            .distance(pose, self.chain.size())
-            / growth;
-        Lifted::Position(Box::new(position(&self.chain, values, residual.max(gap))))
+        let size = self.postures.chain.size();
+        let residual = |tool: &Pose| (tool.distance(pose, size) / growth).max(gap);
+        Lifted::Position(Box::new(self.postures.position(values, residual)))
     }
 }

@@ -9,6 +9,7 @@ use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Leg, LegKind, Mechanism, MechanismError, Platform, Space};
 use crate::plane::modulus;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// The formulation of a platform's inverse question.
 pub fn compile(
@@ -124,7 +125,7 @@ impl Inverse {
         &self,
         heads: &[Vector3],
         mut point: &[Complex64],
-    ) -> (Vec<(String, JointValue)>, f64) {
+    ) -> (Vec<(Arc<str>, JointValue)>, f64) {
         let mut next = || match point.split_first() {
             Some((first, rest)) => {
                 point = rest;
@@ -141,7 +142,10 @@ impl Inverse {
                     let from = real(from);
                     let away: Vector3 = std::array::from_fn(|i| head[i] - from[i]);
                     let square: f64 = away.iter().map(|c| c.re * c.re).sum();
-                    values.push((leg.name.clone(), JointValue::Shift(square.sqrt().into())));
+                    values.push((
+                        leg.name.as_str().into(),
+                        JointValue::Shift(square.sqrt().into()),
+                    ));
                     continue;
                 }
                 LegKind::Crank {
@@ -171,7 +175,7 @@ impl Inverse {
             let square: Complex64 = away.iter().map(|c| c * c).sum();
             let scale: f64 = away.iter().map(|c| c.norm_sqr()).sum::<f64>() + size * size;
             most = most.max(modulus(square - rod * rod) / scale);
-            values.push((leg.name.clone(), value));
+            values.push((leg.name.as_str().into(), value));
         }
         (values, most)
     }

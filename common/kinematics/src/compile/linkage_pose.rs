@@ -70,7 +70,7 @@ impl Elements {
     pub fn pose(&self, values: &[JointValue]) -> Pose {
         let mut pose = Pose::IDENTITY;
         for ((before, _), value) in self.parts.iter().zip(values) {
-            pose = pose.then(before).then(&value.pose());
+            pose = value.moved(&pose.then(before));
         }
         pose.then(&self.after)
     }

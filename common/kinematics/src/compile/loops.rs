@@ -17,6 +17,7 @@ use crate::mechanism::pose::{Pose, Vector3, dot, unit};
 use crate::mechanism::{Joint, JointKind, Linkage, Mechanism, MechanismError, Space};
 use crate::plane::modulus;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// A square that is not 0 where a quaternion is a rotation.
 const NORM: &str = "e0^2+e1^2+e2^2+e3^2";
@@ -538,7 +539,7 @@ impl Loops {
         &self,
         poses: &[Pose],
         values: &[Vec<JointValue>],
-    ) -> (f64, Vec<(String, JointValue)>) {
+    ) -> (f64, Vec<(Arc<str>, JointValue)>) {
         let size = size(&self.linkage);
         let scale = 1.0
             + poses
@@ -580,7 +581,7 @@ impl Loops {
                     } else {
                         value
                     };
-                    found.push((joint.name.clone(), value));
+                    found.push((joint.name.as_str().into(), value));
                 }
                 continue;
             }
@@ -598,11 +599,12 @@ impl Loops {
             match joint.kind {
                 JointKind::R => {
                     let value = JointValue::Turn(between.rotation[0][0], between.rotation[1][0]);
-                    found.push((joint.name.clone(), value));
+                    found.push((joint.name.as_str().into(), value));
                 }
-                JointKind::P => {
-                    found.push((joint.name.clone(), JointValue::Shift(between.position[2])))
-                }
+                JointKind::P => found.push((
+                    joint.name.as_str().into(),
+                    JointValue::Shift(between.position[2]),
+                )),
                 _ => {}
             }
         }
@@ -685,7 +687,7 @@ impl Formulation for Loops {
         let known = |l: &usize| !self.rods.iter().any(|r| r.link == *l);
         let bodies = (0..poses.len())
             .filter(known)
-            .map(|l| (self.linkage.links[l].clone(), poses[l]));
+            .map(|l| (self.linkage.links[l].as_str().into(), poses[l]));
         Lifted::Position(Box::new(Configuration {
             output: self
                 .output

@@ -526,7 +526,7 @@ impl Formulation for Planar {
                     JointValue::Shift(numbers.get(&self.shift_name(j)))
                 }
             };
-            values.push((joint.name.clone(), value));
+            values.push((joint.name.as_str().into(), value));
         }
         for k in 1..=self.classes() {
             let product = numbers.get(&format!("g{k}")) * numbers.get(&format!("G{k}"));
@@ -549,7 +549,13 @@ impl Formulation for Planar {
         Lifted::Position(Box::new(Configuration {
             values,
             output,
-            bodies: self.linkage.links.iter().cloned().zip(poses).collect(),
+            bodies: self
+                .linkage
+                .links
+                .iter()
+                .map(|name| name.as_str().into())
+                .zip(poses)
+                .collect(),
             residual: most,
         }))
     }

@@ -13,6 +13,7 @@ use crate::mechanism::pose::{Pose, Vector3, cross, unit};
 use crate::mechanism::{Leg, LegKind, Mechanism, MechanismError, Platform, Vector};
 use crate::plane::modulus;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// The formulation of a platform's forward question.
 pub fn compile(
@@ -374,13 +375,17 @@ pub fn legs_residual(platform: &Platform, pose: &Pose, mut parameters: &[Complex
 }
 
 /// Values of legs that a target gives.
-pub fn given_values(platform: &Platform, target: Option<&Target>) -> Vec<(String, JointValue)> {
+pub fn given_values(platform: &Platform, target: Option<&Target>) -> Vec<(Arc<str>, JointValue)> {
     let Some(Target::Inputs(values)) = target else {
         return Vec::new();
     };
     let driven = platform.legs.iter().filter(|l| l.is_driven());
-    let value =
-        |(leg, x): (&Leg, &f64)| (leg.name.clone(), JointValue::of_real(*x, leg.is_angle()));
+    let value = |(leg, x): (&Leg, &f64)| {
+        (
+            leg.name.as_str().into(),
+            JointValue::of_real(*x, leg.is_angle()),
+        )
+    };
     driven.zip(values).map(value).collect()
 }
 

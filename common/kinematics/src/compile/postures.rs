@@ -1,26 +1,46 @@
-//! Postures of chains: frames for joint values, and the turn that closes a chain.
+//! Postures of chains: frames for joint values, with their names, and the turn that closes a chain.
 
 use super::formulation::Configuration;
 use crate::mechanism::chain::{Chain, JointValue};
-use crate::mechanism::pose::Vector3;
+use crate::mechanism::pose::{Pose, Vector3};
 use num_complex::Complex64;
+use std::sync::Arc;
 
-/// A position of a chain, with its frames.
-pub fn position(chain: &Chain, values: Vec<JointValue>, residual: f64) -> Configuration {
-    let frames = chain.frames(&values);
-    let named = (1..)
-        .map(|i| format!("link{i}"))
-        .zip(frames.iter().copied());
-    Configuration {
-        output: frames.last().copied(),
-        bodies: named.take(values.len()).collect(),
-        values: chain
-            .joints
-            .iter()
-            .map(|j| j.name.clone())
-            .zip(values)
-            .collect(),
-        residual,
+/// A chain whose positions are asked for, with the names that all of them share.
+pub struct Postures {
+    /// The chain.
+    pub chain: Chain,
+    joints: Vec<Arc<str>>,
+    links: Vec<Arc<str>>,
+}
+
+impl Postures {
+    /// Names joints as the chain does, and links by their numbers.
+    pub fn of(chain: Chain) -> Self {
+        let joints = chain.joints.iter();
+        Self {
+            joints: joints.map(|joint| joint.name.as_str().into()).collect(),
+            links: (1..=chain.joints.len())
+                .map(|i| format!("link{i}").into())
+                .collect(),
+            chain,
+        }
+    }
+
+    /// The position for these values, with its frames; `residual` says how far its tool is from where it should be.
+    pub fn position(
+        &self,
+        values: Vec<JointValue>,
+        residual: impl FnOnce(&Pose) -> f64,
+    ) -> Configuration {
+        let frames = self.chain.frames(&values);
+        let output = frames.last().copied().unwrap_or(self.chain.base);
+        Configuration {
+            residual: residual(&output),
+            output: Some(output),
+            bodies: self.links.iter().cloned().zip(frames).collect(),
+            values: self.joints.iter().cloned().zip(values).collect(),
+        }
     }
 }
 

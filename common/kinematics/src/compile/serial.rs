@@ -6,7 +6,7 @@ use super::formulation::{
     CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target,
     turn_of,
 };
-use super::postures::{position, turn_between};
+use super::postures::{Postures, turn_between};
 use super::text::Equations;
 use crate::compile::{invariants, six_revolute};
 use crate::mechanism::chain::{Chain, ChainJoint, JointValue};
@@ -14,6 +14,7 @@ use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 /// The formulation of a chain's question.
 pub fn compile(
@@ -62,7 +63,7 @@ pub fn compile(
     }
     let name = if chain.closed { "6R loop" } else { "6R" };
     Ok(Box::new(SixRevolute {
-        chain: chain.clone(),
+        postures: Postures::of(chain.clone()),
         locked,
         driven,
         inputs,
@@ -120,7 +121,7 @@ fn refuse(
 
 /// An open chain, forward.
 struct Open {
-    chain: Chain,
+    postures: Postures,
     inputs: Vec<String>,
     family: Family,
 }
@@ -133,7 +134,7 @@ impl Open {
             .map(|j| if j.is_angle { "R" } else { "P" })
             .collect();
         Self {
-            chain: chain.clone(),
+            postures: Postures::of(chain.clone()),
             inputs: chain.joints.iter().map(|j| j.name.clone()).collect(),
             family: Family {
                 name: letters.concat(),
@@ -168,19 +169,19 @@ impl Formulation for Open {
         let Target::Inputs(values) = target else {
             return Vec::new();
         };
-        let joints = &self.chain.joints;
+        let joints = &self.postures.chain.joints;
         let values: Vec<JointValue> = values
             .iter()
             .zip(joints)
             .map(|(x, j)| JointValue::of_real(*x, j.is_angle))
             .collect();
-        vec![position(&self.chain, values, 0.0)]
+        vec![self.postures.position(values, |_| 0.0)]
     }
 }
 
 /// Six free turns for a pose.
 struct SixRevolute {
-    chain: Chain,
+    postures: Postures,
     /// Joints that are held for all targets.
     locked: Vec<Option<f64>>,
     /// Joints that a target gives.
@@ -192,7 +193,7 @@ struct SixRevolute {
 
 impl SixRevolute {
     /// The arm of six turns at a target, and the pose of its tool.
-    fn arm(&self, target: &Target) -> Result<(Chain, Pose), String> {
+    fn arm(&self, target: &Target) -> Result<(Cow<'_, Chain>, Pose), String> {
         let mut held = self.locked.clone();
         let pose = match target {
             Target::Pose(pose) => *pose,
@@ -204,10 +205,10 @@ impl SixRevolute {
             }
         };
         if held.iter().all(Option::is_none) {
-            return Ok((self.chain.clone(), pose));
+            return Ok((Cow::Borrowed(&self.postures.chain), pose));
         }
-        let arm = self.chain.with_held(&held).ok_or("its axes give no rows")?;
-        Ok((arm, pose))
+        let arm = self.postures.chain.with_held(&held);
+        Ok((Cow::Owned(arm.ok_or("its axes give no rows")?), pose))
     }
 
     /// Values of the joints that are held at a target.
@@ -255,7 +256,7 @@ impl Formulation for SixRevolute {
     }
 
     fn own_parameters(&self) -> usize {
-        let is_arm = self.driven.is_empty() && !self.chain.closed;
+        let is_arm = self.driven.is_empty() && !self.postures.chain.closed;
         if is_arm { PARAMETERS_OF_ARM } else { 0 }
     }
 
@@ -317,14 +318,9 @@ impl SixRevolute {
         // Joint 6 is what the first five leave of the pose.
         let mut first = arm.base;
         for ((c, s), joint) in turns.iter().zip(&arm.joints).take(5) {
-            first = first
-                .then(&Pose::about_z(*c, *s))
-                .then(&Pose::shift(0.0, 0.0, joint.d))
-                .then(&link(joint));
+            first = first.turned(*c, *s).then(&joint.link());
         }
-        let last = Pose::shift(0.0, 0.0, arm.joints[5].d)
-            .then(&link(&arm.joints[5]))
-            .then(&arm.tool);
+        let last = arm.joints[5].link().then(&arm.tool);
         let sixth = first.inverse().then(&pose).then(&last.inverse());
         turns[5] = (sixth.rotation[0][0], sixth.rotation[1][0]);
         let mut free = turns.iter().zip(&arm.joints).map(|((c, s), joint)| {
@@ -335,7 +331,7 @@ impl SixRevolute {
         let held = self.held(Some(target));
         let values: Vec<JointValue> = held
             .iter()
-            .zip(&self.chain.joints)
+            .zip(&self.postures.chain.joints)
             .map(|(value, joint)| match value {
                 Some(x) => JointValue::of_real(*x, joint.is_angle),
                 None => free
@@ -343,11 +339,19 @@ impl SixRevolute {
                     .unwrap_or(JointValue::Shift(Complex64::default())),
             })
             .collect();
-        let size = self.chain.size();
-        let residual = self.chain.tool_pose(&values).distance(&pose, size) / growth;
-        position(&self.chain, values, residual)
+        let size = self.postures.chain.size();
+        self.postures
+            .position(values, |tool| tool.distance(&pose, size) / growth)
     }
 }
+
+/// Joints whose cosines and sines the equations have.
+const SOLVED: [(usize, &str, &str); 4] = [
+    (0, "c1", "s1"),
+    (1, "c2", "s2"),
+    (3, "c4", "s4"),
+    (4, "c5", "s5"),
+];
 
 /// Cosine and sine of six turns, of which the last is not known.
 type Turns = [(Complex64, Complex64); 6];
@@ -360,10 +364,8 @@ fn solved_turns(parameters: &[Complex64], point: &[Complex64]) -> Option<(Turns,
         place.map_or(Complex64::default(), |i| point[i])
     };
     let mut turns = Turns::default();
-    for (k, turn) in turns.iter_mut().enumerate() {
-        if k != 2 && k != 5 {
-            *turn = (at(&format!("c{}", k + 1)), at(&format!("s{}", k + 1)));
-        }
+    for (k, cosine, sine) in SOLVED {
+        turns[k] = (at(cosine), at(sine));
     }
     let member = Member::of(parameters);
     turns[2] = member.third_turn(&turns)?;

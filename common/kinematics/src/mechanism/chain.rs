@@ -75,6 +75,14 @@ impl JointValue {
         }
     }
 
+    /// A frame, moved by the joint along or about its z.
+    pub fn moved(&self, frame: &Pose) -> Pose {
+        match *self {
+            Self::Turn(c, s) => frame.turned(c, s),
+            Self::Shift(z) => frame.then(&Pose::shift(0.0, 0.0, z)),
+        }
+    }
+
     /// The pose that the joint makes along or about z.
     pub fn pose(&self) -> Pose {
         match *self {
@@ -85,13 +93,18 @@ impl JointValue {
 }
 
 impl ChainJoint {
+    /// The link after the joint: Tz(d) Tx(a) Rx(alpha).
+    pub fn link(&self) -> Pose {
+        let [c, s] = self.alpha.direction.map(Complex64::from);
+        let turn = Pose::about_x(c, s);
+        let position = [self.a.into(), Complex64::default(), self.d.into()];
+        Pose { position, ..turn }
+    }
+
     /// What follows the joint in its row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
     pub fn after(&self) -> Pose {
         let [c, s] = self.theta.direction.map(Complex64::from);
-        let [ca, sa] = self.alpha.direction.map(Complex64::from);
-        Pose::about_z(c, s)
-            .then(&Pose::shift(self.a, 0.0, self.d))
-            .then(&Pose::about_x(ca, sa))
+        Pose::about_z(c, s).then(&self.link())
     }
 }
 
@@ -101,7 +114,7 @@ impl Chain {
         let mut frames = Vec::with_capacity(values.len() + 1);
         let mut now = self.base;
         for (joint, value) in self.joints.iter().zip(values) {
-            now = now.then(&value.pose()).then(&joint.after());
+            now = value.moved(&now).then(&joint.after());
             frames.push(now);
         }
         frames.push(now.then(&self.tool));
@@ -136,7 +149,7 @@ impl Chain {
                 direction: real(now.column(2)),
             });
             let value = JointValue::of_real(*value, joint.is_angle);
-            now = now.then(&value.pose()).then(&joint.after());
+            now = value.moved(&now).then(&joint.after());
         }
         (axes, now.then(&self.tool))
     }

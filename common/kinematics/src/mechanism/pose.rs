@@ -149,14 +149,20 @@ impl Pose {
 
     /// This pose, then the other in its frame: self * other.
     pub fn then(&self, other: &Self) -> Self {
-        let product = |i: usize, j: usize| {
-            (0..3)
-                .map(|k| self.rotation[i][k] * other.rotation[k][j])
-                .sum()
-        };
+        let columns: [Vector3; 3] = std::array::from_fn(|j| self.direction(other.column(j)));
         Self {
-            rotation: std::array::from_fn(|i| std::array::from_fn(|j| product(i, j))),
+            rotation: std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i])),
             position: self.point(other.position),
+        }
+    }
+
+    /// This pose, then a turn about its z axis: only two columns change.
+    pub fn turned(&self, c: Complex64, s: Complex64) -> Self {
+        Self {
+            rotation: self
+                .rotation
+                .map(|[x, y, z]| [x * c + y * s, y * c - x * s, z]),
+            position: self.position,
         }
     }
 
@@ -182,7 +188,8 @@ impl Pose {
 
     /// Image of a direction.
     pub fn direction(&self, d: Vector3) -> Vector3 {
-        std::array::from_fn(|i| (0..3).map(|k| self.rotation[i][k] * d[k]).sum())
+        self.rotation
+            .map(|[x, y, z]| x * d[0] + y * d[1] + z * d[2])
     }
 
     /// A column of the rotation.

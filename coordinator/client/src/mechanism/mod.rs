@@ -1,6 +1,5 @@
 //! `cognate mechanism`: what is typed, and from targets to positions by paths that are followed in this process.
 
-pub mod answer;
 pub mod arguments;
 pub mod cache;
 pub mod families;
@@ -10,4 +9,5 @@ pub mod preparation;
 mod prepare;
 pub mod serve;
 pub mod solver;
+pub mod summary;
 pub mod target_answer;

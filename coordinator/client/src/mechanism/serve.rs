@@ -3,7 +3,7 @@
 //! What has come is answered as soon as nothing more is waiting, so that one line is answered at once and many are
 //! answered side by side. Never more than a round is held.
 
-use super::solver::Solver;
+use super::solver::{ROUND, Solver};
 use super::target_answer::TargetAnswer;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::line::{Line, LineId};
@@ -12,8 +12,6 @@ use serde_json::{Value, json};
 use std::io::{BufRead, Read, Write};
 use std::sync::mpsc::{Receiver, RecvError, SyncSender, sync_channel};
 
-/// Most lines of a round.
-const ROUND: usize = 1024;
 /// Longest line, in bytes; a target has a few hundred.
 const LONGEST: u64 = 1 << 20;
 

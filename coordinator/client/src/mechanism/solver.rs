@@ -22,6 +22,8 @@ use std::sync::Arc;
 /// Targets that are followed side by side: enough that the way to plan and compile is short against the paths, and few
 /// enough that some threads have something to do.
 const BATCH: usize = 64;
+/// Targets whose answers are held at a time where there may be any number of them.
+pub const ROUND: usize = 1024;
 
 /// A question about a mechanism, ready for targets.
 pub struct Solver<'m> {

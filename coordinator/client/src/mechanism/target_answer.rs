@@ -103,13 +103,16 @@ impl TargetAnswer {
 
 /// Joints of a real position that are beyond their limits.
 fn violated(mechanism: &Mechanism, configuration: &Configuration) -> Vec<String> {
-    let kinds = mechanism.values();
     let mut beyond = Vec::new();
+    if mechanism.limits.is_empty() {
+        return beyond;
+    }
+    let kinds = mechanism.values();
     for (name, value) in &configuration.values {
         let Some([low, high]) = mechanism.limits_of(name) else {
             continue;
         };
-        let is_angle = kinds.iter().any(|(n, angle)| n == name && *angle);
+        let is_angle = kinds.iter().any(|(n, angle)| **n == **name && *angle);
         let x = value.real();
         // A bound is met up to rounding.
         let slack = 1e-9 * (1.0 + low.abs().max(high.abs()));
@@ -122,7 +125,7 @@ fn violated(mechanism: &Mechanism, configuration: &Configuration) -> Vec<String>
             0
         };
         if !(-turns..=turns).any(|k| within(x + k as f64 * turn)) {
-            beyond.push(name.clone());
+            beyond.push(name.to_string());
         }
     }
     beyond

@@ -29,7 +29,7 @@ pub struct Folder {
 
 /// A file that has its name once it is whole: beside it until then, and gone where something fails. A
 /// link of this name is replaced, not followed.
-pub(super) struct Written {
+pub struct Written {
     path: PathBuf,
     file: BufWriter<NamedTempFile>,
 }

@@ -2,15 +2,18 @@
 
 use super::read::{Read, cpu_seconds, described, options, some, wrong};
 use crate::error::{ClientError, Exit};
-use crate::mechanism::answer::{Answer, answer};
 use crate::mechanism::arguments::{
     MechanismAnswer, MechanismFormat, MechanismForward, MechanismInverse,
 };
-use crate::output;
-use crate::output::mechanisms::{Shown, View, csv, folder, json, table};
-use crate::output::text::Look;
+use crate::mechanism::solver::{ROUND, Solver};
+use crate::mechanism::summary::Summary;
+use crate::output::mechanisms::listing::{Finished, Listing, Sink};
+use crate::output::mechanisms::table::Table;
+use crate::output::mechanisms::{View, csv, folder, json};
+use crate::output::text::{Look, count};
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
 use cognate_kinematics::mechanism::targets;
+use std::io::IsTerminal;
 use std::time::Instant;
 
 /// `cognate mechanism inverse`.
@@ -103,38 +106,64 @@ fn respond(
     degrees: bool,
 ) -> Result<Exit, ClientError> {
     let start = Instant::now();
-    let options = options(&a.solving);
-    let found: Answer =
-        answer(&read.mechanism, question, targets, &options).map_err(|e| described(&e))?;
-    let shown = Shown {
-        view: View {
-            mechanism: &read.mechanism,
-            problem: question.problem,
-            preparation: &found.preparation,
-            degrees,
-            only_within_limits: a.within_limits,
-            complex: a.complex,
-        },
-        content: &read.content,
-        answer: &found,
-        wall_seconds: start.elapsed().as_secs_f64(),
-        cpu_seconds: cpu_seconds(),
+    let solver = Solver::new(&read.mechanism, question, &options(&a.solving));
+    let solver = solver.map_err(|e| described(&e))?;
+    let view = View {
+        mechanism: &read.mechanism,
+        problem: question.problem,
+        preparation: solver.preparation(),
+        degrees,
+        only_within_limits: a.within_limits,
+        complex: a.complex,
     };
+    let mut listings: Vec<Box<dyn Listing + '_>> = vec![match a.format {
+        MechanismFormat::Table => Box::new(Table::new(view, Look::of_standard_output())),
+        MechanismFormat::Json => {
+            let sink = Sink::standard();
+            Box::new(json::Object::new(view, &read.content, true, sink)?)
+        }
+        MechanismFormat::Csv => Box::new(csv::Positions::new(view, Sink::standard())),
+    }];
+    if let Some(path) = &a.output {
+        listings.extend(folder::listings(view, &read.content, path)?);
+    }
+    // Where nothing is given, there is one target.
+    let lone = [Target::Inputs(Vec::new())];
+    let targets = match targets {
+        [] => &lone[..],
+        targets => targets,
+    };
+    let mut summary = Summary::of(solver.preparation());
+    let progress = std::io::stderr().is_terminal() && targets.len() > ROUND;
+    for round in targets.chunks(ROUND) {
+        for answer in solver.solve(round).map_err(|e| described(&e))? {
+            for listing in &mut listings {
+                listing.target(summary.targets, &answer)?;
+            }
+            summary.note(&answer);
+        }
+        if progress {
+            let all = count(targets.len() as u64);
+            eprint!("\r  {} of {all} targets", count(summary.targets));
+        }
+    }
+    if progress {
+        eprintln!();
+    }
     if a.format != MechanismFormat::Json {
-        for warning in &found.warnings {
+        for warning in &summary.warnings {
             eprintln!("warning: {warning}");
         }
     }
-    let text = match a.format {
-        MechanismFormat::Table => table::table(&shown, Look::of_standard_output()),
-        MechanismFormat::Json => json::answer(&shown),
-        MechanismFormat::Csv => csv::positions(&shown.view, &found.targets),
+    let end = Finished {
+        summary: &summary,
+        wall_seconds: start.elapsed().as_secs_f64(),
+        cpu_seconds: cpu_seconds(),
     };
-    if let Some(path) = &a.output {
-        folder::write(&shown, path)?;
+    for listing in listings {
+        listing.finish(&end)?;
     }
-    output::print(&text)?;
-    Ok(if found.settled {
+    Ok(if summary.settled {
         Exit::Solved
     } else {
         Exit::Unsettled

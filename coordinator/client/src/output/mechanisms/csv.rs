@@ -1,47 +1,69 @@
 //! Positions of a mechanism as CSV: a row for each that is real, with all digits; angles in the unit that is shown.
 
-use super::shown::{View, pose_columns, pose_numbers};
+use super::listing::{Finished, Listing, Sink};
+use super::view::{View, pose_columns, pose_numbers};
+use crate::error::ClientError;
 use crate::mechanism::target_answer::{Position, TargetAnswer};
 
-/// The positions of all targets. `solution` counts the positions of a target from 1, as in the table.
-pub fn positions(view: &View<'_>, targets: &[TargetAnswer]) -> String {
-    let mut text = header(view, targets);
-    for (i, target) in targets.iter().enumerate() {
-        let listed = target.positions.iter();
-        let listed = listed.filter(|p| p.is_real && view.lists(p));
-        for (k, position) in listed.enumerate() {
-            let mut row = vec![(i + 1).to_string(), (k + 1).to_string()];
-            row.extend(cells(view, position));
-            text.push_str(&row.join(","));
-            text.push('\n');
+/// The real positions of targets. `solution` counts the positions of a target from 1, as in the table.
+pub struct Positions<'a> {
+    view: View<'a>,
+    sink: Sink,
+    has_header: bool,
+}
+
+impl<'a> Positions<'a> {
+    /// Nothing is written before the names of joints are known: those of the first position that there is.
+    pub fn new(view: View<'a>, sink: Sink) -> Self {
+        Self {
+            view,
+            sink,
+            has_header: false,
         }
     }
-    text
+
+    fn header(&mut self, first: Option<&Position>) -> Result<(), ClientError> {
+        self.has_header = true;
+        let mut names = vec!["target".to_owned(), "solution".to_owned()];
+        let values = first.iter().flat_map(|p| &p.configuration.values);
+        names.extend(values.map(|(name, _)| quoted(name)));
+        names.extend(pose_columns(&self.view).iter().map(|name| (*name).into()));
+        names.extend(KNOWN.map(String::from));
+        self.sink.write(&format!("{}\n", names.join(",")))
+    }
 }
 
-/// Names of the joints that have a value: those of the first position that there is.
-fn joints(targets: &[TargetAnswer]) -> Vec<String> {
-    let first = targets.iter().flat_map(|t| &t.positions).next();
-    let values = first.iter().flat_map(|p| &p.configuration.values);
-    values.map(|(name, _)| quoted(name)).collect()
-}
+/// Columns of what is known of a position.
+const KNOWN: [&str; 6] = [
+    "singular",
+    "certified",
+    "within_limits",
+    "violated",
+    "condition",
+    "residual",
+];
 
-fn header(view: &View<'_>, targets: &[TargetAnswer]) -> String {
-    let mut names = vec!["target".to_owned(), "solution".to_owned()];
-    names.extend(joints(targets));
-    names.extend(pose_columns(view).iter().map(|name| (*name).to_owned()));
-    names.extend(
-        [
-            "singular",
-            "certified",
-            "within_limits",
-            "violated",
-            "condition",
-            "residual",
-        ]
-        .map(String::from),
-    );
-    format!("{}\n", names.join(","))
+impl Listing for Positions<'_> {
+    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+        if let (false, Some(first)) = (self.has_header, answer.positions.first()) {
+            self.header(Some(first))?;
+        }
+        let listed = answer.positions.iter();
+        let listed = listed.filter(|p| p.is_real && self.view.lists(p));
+        for (k, position) in listed.enumerate() {
+            let mut row = vec![(index + 1).to_string(), (k + 1).to_string()];
+            row.extend(cells(&self.view, position));
+            self.sink.write(&format!("{}\n", row.join(",")))?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>, _: &Finished<'_>) -> Result<(), ClientError> {
+        if !self.has_header {
+            self.header(None)?;
+        }
+        self.sink.finish()
+    }
 }
 
 fn cells(view: &View<'_>, position: &Position) -> Vec<String> {

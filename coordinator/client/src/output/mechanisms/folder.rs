@@ -1,25 +1,27 @@
 //! The folder of --output: the answer without positions, a table of real positions, and all that are listed as lines.
 
+use super::csv::Positions;
+use super::json::{Lines, Object};
+use super::listing::{Listing, Sink};
 use super::path::{self, ShownPath};
-use super::shown::Shown;
-use super::{csv, json};
+use super::view::View;
 use crate::error::ClientError;
-use crate::output::files::{make_folder, write_file};
+use crate::output::files::{create, make_folder, write_file};
 use std::path::Path;
 
-/// Writes `summary.json`, `solutions.csv` and `configurations.jsonl`.
-pub fn write(shown: &Shown<'_>, folder: &Path) -> Result<(), ClientError> {
+/// What writes `summary.json`, `solutions.csv` and `configurations.jsonl`.
+pub fn listings<'a>(
+    view: View<'a>,
+    content: &[u8],
+    folder: &Path,
+) -> Result<[Box<dyn Listing + 'a>; 3], ClientError> {
     make_folder(folder)?;
-    write_file(folder, "summary.json", &json::summary(shown))?;
-    let targets = &shown.answer.targets;
-    write_file(
-        folder,
-        "solutions.csv",
-        &csv::positions(&shown.view, targets),
-    )?;
-    let lines = targets.iter().enumerate();
-    let lines = lines.map(|(i, t)| format!("{}\n", json::target(&shown.view, i, t)));
-    write_file(folder, "configurations.jsonl", &lines.collect::<String>())
+    let file = |name| Ok::<Sink, ClientError>(Sink::File(create(folder, name)?));
+    Ok([
+        Box::new(Object::new(view, content, false, file("summary.json")?)?),
+        Box::new(Positions::new(view, file("solutions.csv")?)),
+        Box::new(Lines::new(view, file("configurations.jsonl")?)),
+    ])
 }
 
 /// Writes `summary.json` and `trajectory.csv`.

@@ -1,6 +1,6 @@
 //! What a mechanism is, as a table and as JSON.
 
-use super::shown::{digest, snapped_json};
+use super::view::{digest, snapped_json};
 use crate::output::text::{Look, counted, magnitude, real, wrapped};
 use cognate_kinematics::compile::Formulation;
 use cognate_kinematics::mechanism::chain::JointValue;

@@ -1,6 +1,8 @@
 //! Positions of a mechanism as JSON; angles in radians.
 
-use super::shown::{Shown, View, digest, snapped_json};
+use super::listing::{Finished, Listing, Sink};
+use super::view::{View, digest, snapped_json};
+use crate::error::ClientError;
 use crate::mechanism::target_answer::{Position, TargetAnswer};
 use cognate_kinematics::compile::{Problem, Target};
 use cognate_kinematics::mechanism::Space;
@@ -48,14 +50,22 @@ pub(super) fn position_json(view: &View<'_>, position: &Position) -> Value {
     for (name, value) in &position.configuration.values {
         let value = value_json(value, position.is_real);
         // Inverse: every joint is an input. Forward: what was given, and the others.
-        if inverse || view.preparation.inputs.contains(name) {
-            inputs.insert(name.clone(), value);
+        if inverse
+            || view
+                .preparation
+                .inputs
+                .iter()
+                .any(|input| **input == **name)
+        {
+            inputs.insert(name.to_string(), value);
         } else {
-            joints.insert(name.clone(), value);
+            joints.insert(name.to_string(), value);
         }
     }
     let bodies = position.configuration.bodies.iter();
-    let links: Map<String, Value> = bodies.map(|(name, p)| (name.clone(), pose(p))).collect();
+    let links: Map<String, Value> = bodies
+        .map(|(name, p)| (name.to_string(), pose(p)))
+        .collect();
     json!({
         "inputs": inputs,
         "joints": joints,
@@ -72,7 +82,7 @@ pub(super) fn position_json(view: &View<'_>, position: &Position) -> Value {
 }
 
 /// A target's answer.
-pub fn target(view: &View<'_>, index: usize, target: &TargetAnswer) -> Value {
+fn target(view: &View<'_>, index: u64, target: &TargetAnswer) -> Value {
     let listed = target.positions.iter().filter(|p| view.lists(p));
     let solutions: Vec<Value> = listed.map(|p| position_json(view, p)).collect();
     let mut value = target_counts(view, index, target);
@@ -91,7 +101,7 @@ pub fn line(view: &View<'_>, number: u64, answer: &TargetAnswer) -> Value {
 }
 
 /// A target's answer without its positions.
-pub(super) fn target_counts(view: &View<'_>, index: usize, target: &TargetAnswer) -> Value {
+pub(super) fn target_counts(view: &View<'_>, index: u64, target: &TargetAnswer) -> Value {
     let counts = &target.counts;
     let given = match &target.target {
         Target::Pose(pose) => pose_json(pose, view.mechanism.space == Space::Planar),
@@ -142,35 +152,85 @@ pub fn mechanism(view: &View<'_>, content: &[u8]) -> Value {
     })
 }
 
-/// The answer as one JSON object.
-pub fn answer(shown: &Shown<'_>) -> String {
-    whole(shown, target)
+/// The answer as one JSON object, with a line for each target.
+pub struct Object<'a> {
+    view: View<'a>,
+    sink: Sink,
+    with_positions: bool,
+    is_first: bool,
 }
 
-/// The answer as one JSON object, without positions.
-pub fn summary(shown: &Shown<'_>) -> String {
-    whole(shown, target_counts)
-}
-
-fn whole(shown: &Shown<'_>, of_target: fn(&View<'_>, usize, &TargetAnswer) -> Value) -> String {
-    let (answer, view) = (shown.answer, &shown.view);
-    let targets = answer.targets.iter().enumerate();
-    let value = json!({
-        "mechanism": mechanism(view, shown.content),
-        "problem": match view.problem {
+impl<'a> Object<'a> {
+    /// Writes what is known before the targets. `content` are the bytes of the mechanism's file.
+    pub fn new(
+        view: View<'a>,
+        content: &[u8],
+        with_positions: bool,
+        mut sink: Sink,
+    ) -> Result<Self, ClientError> {
+        let problem = match view.problem {
             Problem::Forward => "forward",
             Problem::Inverse => "inverse",
             Problem::Motion => "motion",
-        },
-        "angles": "rad",
-        "targets": targets.map(|(i, t)| of_target(view, i, t)).collect::<Vec<Value>>(),
-        "settled": answer.settled,
-        "time": {"wall_seconds": shown.wall_seconds, "cpu_seconds": shown.cpu_seconds},
-        "warnings": answer.warnings,
-    });
-    let text = serde_json::to_string_pretty(&value);
-    format!(
-        "{}\n",
-        text.expect("numbers and names can be written as JSON")
-    )
+        };
+        sink.write(&format!(
+            "{{\n\"mechanism\": {},\n\"problem\": \"{problem}\",\n\"angles\": \"rad\",\n\"targets\": [",
+            mechanism(&view, content)
+        ))?;
+        Ok(Self {
+            view,
+            sink,
+            with_positions,
+            is_first: true,
+        })
+    }
+}
+
+impl Listing for Object<'_> {
+    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+        let comma = if std::mem::take(&mut self.is_first) {
+            ""
+        } else {
+            ","
+        };
+        let value = match self.with_positions {
+            true => target(&self.view, index, answer),
+            false => target_counts(&self.view, index, answer),
+        };
+        self.sink.write(&format!("{comma}\n{value}"))
+    }
+
+    fn finish(mut self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError> {
+        let time = json!({"wall_seconds": end.wall_seconds, "cpu_seconds": end.cpu_seconds});
+        self.sink.write(&format!(
+            "\n],\n\"settled\": {},\n\"time\": {time},\n\"warnings\": {}\n}}\n",
+            end.summary.settled,
+            json!(end.summary.warnings)
+        ))?;
+        self.sink.finish()
+    }
+}
+
+/// A line of JSON for each target, with its positions.
+pub struct Lines<'a> {
+    view: View<'a>,
+    sink: Sink,
+}
+
+impl<'a> Lines<'a> {
+    /// Nothing stands before the first target.
+    pub fn new(view: View<'a>, sink: Sink) -> Self {
+        Self { view, sink }
+    }
+}
+
+impl Listing for Lines<'_> {
+    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+        self.sink
+            .write(&format!("{}\n", target(&self.view, index, answer)))
+    }
+
+    fn finish(self: Box<Self>, _: &Finished<'_>) -> Result<(), ClientError> {
+        self.sink.finish()
+    }
 }

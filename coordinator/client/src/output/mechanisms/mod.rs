@@ -5,8 +5,9 @@ pub mod families;
 pub mod folder;
 pub mod info;
 pub mod json;
+pub mod listing;
 pub mod path;
-mod shown;
 pub mod table;
+mod view;
 
-pub use shown::{Shown, View};
+pub use view::View;

@@ -1,7 +1,7 @@
 //! Branches along a path of targets as a table, JSON, and CSV.
 
 use super::json::{mechanism, position_json, target_counts};
-use super::shown::{View, pose_columns, pose_numbers};
+use super::view::{View, pose_columns, pose_numbers};
 use crate::mechanism::follow::{Branch, BranchEnd, Path};
 use crate::output::text::{Columns, Look, counted, real, seconds};
 use serde_json::{Value, json};
@@ -180,7 +180,7 @@ pub fn json(shown: &ShownPath<'_>) -> String {
     });
     let samples = path.samples.iter().zip(&path.answers).enumerate();
     let samples = samples.map(|(i, (sample, answer))| {
-        let mut value = target_counts(view, i, answer);
+        let mut value = target_counts(view, i as u64, answer);
         value["at"] = json!(sample.at);
         value
     });

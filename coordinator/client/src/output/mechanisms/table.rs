@@ -1,58 +1,41 @@
 //! Positions of a mechanism as a table for people.
 
-use super::shown::{Shown, pose_columns, pose_numbers};
-use crate::mechanism::target_answer::Position;
-use crate::output::text::{Columns, Look, counted, magnitude, real, seconds};
+use super::listing::{Finished, Listing};
+use super::view::{View, pose_columns, pose_numbers};
+use crate::error::ClientError;
+use crate::mechanism::target_answer::{Position, TargetAnswer};
+use crate::output;
+use crate::output::text::{Columns, Look, count, counted, magnitude, real, seconds};
 use cognate_kinematics::compile::Problem;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// So many positions are listed in a table at most.
 const MOST_LISTED: usize = 64;
+/// Of more targets than this those with the same counts share a row.
+const MOST_ROWS: usize = 100;
 
 /// What became of targets, and the positions of the first of them.
-pub fn table(shown: &Shown<'_>, look: Look) -> String {
-    let (answer, view) = (shown.answer, &shown.view);
-    let prepared = view.preparation;
-    let family = &prepared.family;
-    let number = match (prepared.here, family.expected) {
-        (Some(here), Some(expected)) if here == expected => {
-            format!("{here} for every target  ({})", family.source)
-        }
-        (Some(_), Some(_)) if !prepared.reason.is_empty() => prepared.reason.clone(),
-        (Some(here), _) => format!("{here} for a general target"),
-        (None, Some(expected)) => format!("at most {expected}  ({})", family.source),
-        (None, None) => "no number is known beforehand".into(),
-    };
-    let mut text = format!(
-        "{}: {}: {number}\n\n",
-        look.bold(&view.mechanism.name),
-        family.name
-    );
-    let certified = answer
-        .targets
-        .iter()
-        .any(|t| t.counts.certified_real.is_some());
-    let limits = !view.mechanism.limits.is_empty();
-    let mut headings = vec![">target", ">complex", ">real"];
-    if certified {
-        headings.push(">proved");
-    }
-    if limits {
-        headings.push(">within limits");
-    }
-    headings.extend([
-        ">singular",
-        ">at infinity",
-        ">on sets",
-        ">no position",
-        ">failed",
-    ]);
-    let mut columns = Columns::new(&headings);
-    for (i, target) in answer.targets.iter().enumerate() {
-        let counts = &target.counts;
-        let mut row = vec![i as u64 + 1, counts.complex, counts.real];
+pub struct Table<'a> {
+    view: View<'a>,
+    look: Look,
+    /// The counts of targets in the order of columns; of more than [`MOST_ROWS`] targets none is kept.
+    rows: Vec<Vec<u64>>,
+    /// How many targets have these counts, and which of them came first.
+    alike: BTreeMap<Vec<u64>, (u64, u64)>,
+    has_proofs: bool,
+    /// The first positions, numbered by target and in it.
+    positions: Vec<(u64, usize, Position)>,
+    listed: u64,
+}
+
+impl Listing for Table<'_> {
+    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+        let counts = &answer.counts;
+        let mut row = vec![counts.complex, counts.real];
+        self.has_proofs |= counts.certified_real.is_some();
         row.extend(counts.certified_real);
-        if limits {
+        if self.has_limits() {
             row.push(counts.within_limits);
         }
         row.extend([
@@ -62,84 +45,169 @@ pub fn table(shown: &Shown<'_>, look: Look) -> String {
             counts.degenerate,
             counts.failed,
         ]);
-        columns.row(row.iter().map(u64::to_string).collect());
+        if self.rows.len() <= MOST_ROWS {
+            self.rows.push(row.clone());
+        }
+        self.alike.entry(row).or_insert((0, index + 1)).0 += 1;
+        let listed = answer.positions.iter().filter(|p| self.view.lists(p));
+        for (k, position) in listed.enumerate() {
+            if self.positions.len() < MOST_LISTED {
+                self.positions.push((index + 1, k + 1, position.clone()));
+            }
+            self.listed += 1;
+        }
+        Ok(())
     }
-    text.push_str(&columns.render(look));
-    let each = shown.cpu_seconds / answer.targets.len().max(1) as f64;
-    let kept = if prepared.from_cache {
-        "  prepared before"
-    } else {
-        ""
-    };
-    let _ = writeln!(
-        text,
-        "\n  Time  {} for {}, {} of CPU each{kept}\n",
-        seconds(shown.wall_seconds),
-        counted(answer.targets.len() as u64, "target"),
-        seconds(each)
-    );
-    text.push_str(&positions_table(shown, look));
-    if !answer.settled {
-        let _ = writeln!(
-            text,
-            "  {}",
-            look.warn("not everything is settled: see the counts and warnings")
-        );
+
+    fn finish(self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError> {
+        output::print(&self.text(end))
     }
-    text
 }
 
-fn positions_table(shown: &Shown<'_>, look: Look) -> String {
-    let (answer, view) = (shown.answer, &shown.view);
-    let numbered = answer.targets.iter().enumerate().flat_map(|(i, target)| {
-        let listed = target
-            .positions
-            .iter()
-            .filter(|p| view.lists(p))
-            .enumerate();
-        listed.map(move |(k, position)| (i, k, position))
-    });
-    let listed: Vec<(usize, usize, &Position)> = numbered.collect();
-    let Some((_, _, first)) = listed.first() else {
-        return "  no position to show\n".into();
-    };
-    let limits = !view.mechanism.limits.is_empty();
-    let forward = view.problem != Problem::Inverse;
-    let mut headings: Vec<String> = vec![">#".into()];
-    let values = &first.configuration.values;
-    headings.extend(values.iter().map(|(name, _)| format!(">{name}")));
-    if forward && first.configuration.output.is_some() {
-        headings.extend(pose_columns(view).iter().map(|h| format!(">{h}")));
-    }
-    if limits {
-        headings.push("limits".into());
-    }
-    headings.push(">condition".into());
-    let names: Vec<&str> = headings.iter().map(String::as_str).collect();
-    let mut columns = Columns::new(&names);
-    for (i, k, position) in listed.iter().take(MOST_LISTED) {
-        let mut row = vec![format!("{}.{}", i + 1, k + 1)];
-        let values = &position.configuration.values;
-        row.extend(values.iter().map(|(_, v)| real(view.value(v), 6)));
-        if forward && let Some(pose) = &position.configuration.output {
-            row.extend(pose_numbers(view, pose).iter().map(|x| real(*x, 6)));
+impl<'a> Table<'a> {
+    /// An empty table.
+    pub fn new(view: View<'a>, look: Look) -> Self {
+        Self {
+            view,
+            look,
+            rows: Vec::new(),
+            alike: BTreeMap::new(),
+            has_proofs: false,
+            positions: Vec::new(),
+            listed: 0,
         }
-        if limits {
-            row.push(match position.violated.is_empty() {
-                true => "in".into(),
-                false => position.violated.join(" "),
-            });
-        }
-        row.push(magnitude(position.condition));
-        columns.row(row);
     }
-    let mut text = columns.render(look);
-    if listed.len() > MOST_LISTED {
+
+    fn has_limits(&self) -> bool {
+        !self.view.mechanism.limits.is_empty()
+    }
+
+    fn text(&self, end: &Finished<'_>) -> String {
+        let (prepared, look) = (self.view.preparation, self.look);
+        let family = &prepared.family;
+        let number = match (prepared.here, family.expected) {
+            (Some(here), Some(expected)) if here == expected => {
+                format!("{here} for every target  ({})", family.source)
+            }
+            (Some(_), Some(_)) if !prepared.reason.is_empty() => prepared.reason.clone(),
+            (Some(here), _) => format!("{here} for a general target"),
+            (None, Some(expected)) => format!("at most {expected}  ({})", family.source),
+            (None, None) => "no number is known beforehand".into(),
+        };
+        let mut text = format!(
+            "{}: {}: {number}\n\n{}",
+            look.bold(&self.view.mechanism.name),
+            family.name,
+            self.targets()
+        );
+        let targets = end.summary.targets;
+        let kept = if prepared.from_cache {
+            "  prepared before"
+        } else {
+            ""
+        };
         let _ = writeln!(
             text,
-            "  {} more; all of them with --format json",
-            listed.len() - MOST_LISTED
+            "\n  Time  {} for {}, {} of CPU each{kept}\n",
+            seconds(end.wall_seconds),
+            counted(targets, "target"),
+            seconds(end.cpu_seconds / targets.max(1) as f64)
         );
+        text.push_str(&self.positions());
+        if !end.summary.settled {
+            let _ = writeln!(
+                text,
+                "  {}",
+                look.warn("not everything is settled: see the counts and warnings")
+            );
+        }
+        text
     }
-    text
+
+    /// A row for each target, or for all with the same counts, the most frequent first.
+    fn targets(&self) -> String {
+        let is_grouped = self.rows.len() > MOST_ROWS;
+        let mut headings = match is_grouped {
+            true => vec![">targets", ">first"],
+            false => vec![">target"],
+        };
+        headings.extend([">complex", ">real"]);
+        if self.has_proofs {
+            headings.push(">proved");
+        }
+        if self.has_limits() {
+            headings.push(">within limits");
+        }
+        headings.extend([
+            ">singular",
+            ">at infinity",
+            ">on sets",
+            ">no position",
+            ">failed",
+        ]);
+        let mut columns = Columns::new(&headings);
+        let numbers = |row: &[u64]| row.iter().map(u64::to_string).collect::<Vec<String>>();
+        if is_grouped {
+            let mut groups: Vec<_> = self.alike.iter().collect();
+            groups.sort_by_key(|(_, (targets, first))| (std::cmp::Reverse(*targets), *first));
+            for (row, (targets, first)) in groups {
+                let mut cells = vec![count(*targets), first.to_string()];
+                cells.extend(numbers(row));
+                columns.row(cells);
+            }
+        } else {
+            for (i, row) in self.rows.iter().enumerate() {
+                let mut cells = vec![(i + 1).to_string()];
+                cells.extend(numbers(row));
+                columns.row(cells);
+            }
+        }
+        columns.render(self.look)
+    }
+
+    fn positions(&self) -> String {
+        let view = &self.view;
+        let Some((_, _, first)) = self.positions.first() else {
+            return "  no position to show\n".into();
+        };
+        let forward = view.problem != Problem::Inverse;
+        let mut headings: Vec<String> = vec![">#".into()];
+        let values = &first.configuration.values;
+        headings.extend(values.iter().map(|(name, _)| format!(">{name}")));
+        if forward && first.configuration.output.is_some() {
+            headings.extend(pose_columns(view).iter().map(|h| format!(">{h}")));
+        }
+        if self.has_limits() {
+            headings.push("limits".into());
+        }
+        headings.push(">condition".into());
+        let names: Vec<&str> = headings.iter().map(String::as_str).collect();
+        let mut columns = Columns::new(&names);
+        for (i, k, position) in &self.positions {
+            let mut row = vec![format!("{i}.{k}")];
+            let values = &position.configuration.values;
+            row.extend(values.iter().map(|(_, v)| real(view.value(v), 6)));
+            if forward && let Some(pose) = &position.configuration.output {
+                row.extend(pose_numbers(view, pose).iter().map(|x| real(*x, 6)));
+            }
+            if self.has_limits() {
+                row.push(match position.violated.is_empty() {
+                    true => "in".into(),
+                    false => position.violated.join(" "),
+                });
+            }
+            row.push(magnitude(position.condition));
+            columns.row(row);
+        }
+        let mut text = columns.render(self.look);
+        let shown = self.positions.len() as u64;
+        if self.listed > shown {
+            let _ = writeln!(
+                text,
+                "  {} more; all of them with --format json",
+                count(self.listed - shown)
+            );
+        }
+        text
+    }
 }

@@ -1,6 +1,5 @@
-//! Shown: an answer about a mechanism, and how it is shown.
+//! View: how positions of a mechanism are shown, in whatever form.
 
-use crate::mechanism::answer::Answer;
 use crate::mechanism::preparation::Preparation;
 use crate::mechanism::target_answer::Position;
 use cognate_kinematics::compile::Problem;
@@ -25,21 +24,6 @@ pub struct View<'a> {
     pub only_within_limits: bool,
     /// Complex positions are listed, too.
     pub complex: bool,
-}
-
-/// An answer and how it is shown.
-#[derive(Clone, Copy, Debug)]
-pub struct Shown<'a> {
-    /// How its positions are listed.
-    pub view: View<'a>,
-    /// The answer.
-    pub answer: &'a Answer,
-    /// The bytes of the mechanism's file.
-    pub content: &'a [u8],
-    /// From reading the file to the answer, in seconds.
-    pub wall_seconds: f64,
-    /// What all threads took for it, in seconds.
-    pub cpu_seconds: f64,
 }
 
 impl View<'_> {

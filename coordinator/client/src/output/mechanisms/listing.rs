@@ -1,0 +1,69 @@
+//! Listings: how answers about a mechanism are written while they come, so that memory does not grow with the number of
+//! targets.
+
+use crate::error::ClientError;
+use crate::mechanism::summary::Summary;
+use crate::mechanism::target_answer::TargetAnswer;
+use crate::output::files::Written;
+use std::io::{BufWriter, Stdout, Write};
+
+/// What is known when all targets are answered.
+#[derive(Clone, Copy, Debug)]
+pub struct Finished<'a> {
+    /// What is said of all targets together.
+    pub summary: &'a Summary,
+    /// From reading the file to the answer, in seconds.
+    pub wall_seconds: f64,
+    /// What all threads took for it, in seconds.
+    pub cpu_seconds: f64,
+}
+
+/// Writes answers in some form.
+pub trait Listing {
+    /// Takes the answer for the target of this number, counted from 0; targets come in their order.
+    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError>;
+    /// Writes what comes after the last target.
+    fn finish(self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError>;
+}
+
+/// Where a listing is written.
+pub enum Sink {
+    /// Standard output. A reader that has gone away (`| head`) is no error.
+    Standard(BufWriter<Stdout>),
+    /// A file that has its name once it is whole.
+    File(Written),
+}
+
+impl Sink {
+    /// Standard output.
+    pub fn standard() -> Self {
+        Self::Standard(BufWriter::new(std::io::stdout()))
+    }
+
+    /// Writes a text.
+    pub fn write(&mut self, text: &str) -> Result<(), ClientError> {
+        match self {
+            Self::Standard(out) => unless_gone(out.write_all(text.as_bytes())),
+            Self::File(file) => file.write(text),
+        }
+    }
+
+    /// Everything is written.
+    pub fn finish(self) -> Result<(), ClientError> {
+        match self {
+            Self::Standard(mut out) => unless_gone(out.flush()),
+            Self::File(file) => file.finish(),
+        }
+    }
+}
+
+fn unless_gone(written: std::io::Result<()>) -> Result<(), ClientError> {
+    match written {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(ClientError::File {
+            action: "cannot write",
+            path: "standard output".into(),
+            source: e,
+        }),
+        _ => Ok(()),
+    }
+}
