@@ -109,8 +109,13 @@ pub struct Document<'a> {
 impl<'a> Document<'a> {
     /// The document of a file's bytes.
     pub fn new(file: &'a str, content: &'a [u8]) -> Result<Self, MechanismError> {
-        if content.len() > MOST_BYTES {
-            let message = format!("{} bytes; at most {MOST_BYTES} are read", content.len());
+        Self::within(MOST_BYTES, file, content)
+    }
+
+    /// The document of a file's bytes, where they are not more than these.
+    pub fn within(most: usize, file: &'a str, content: &'a [u8]) -> Result<Self, MechanismError> {
+        if content.len() > most {
+            let message = format!("{} bytes; at most {most} are read", content.len());
             return Err(MechanismError::of_file(file, message));
         }
         let text = std::str::from_utf8(content).map_err(|e| {

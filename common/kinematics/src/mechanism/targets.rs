@@ -9,6 +9,8 @@ use num_complex::Complex64;
 
 /// Most targets of one file.
 pub const MOST_TARGETS: usize = 1_000_000;
+/// Largest table of targets, in bytes: rows are read one by one.
+const MOST_TABLE_BYTES: usize = 512 << 20;
 
 /// Reads poses: JSON, one or a list; or CSV with a header `x,y,z,qw,qx,qy,qz`, `x,y,z,roll,pitch,yaw` or, in the
 /// plane, `x,y,angle`.
@@ -18,14 +20,13 @@ pub fn poses(
     mechanism: &Mechanism,
     degrees: bool,
 ) -> Result<Vec<Pose>, MechanismError> {
-    let document = Document::new(file, content)?;
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
     if !is_json(&document) {
-        let rows = rows(&document)?;
-        return rows
-            .iter()
-            .map(|row| pose_of_row(&document, row, mechanism.space, degrees))
-            .collect();
+        return each_row(&document, |row| {
+            pose_of_row(&document, row, mechanism.space, degrees)
+        });
     }
+    let document = Document::new(file, content)?;
     let tree = document.json_tree()?;
     listed(&Entry {
         document,
@@ -45,14 +46,13 @@ pub fn inputs(
     names: &[(String, bool)],
     degrees: bool,
 ) -> Result<Vec<Vec<f64>>, MechanismError> {
-    let document = Document::new(file, content)?;
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
     if !is_json(&document) {
-        let rows = rows(&document)?;
-        return rows
-            .iter()
-            .map(|row| inputs_of_row(&document, row, names, degrees))
-            .collect();
+        return each_row(&document, |row| {
+            inputs_of_row(&document, row, names, degrees)
+        });
     }
+    let document = Document::new(file, content)?;
     let tree = document.json_tree()?;
     let mut found = Vec::new();
     for entry in listed(&Entry {
@@ -119,10 +119,7 @@ pub fn typed_pose(
         );
         return Err(MechanismError::of_file("--pose", message));
     }
-    let cells = header
-        .iter()
-        .zip(&words)
-        .map(|(n, w)| ((*n).to_owned(), (*w).to_owned()));
+    let cells = header.iter().zip(&words).map(|(name, word)| (*name, *word));
     let row = Row {
         at: 0,
         cells: cells.collect(),
@@ -148,15 +145,20 @@ fn listed<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>, MechanismError> {
     Ok(items)
 }
 
-struct Row {
+/// A row of a table: where it begins in the text, and its cells with the names of their columns.
+struct Row<'a> {
     at: usize,
-    cells: Vec<(String, String)>,
+    cells: Vec<(&'a str, &'a str)>,
 }
 
-fn rows(document: &Document<'_>) -> Result<Vec<Row>, MechanismError> {
+/// What `read` makes of every row below the header.
+fn each_row<T>(
+    document: &Document<'_>,
+    read: impl Fn(&Row<'_>) -> Result<T, MechanismError>,
+) -> Result<Vec<T>, MechanismError> {
     let mut at = 0;
-    let mut header: Vec<String> = Vec::new();
-    let mut rows = Vec::new();
+    let mut header: Vec<&str> = Vec::new();
+    let mut found = Vec::new();
     for line in document.text.split_inclusive('\n') {
         let start = at;
         at += line.len();
@@ -164,7 +166,7 @@ fn rows(document: &Document<'_>) -> Result<Vec<Row>, MechanismError> {
         if line.is_empty() {
             continue;
         }
-        let cells: Vec<String> = line.split(',').map(|c| c.trim().to_owned()).collect();
+        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         if header.is_empty() {
             header = cells;
             continue;
@@ -178,25 +180,25 @@ fn rows(document: &Document<'_>) -> Result<Vec<Row>, MechanismError> {
             );
             return Err(document.error(start, "", message));
         }
-        if rows.len() >= MOST_TARGETS {
+        if found.len() >= MOST_TARGETS {
             return Err(document.error(start, "", format!("more than {MOST_TARGETS} targets")));
         }
-        rows.push(Row {
+        found.push(read(&Row {
             at: start,
-            cells: header.iter().cloned().zip(cells).collect(),
-        });
+            cells: header.iter().copied().zip(cells).collect(),
+        })?);
     }
-    if rows.is_empty() {
+    if found.is_empty() {
         return Err(document.error(at, "", "expected a header and at least one row"));
     }
-    Ok(rows)
+    Ok(found)
 }
 
-impl Row {
+impl Row<'_> {
     fn cell<'r>(&'r self, document: &Document<'_>, name: &str) -> Result<&'r str, MechanismError> {
-        let found = self.cells.iter().find(|(n, _)| n == name);
-        found.map(|(_, text)| text.as_str()).ok_or_else(|| {
-            let names: Vec<&str> = self.cells.iter().map(|(n, _)| n.as_str()).collect();
+        let found = self.cells.iter().find(|(n, _)| *n == name);
+        found.map(|(_, text)| *text).ok_or_else(|| {
+            let names: Vec<&str> = self.cells.iter().map(|(n, _)| *n).collect();
             document.error(
                 0,
                 "",
@@ -235,11 +237,7 @@ impl Row {
     }
 
     fn only(&self, document: &Document<'_>, names: &[&str]) -> Result<(), MechanismError> {
-        match self
-            .cells
-            .iter()
-            .find(|(n, _)| !names.contains(&n.as_str()))
-        {
+        match self.cells.iter().find(|(n, _)| !names.contains(n)) {
             Some((name, _)) => {
                 let message = format!("unknown column \"{name}\"; expected {}", names.join(","));
                 Err(document.error(0, "", message))
@@ -251,7 +249,7 @@ impl Row {
 
 fn pose_of_row(
     document: &Document<'_>,
-    row: &Row,
+    row: &Row<'_>,
     space: Space,
     degrees: bool,
 ) -> Result<Pose, MechanismError> {
@@ -272,7 +270,7 @@ fn pose_of_row(
         });
     }
     let position = [number("x")?, number("y")?, number("z")?].map(Complex64::from);
-    if row.cells.iter().any(|(n, _)| n == "qw") {
+    if row.cells.iter().any(|(n, _)| *n == "qw") {
         row.only(document, &["x", "y", "z", "qw", "qx", "qy", "qz"])?;
         let q = [number("qw")?, number("qx")?, number("qy")?, number("qz")?];
         let square: f64 = q.iter().map(|c| c * c).sum();
@@ -294,7 +292,7 @@ fn pose_of_row(
 
 fn inputs_of_row(
     document: &Document<'_>,
-    row: &Row,
+    row: &Row<'_>,
     names: &[(String, bool)],
     degrees: bool,
 ) -> Result<Vec<f64>, MechanismError> {
