@@ -2,7 +2,8 @@
 //!
 //! Twice all results are read, a chunk at a time: once to tell streamed paths from others (see
 //! `solutions::streamed`), once to fetch the others, which the algorithm gets. When it tracks some again, the
-//! streamed paths that may end where those do now are fetched, too.
+//! streamed paths that may end where those do now are fetched, too. Results of any other stage are handed on as they
+//! are read ([`send_all`], [`Received`]).
 
 use super::steward::{Steward, Wanted};
 use super::tools::{DriveError, Tools};
