@@ -143,6 +143,14 @@ impl AnyAlgorithm {
         postcard::to_extend(self, vec![VERSION]).expect("memory takes every byte")
     }
 
+    /// The same state, to be written as it is gone through: what is written reads as the bytes of [`Self::snapshot`]
+    /// with their number before them.
+    pub fn counted_snapshot(&self) -> impl Serialize + '_ {
+        let state = (VERSION, self);
+        let size = postcard::experimental::serialized_size(&state);
+        (size.expect("a state has a size"), state)
+    }
+
     /// Closes the solve with this, too, after the closings that there are.
     pub fn close_with(&mut self, closing: Closing) {
         self.closings.push(closing);

@@ -179,7 +179,7 @@ fn component(dimension: u32, points: usize) -> WitnessSet {
         irreducible: Irreducible::Yes,
         deflation: vec![1, 3],
         self_conjugate: None,
-        slice: vec![vec![number(7); 3]; dimension as usize],
+        slice: vec![vec![number(7); 3]; dimension as usize].into(),
         points: (0..points)
             .map(|k| vec![number(k), number(k + 1)])
             .collect(),

@@ -4,7 +4,7 @@ use super::audit_log::Entry;
 use super::caller::Caller;
 use super::error::ApiError;
 use super::visible::visible;
-use super::{Answers, Context, guarded, pieces};
+use super::{Answers, Context, guarded, json_pieces};
 use crate::coordinator::submission_limits::SubmissionLimits;
 use crate::coordinator::{Answered, ClassifiedPath, CoordinatorError};
 use crate::intake;
@@ -396,6 +396,7 @@ impl ClientApi for ClientService {
     ) -> Result<Response<Self::GetDecompositionStream>, Status> {
         let caller = Caller::of(&request);
         let job = self.job(&caller, &request.into_inner().job).await?;
+        let turn = self.context.streams.turn().await?;
         let coordinator = &self.context.coordinator;
         let found = coordinator.decomposition(job).await;
         let found = found.map_err(ApiError::from)?;
@@ -405,8 +406,7 @@ impl ClientApi for ClientService {
             system,
             seed,
         };
-        let json = serde_json::to_vec(&object).expect("names and numbers can be written as JSON");
-        Ok(Response::new(pieces(json.into())))
+        Ok(Response::new(turn.hold(json_pieces(object))))
     }
 
     type StreamSolutionsStream = Answers<v1::Solution>;

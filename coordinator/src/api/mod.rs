@@ -25,8 +25,12 @@ use cognate_protocol::limits::PIECE_BYTES;
 use cognate_protocol::v1;
 use error::ApiError;
 use held_stream::HeldStreams;
+use serde::Serialize;
 use std::collections::HashMap;
+use std::io::{self, BufWriter, Write};
 use std::sync::{Arc, Mutex, PoisonError};
+use tokio::sync::mpsc;
+use tokio_stream::wrappers::ReceiverStream;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
 use tonic::Status;
@@ -136,10 +140,59 @@ fn pieces(bytes: Bytes) -> Answers<v1::ObjectPiece> {
     Box::pin(futures::stream::iter(pieces))
 }
 
+/// An object as JSON in pieces that are written as they are read: a text may be larger than what it says.
+fn json_pieces(object: impl Serialize + Send + 'static) -> Answers<v1::ObjectPiece> {
+    let (sender, receiver) = mpsc::channel(2);
+    tokio::task::spawn_blocking(move || {
+        let size = usize::try_from(PIECE_BYTES.value).unwrap_or(usize::MAX);
+        let sent = PieceWriter { sender, size };
+        let mut text = BufWriter::with_capacity(size, sent);
+        let written = serde_json::to_writer(&mut text, &object).map_err(io::Error::from);
+        if let Err(error) = written.and_then(|()| text.flush()) {
+            tracing::debug!(%error, "an object was not read to its end");
+        }
+    });
+    Box::pin(ReceiverStream::new(receiver))
+}
+
+/// Sends what is written, in pieces of at most a size.
+struct PieceWriter {
+    sender: mpsc::Sender<Result<v1::ObjectPiece, Status>>,
+    size: usize,
+}
+
+impl Write for PieceWriter {
+    fn write(&mut self, text: &[u8]) -> io::Result<usize> {
+        let data = Bytes::copy_from_slice(&text[..text.len().min(self.size)]);
+        let length = data.len();
+        let sent = self.sender.blocking_send(Ok(v1::ObjectPiece { data }));
+        let nobody_reads = |_| io::Error::from(io::ErrorKind::BrokenPipe);
+        sent.map(|()| length).map_err(nobody_reads)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use futures::StreamExt;
+
+    #[tokio::test]
+    async fn json_comes_in_pieces() {
+        let size = usize::try_from(PIECE_BYTES.value).unwrap();
+        let object = vec!["a".repeat(2 * size + 5), "b".repeat(7)];
+        let pieces: Vec<_> = json_pieces(object.clone()).collect().await;
+        let data = || pieces.iter().map(|piece| &piece.as_ref().unwrap().data);
+        assert!(data().all(|data| data.len() <= size));
+        let whole: Vec<u8> = data().flatten().copied().collect();
+        assert_eq!(whole, serde_json::to_vec(&object).unwrap());
+        // Nobody reads it to its end: the writer stops.
+        let mut unread = json_pieces(vec![object; 100]);
+        assert!(unread.next().await.is_some());
+    }
 
     #[tokio::test]
     async fn pieces_make_up_the_object() {

@@ -214,7 +214,7 @@ impl Coordinator {
         let counted = match row.snapshot {
             None => StageId(0),
             Some(state) => {
-                let state: Vec<u8> = self.store.record(&STATE, state).await?;
+                let state = self.store.bytes_record(&STATE, state).await?;
                 let algorithm = AnyAlgorithm::restore(&state).map_err(|error| {
                     CoordinatorError::Problem(format!(
                         "the state of job {job} cannot be read: {error}"

@@ -25,7 +25,7 @@ impl Coordinator {
     pub async fn decomposed(&self, job: JobId) -> Result<(String, u64), CoordinatorError> {
         let row = self.solved(job).await?;
         let planned = Planned::from_bytes(&row.asked.options)?;
-        let state: Vec<u8> = self.store.record(&STATE, planned.first_state).await?;
+        let state = self.store.bytes_record(&STATE, planned.first_state).await?;
         let unreadable = |error: String| {
             CoordinatorError::Problem(format!("the system of job {job} cannot be read: {error}"))
         };

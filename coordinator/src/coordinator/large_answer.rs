@@ -94,7 +94,7 @@ impl Coordinator {
         let state = row
             .snapshot
             .ok_or_else(|| unreadable("there is none".into()))?;
-        let state: Vec<u8> = self.store.record(&STATE, state).await?;
+        let state = self.store.bytes_record(&STATE, state).await?;
         let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
         let large = algorithm
             .large()

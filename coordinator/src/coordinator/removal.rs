@@ -291,7 +291,7 @@ impl Coordinator {
                 break;
             }
             let bytes = match named.states.contains(&digest) {
-                true => self.store.record(&STATE, digest).await,
+                true => self.store.bytes_record(&STATE, digest).await,
                 false => self.store.get(digest).await.map(Vec::from),
             };
             match bytes {

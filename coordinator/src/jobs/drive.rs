@@ -4,7 +4,7 @@
 //! may have happened, and doing it again is harmless. A drive that is fenced
 //! has another steward by now, and is dropped.
 
-use super::large_stage::{self, LargeStage};
+use super::large_stage::{self, Interrupted, LargeStage, Received};
 use super::planning::{Planned, STATE, first_chunks};
 use super::steward::{Steward, Wanted, next_to_absorb};
 use super::tools::{DriveError, Tools};
@@ -18,11 +18,12 @@ use crate::results::finished::Finished;
 use crate::results::store::Store;
 use cognate_algorithms::Opening;
 use cognate_continuation::start_points::Digest;
-use cognate_continuation::work::{Stage, StageId};
+use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_summary::AnySummary;
 use cognate_systems::system::System;
 use std::collections::HashSet;
 use std::sync::Arc;
+use tokio::sync::mpsc;
 
 const HERE: &str = "the steward is back before the step ends";
 
@@ -43,7 +44,7 @@ pub struct Drive {
     job: JobId,
     epoch: Epoch,
     planned: Planned,
-    /// Away only while it works on another thread.
+    /// Away only while it works on another thread, and after results that it took were lost.
     steward: Option<Steward>,
     /// Nothing was opened yet, or the algorithm is done and the job must be ended.
     pending: Option<Wanted>,
@@ -88,7 +89,7 @@ impl Drive {
             .map_err(|error| DriveError::State(error.to_string()))?;
         let system = Arc::new(store.problem(row.asked.problem).await?);
         let state = row.snapshot.unwrap_or(planned.first_state);
-        let state: Vec<u8> = store.record(&STATE, state).await?;
+        let state = store.bytes_record(&STATE, state).await?;
         let mut steward = Steward::restore(system, &state)
             .map_err(|error| DriveError::State(error.to_string()))?;
         let stages = ledger.stages(job).await?;
@@ -154,7 +155,11 @@ impl Drive {
     pub async fn step(&mut self, tools: &Tools<'_>) -> Result<Driven, DriveError> {
         match self.try_step(tools).await {
             Err(DriveError::LostResults { chunk, why }) => {
-                self.track_lost_again(tools, chunk, why).await
+                let driven = self.track_lost_again(tools, chunk, why).await?;
+                if self.steward.is_none() && driven == Driven::Went {
+                    *self = Self::load(tools.ledger, tools.store, self.job, self.epoch).await?;
+                }
+                Ok(driven)
             }
             Err(error) if error.is_permanent() => {
                 let reason = error.to_string();
@@ -219,16 +224,36 @@ impl Drive {
             let wanted = wanted.await?;
             return self.carry_out(tools, &[stage], &wanted).await;
         }
-        let results = large_stage::all(tools, self.job, stage, work).await?;
-        if results.len() as u64 != items {
-            // A worker was outvoted in between, and what it did is done again.
-            return Err(LedgerError::Fenced(self.job).into());
-        }
-        tracing::info!(job = %self.job, stage = stage.0, items = results.len(), "absorbing a stage");
-        let wanted = self
-            .at_work(move |steward| steward.absorb(stage, results))
-            .await;
+        tracing::info!(job = %self.job, stage = stage.0, items, "absorbing a stage");
+        let wanted = self.absorb(tools, (stage, items, work)).await?;
         self.carry_out(tools, &[stage], &wanted).await
+    }
+
+    /// Lets the steward take the results of a complete stage as they are read, so that they are never all in memory.
+    /// After an error the steward is gone, and its state is to be read again.
+    async fn absorb(
+        &mut self,
+        tools: &Tools<'_>,
+        (stage, items, work): (StageId, u64, Work),
+    ) -> Result<Wanted, DriveError> {
+        let (sender, receiver) = mpsc::channel(1);
+        let mut steward = self.steward.take().expect(HERE);
+        let working = tokio::task::spawn_blocking(move || {
+            let wanted = steward.absorb(stage, Received::new(receiver, items));
+            (steward, wanted)
+        });
+        let sent = large_stage::send_all(tools, self.job, (stage, items, work), sender).await;
+        match working.await {
+            Ok((steward, wanted)) => {
+                sent?;
+                self.steward = Some(steward);
+                Ok(wanted)
+            }
+            Err(ended) => match (ended.into_panic(), sent) {
+                (cause, Err(error)) if cause.is::<Interrupted>() => Err(error),
+                (cause, _) => std::panic::resume_unwind(cause),
+            },
+        }
     }
 
     /// Writes what the algorithm wants: objects, then one row.
@@ -269,8 +294,8 @@ impl Drive {
             });
         }
         if !step.close.is_empty() || !step.open.is_empty() {
-            let state = self.at_work(|steward| steward.snapshot()).await;
-            step.snapshot = Some(tools.store.put_record(&STATE, state).await?);
+            let state = self.at_work(|steward| steward.packed_state()).await;
+            step.snapshot = Some(tools.store.put(state.into()).await?);
             for stage in &step.open {
                 let (number, items) = (stage.stage.0, stage.items);
                 tracing::info!(job = %self.job, stage = number, items, "opening a stage");

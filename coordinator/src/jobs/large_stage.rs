@@ -2,7 +2,8 @@
 //!
 //! Twice all results are read, a chunk at a time: once to tell streamed paths from others (see
 //! `solutions::streamed`), once to fetch the others, which the algorithm gets. When it tracks some again, the
-//! streamed paths that may end where those do now are fetched, too.
+//! streamed paths that may end where those do now are fetched, too. Results of any other stage are handed on as they
+//! are read ([`send_all`], [`Received`]).
 
 use super::steward::{Steward, Wanted};
 use super::tools::{DriveError, Tools};
@@ -15,6 +16,7 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::{StageId, Work};
 use cognate_solutions::streamed_targets::StreamedTargets;
 use futures::{Stream, StreamExt};
+use tokio::sync::mpsc;
 
 /// Result objects that are read at once.
 const READ_AHEAD: usize = 8;
@@ -105,20 +107,39 @@ pub async fn lost_chunks(
     }
 }
 
-/// All results of a complete stage that does this work, in the order of its items.
-pub async fn all(
+/// All results of a complete stage of so many items that does this work, in the order of its items.
+async fn all(
     tools: &Tools<'_>,
     job: JobId,
-    stage: StageId,
-    work: Work,
+    stage: (StageId, u64, Work),
 ) -> Result<Vec<ItemResult>, DriveError> {
-    let mut results = Vec::new();
-    let mut from = 0;
+    let (sender, mut receiver) = mpsc::channel(1);
+    let collected = async move {
+        let mut results = Vec::new();
+        while let Some(chunk) = receiver.recv().await {
+            results.extend(chunk);
+        }
+        results
+    };
+    let (sent, results) = tokio::join!(send_all(tools, job, stage, sender), collected);
+    sent?;
+    Ok(results)
+}
+
+/// Sends the results of a complete stage of so many items that does this work, chunk by chunk in the order of its
+/// items, until nobody takes them; an error where these are not all.
+pub async fn send_all(
+    tools: &Tools<'_>,
+    job: JobId,
+    (stage, items, work): (StageId, u64, Work),
+    to: mpsc::Sender<Vec<ItemResult>>,
+) -> Result<(), DriveError> {
+    // A worker was outvoted in between, and what it did is done again.
+    let done_again = || DriveError::from(LedgerError::Fenced(job));
+    let (mut from, mut sent) = (0, 0);
     loop {
         let objects = page(tools.ledger, job, stage, from).await?;
-        let Some(last) = objects.last() else {
-            return Ok(results);
-        };
+        let Some(last) = objects.last() else { break };
         from = last.items.last;
         let objects = futures::stream::iter(objects);
         let mut chunks = std::pin::pin!(
@@ -130,8 +151,61 @@ pub async fn all(
                 .buffered(READ_AHEAD)
         );
         while let Some(chunk) = chunks.next().await {
-            results.extend(chunk?);
+            let chunk = chunk?;
+            sent += chunk.len() as u64;
+            if sent > items {
+                return Err(done_again());
+            }
+            if to.send(chunk).await.is_err() {
+                return Ok(());
+            }
         }
+    }
+    match sent == items {
+        true => Ok(()),
+        false => Err(done_again()),
+    }
+}
+
+/// What ends the work of who takes results that end too early.
+pub struct Interrupted;
+
+/// The results of so many items as they are sent.
+pub struct Received {
+    chunks: mpsc::Receiver<Vec<ItemResult>>,
+    chunk: std::vec::IntoIter<ItemResult>,
+    left: u64,
+}
+
+impl Received {
+    /// Of so many items.
+    pub fn new(chunks: mpsc::Receiver<Vec<ItemResult>>, items: u64) -> Self {
+        Self {
+            chunks,
+            chunk: Vec::new().into_iter(),
+            left: items,
+        }
+    }
+}
+
+impl Iterator for Received {
+    type Item = ItemResult;
+
+    /// # Panics
+    /// With [`Interrupted`], and without a message, where the sender gives up: who takes a stage takes all of it or is
+    /// abandoned.
+    fn next(&mut self) -> Option<ItemResult> {
+        while self.left > 0 {
+            if let Some(result) = self.chunk.next() {
+                self.left -= 1;
+                return Some(result);
+            }
+            match self.chunks.blocking_recv() {
+                Some(chunk) => self.chunk = chunk.into_iter(),
+                None => std::panic::resume_unwind(Box::new(Interrupted)),
+            }
+        }
+        None
     }
 }
 
@@ -254,10 +328,7 @@ impl LargeStage {
             self.index = Some(index);
             return Ok(wanted);
         }
-        let results = all(tools, job, stage, work).await?;
-        if results.len() as u64 != items {
-            return Err(LedgerError::Fenced(job).into());
-        }
+        let results = all(tools, job, (stage, items, work)).await?;
         let mut index = match self.index.take() {
             Some(index) => index,
             // Another coordinator began: what it remembered is in the objects.
@@ -310,5 +381,36 @@ impl LargeStage {
         let results = fetch(tools, job, first, &held).await?;
         index.take_back(&results);
         Ok(index)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_continuation::tracker::outcome::PathOutcome;
+
+    fn chunk(first: u64) -> Vec<ItemResult> {
+        let path = |k| PathResult::untracked(k, 0, PathOutcome::Regular, Vec::new());
+        let chunk = first..first + 3;
+        chunk.map(|k| ItemResult::Track(path(k))).collect()
+    }
+
+    #[test]
+    fn who_takes_results_that_end_too_early_does_not_go_on() {
+        let taken = |chunks: u64, items: u64| {
+            let (sender, receiver) = mpsc::channel(3);
+            for k in 0..chunks {
+                sender.try_send(chunk(3 * k)).unwrap();
+            }
+            drop(sender);
+            let received = Received::new(receiver, items);
+            std::thread::spawn(move || received.count()).join()
+        };
+        assert_eq!(taken(2, 6).ok(), Some(6));
+        assert_eq!(taken(0, 0).ok(), Some(0));
+        for (chunks, items) in [(0, 6), (1, 6), (2, 7)] {
+            let cause = taken(chunks, items).unwrap_err();
+            assert!(cause.is::<Interrupted>());
+        }
     }
 }

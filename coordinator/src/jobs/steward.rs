@@ -4,7 +4,9 @@
 //! the order of arrival. So a state that was replayed from the ledger is the
 //! state that lived through it.
 
+use super::planning::STATE;
 use crate::ledger::rows::StageRow;
+use crate::results::store::packed_record;
 use cognate_algorithms::retried_stage::RetriedStage;
 use cognate_algorithms::{Answer, AnyAlgorithm, Next, Opening, PathAlgorithm, RestoreError};
 use cognate_continuation::item_result::ItemResult;
@@ -134,6 +136,11 @@ impl Steward {
     /// The state, from which [`Self::restore`] goes on.
     pub fn snapshot(&self) -> Vec<u8> {
         self.algorithm.snapshot()
+    }
+
+    /// The record of the state, of which no plain copy is made.
+    pub fn packed_state(&self) -> Vec<u8> {
+        packed_record(&STATE, &self.algorithm.counted_snapshot())
     }
 
     /// What was found, once all is done.

@@ -24,7 +24,7 @@ use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions};
 use prost::Message;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::io::Read;
+use std::io::{BufWriter, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -90,6 +90,8 @@ const MAGIC: &[u8; 8] = b"CGNCHK01";
 const LEVEL: i32 = 1;
 /// No chunk's records are longer; a larger length in an object is damage.
 const LONGEST_RECORDS: u64 = 1 << 32;
+/// Plain bytes of a record that are compressed at once.
+const PIECE: usize = 256 << 10;
 /// Chunks above this size leave the runtime's thread for compression.
 const SMALL: usize = 256 << 10;
 
@@ -321,15 +323,7 @@ impl Store {
         kind: &'static RecordKind,
         value: T,
     ) -> Result<Digest, StoreError> {
-        let bytes = off_thread(true, move || {
-            let plain = postcard::to_stdvec(&value).expect("memory takes every byte");
-            let mut bytes = kind.0.to_vec();
-            bytes.extend_from_slice(&(plain.len() as u64).to_le_bytes());
-            let compressed =
-                zstd::bulk::compress(&plain, LEVEL).expect("memory takes whatever zstd writes");
-            bytes.extend_from_slice(&compressed);
-            bytes
-        });
+        let bytes = off_thread(true, move || packed_record(kind, &value));
         self.put(bytes.await.into()).await
     }
 
@@ -362,10 +356,29 @@ impl Store {
         let bytes = self.get(digest).await?;
         let address = object_address(digest);
         off_thread(true, move || {
-            let length = record_length(kind, &bytes)
-                .ok_or_else(|| damaged(&address, "it is of another kind or version"))?;
-            let plain = decompress(&address, &bytes[RECORD_HEAD..], length)?;
+            let plain = unpacked_record(kind, &address, bytes)?;
             postcard::from_bytes(&plain).map_err(|error| damaged(&address, error))
+        })
+        .await
+    }
+
+    /// The same where it is bytes, without a copy of them: they may be a large part of the memory.
+    pub async fn bytes_record(
+        &self,
+        kind: &'static RecordKind,
+        digest: Digest,
+    ) -> Result<Vec<u8>, StoreError> {
+        let bytes = self.get(digest).await?;
+        let address = object_address(digest);
+        off_thread(true, move || {
+            let mut plain = unpacked_record(kind, &address, bytes)?;
+            let counted = postcard::take_from_bytes::<usize>(&plain);
+            let (count, rest) = counted.map_err(|error| damaged(&address, error))?;
+            if count != rest.len() {
+                return Err(damaged(&address, "it has another number of bytes"));
+            }
+            plain.drain(..plain.len() - count);
+            Ok(plain)
         })
         .await
     }
@@ -473,6 +486,31 @@ async fn off_thread<T: Send + 'static>(long: bool, work: impl FnOnce() -> T + Se
         Ok(value) => value,
         Err(error) => std::panic::resume_unwind(error.into_panic()),
     }
+}
+
+/// The object of a record, compressed as it is written: its plain bytes are never all in memory.
+pub fn packed_record(kind: &RecordKind, value: &impl Serialize) -> Vec<u8> {
+    const MEMORY: &str = "memory takes every byte";
+    let plain = postcard::experimental::serialized_size(value).expect(MEMORY) as u64;
+    let mut bytes = kind.0.to_vec();
+    bytes.extend_from_slice(&plain.to_le_bytes());
+    let mut encoder = zstd::stream::write::Encoder::new(bytes, LEVEL).expect(MEMORY);
+    encoder.set_pledged_src_size(Some(plain)).expect(MEMORY);
+    let pieces = BufWriter::with_capacity(PIECE, encoder);
+    let pieces = postcard::to_io(value, pieces).expect(MEMORY);
+    let encoder = pieces.into_inner().map_err(|error| error.into_error());
+    encoder.and_then(|e| e.finish()).expect(MEMORY)
+}
+
+/// The plain bytes of a record of this kind.
+fn unpacked_record(
+    kind: &RecordKind,
+    address: &Address,
+    bytes: Bytes,
+) -> Result<Vec<u8>, StoreError> {
+    let length = record_length(kind, &bytes)
+        .ok_or_else(|| damaged(address, "it is of another kind or version"))?;
+    decompress(address, &bytes[RECORD_HEAD..], length)
 }
 
 /// The length before compression that a record of this kind says it has; `None` where the bytes are none.
@@ -645,6 +683,23 @@ mod tests {
             .await
             .expect_err("it is gone");
         assert!(matches!(error, StoreError::Missing(_)));
+    }
+
+    #[tokio::test]
+    async fn bytes_of_a_record_are_read_without_a_copy() {
+        const KIND: RecordKind = RecordKind(b"CGNTST01");
+        let store = Store::in_memory();
+        // Longer than what is compressed at once; and one whose number of bytes takes one byte.
+        for length in [0, 100, 3 * PIECE + 7] {
+            let bytes: Vec<u8> = (0..length).map(|i| (i * i % 251) as u8).collect();
+            let kept = store.put_record(&KIND, bytes.clone()).await.unwrap();
+            assert_eq!(store.bytes_record(&KIND, kept).await.unwrap(), bytes);
+            let read: Vec<u8> = store.record(&KIND, kept).await.unwrap();
+            assert_eq!(read, bytes);
+        }
+        let other = store.put_record(&KIND, (5usize, [1u8, 2])).await.unwrap();
+        let refused = store.bytes_record(&KIND, other).await;
+        assert!(matches!(refused, Err(StoreError::Damaged { .. })));
     }
 
     #[tokio::test]

@@ -9,6 +9,7 @@ use super::job::StageSystem;
 use super::problem::Problem;
 use super::superset::SingularEnd;
 use cognate_continuation::bend::{Number, RefinedPoint, SlicedEquations, exactly, rounded};
+use cognate_continuation::start_points::StoredPoints;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::witness::Multiplicity;
@@ -95,6 +96,19 @@ impl PureSet {
     pub fn doubles(&self) -> Vec<Vec<Complex64>> {
         let double = |p: &RefinedPoint| p.point.iter().map(rounded).collect();
         self.points.iter().map(double).collect()
+    }
+
+    /// The points from this place on in the unknowns that are tracked, as they are stored.
+    pub fn stored_from(&self, first: usize) -> StoredPoints {
+        let dimension = self.points[first..].first().map_or(0, |p| p.point.len());
+        let mut coordinates = Vec::with_capacity(dimension * (self.points.len() - first));
+        for point in &self.points[first..] {
+            coordinates.extend(point.point.iter().map(rounded));
+        }
+        StoredPoints {
+            dimension,
+            coordinates,
+        }
     }
 
     /// All of its equations with the slices, whose coefficients are parameters.

@@ -323,31 +323,41 @@ impl Job {
     /// How these witness points move when the parameters go from the first to the second.
     pub fn bend(
         system: StageSystem,
-        [start, target]: [Vec<Complex64>; 2],
+        ends: [Vec<Complex64>; 2],
         points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Self {
+        Self::bend_stored(system, ends, stored(points), with)
+    }
+
+    fn bend_stored(
+        system: StageSystem,
+        [start, target]: [Vec<Complex64>; 2],
+        points: impl Into<Arc<StoredPoints>>,
         with: &Tracking,
     ) -> Self {
         let homotopy = HomotopyKind::Parameter {
             start,
             targets: vec![target],
         };
-        Self::ask(system, Work::Bend, homotopy, stored(points), with)
+        Self::ask(system, Work::Bend, homotopy, points.into(), with)
     }
 
     /// The same where only sums of second derivatives in the first `own` variables are wanted: what these need is held.
     pub fn bend_for_sums(
         system: StageSystem,
         ends: [Vec<Complex64>; 2],
-        points: &[Vec<Complex64>],
+        points: StoredPoints,
         own: usize,
         with: &Tracking,
     ) -> Self {
-        let mut job = Self::bend(system, ends, points, with);
+        let sums = Answers::Sums {
+            moved: MovedPoints::with_capacity(points.len(), own),
+            unknowns: points.dimension,
+        };
+        let mut job = Self::bend_stored(system, ends, points, with);
         if let Doing::Asked { answers, .. } = &mut job.work {
-            *answers = Answers::Sums {
-                moved: MovedPoints::with_capacity(points.len(), own),
-                unknowns: points.first().map_or(0, Vec::len),
-            };
+            *answers = sums;
         }
         job
     }

@@ -302,9 +302,11 @@ impl JunkFilter {
         refined: Vec<Option<RefinedPoint>>,
         sets: &mut Vec<PureSet>,
     ) {
-        let Some(superset) = self.current.take() else {
+        let Some(mut superset) = self.current.take() else {
             return;
         };
+        // Refined ones are in their place.
+        let regular_ends = std::mem::take(&mut superset.regular).len() as u64;
         let dimension = superset.dimension;
         let higher = !sets.is_empty();
         let (mut junk, mut unclear, mut not_deflated) = (0, 0, 0);
@@ -389,7 +391,7 @@ impl JunkFilter {
         let doubts = doubts.into_iter().filter(|(count, _)| *count > 0);
         self.dimensions.push(Dimension {
             number: dimension as u32,
-            superset: superset.regular.len() as u64 + singular,
+            superset: regular_ends + singular,
             junk,
             excess: superset.excess,
             failed: superset.failed,

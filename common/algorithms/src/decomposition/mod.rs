@@ -46,7 +46,7 @@ use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
     ComponentId, Decomposition, Dimension, Doubt, Family, KnownComponents, Method, TrackedPaths,
-    WitnessSet,
+    WitnessSet, sharing_slices,
 };
 use cognate_systems::system::System;
 pub use costs::DecompositionCosts;
@@ -116,6 +116,7 @@ struct State {
     dimensions: Vec<Dimension>,
     /// Sets of one dimension and multiplicity, not yet told apart, and components made of them.
     sets: Vec<PureSet>,
+    #[serde(deserialize_with = "sharing_slices")]
     components: Vec<WitnessSet>,
     paths: TrackedPaths,
     paths_of_loops: TrackedPaths,
@@ -314,7 +315,11 @@ impl DecompositionSolve {
             }
             Step::Split(split) => {
                 let (found, dimension) = split.components(problem, &mut self.deflations);
-                state.components.extend(found);
+                match state.components.is_empty() {
+                    // Moved as a whole, where there are many.
+                    true => state.components = found,
+                    false => state.components.extend(found),
+                }
                 let of = state.dimensions.iter_mut();
                 if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
                     known.doubts.extend(dimension.doubts);
@@ -713,6 +718,22 @@ mod tests {
     }
 
     #[test]
+    fn components_of_a_dimension_share_their_slice() {
+        let share = |found: &Decomposition| {
+            let [a, b] = found.components.as_slice() else {
+                panic!("two curves: {found:?}");
+            };
+            Arc::ptr_eq(&a.slice, &b.slice)
+        };
+        let found = decompose(CURVES, (Method::Cascade, 0), |_, _| {});
+        assert!(share(&found));
+        // ... also when they were written down and are read.
+        let read: Decomposition =
+            postcard::from_bytes(&postcard::to_stdvec(&found).unwrap()).unwrap();
+        assert!(share(&read) && read == found);
+    }
+
+    #[test]
     fn a_lost_path_leaves_nothing_settled() {
         // Four paths end at the four witness points: the last of them is lost, however often it is tracked, and loops
         // do not come back.
@@ -837,6 +858,8 @@ mod tests {
             kinds.push_str(&format!("{:?} {:?}; ", stage.work, stage.homotopy));
         });
         assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
+        let counted = postcard::to_stdvec(&solve.counted_snapshot()).unwrap();
+        assert_eq!(counted, postcard::to_stdvec(&solve.snapshot()).unwrap());
         let Some(Answer::Decomposition(decomposition)) = solve.answer(system) else {
             panic!("a decomposition ends with one");
         };

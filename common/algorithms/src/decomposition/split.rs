@@ -24,6 +24,7 @@ use cognate_solutions::witness::{
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// A sum is clearly not 0 above this many times its error.
 const OPEN: f64 = 1e7;
@@ -210,9 +211,9 @@ impl Split {
         let dimension = self.set.dimension;
         let ends = moving_slices(problem, dimension);
         let known = self.bends.as_ref().map_or(0, MovedPoints::count);
-        let points = self.set.doubles().split_off(known);
+        let points = self.set.stored_from(known);
         let own = problem.variables();
-        Job::bend_for_sums(self.set.whole(), ends, &points, own, &problem.tracking)
+        Job::bend_for_sums(self.set.whole(), ends, points, own, &problem.tracking)
     }
 
     /// The next loop, where there are classes that it may bring together.
@@ -549,9 +550,10 @@ impl Split {
         moved.map_or_else(Default::default, |moved| moved.rough(points))
     }
 
-    /// What was found of the set, and what it says of its dimension.
+    /// What was found of the set, and what it says of its dimension. Points and classes are taken: there may be too many
+    /// to hold them twice.
     pub fn components(
-        &self,
+        &mut self,
         problem: &Problem,
         deflations: &mut Deflations,
     ) -> (Vec<WitnessSet>, Dimension) {
@@ -561,49 +563,39 @@ impl Split {
         let rank_gap = gaps.reduce(f64::min).map(bounded);
         let dimension = self.set.dimension as u32;
         let mut doubts = Vec::new();
-        let mut components = Vec::new();
-        let mut left: Vec<usize> = Vec::new();
+        // Points are components by themselves.
+        let mut left: Vec<usize> = match dimension {
+            0 => Vec::new(),
+            _ => self.open_points().collect(),
+        };
+        left.sort_unstable();
+        let trace_of_left = self.trace(left.iter().copied());
+        self.bends = None;
+        let classes = std::mem::take(&mut self.classes);
+        let mut components = Vec::with_capacity(classes.len());
         let mut classes_left = 0;
-        for class in &self.classes {
-            if dimension == 0 {
-                components.push(self.component(
-                    (problem, rank_gap),
-                    &class.points,
-                    None,
-                    Vec::new(),
-                ));
+        let slice = Arc::new(problem.slices_of_variables(self.set.dimension));
+        let about = (problem, &slice, rank_gap);
+        for Class { points, closed } in classes {
+            if closed.is_none() && dimension > 0 {
+                classes_left += 1;
                 continue;
             }
-            match class.closed {
-                Some(trace) => {
-                    let sure = self.smallest_wrong.is_none_or(|s| s > OPEN * trace.noise);
-                    let doubts = match sure {
-                        true => Vec::new(),
-                        false => vec![Doubt::Open { classes: 1 }],
-                    };
-                    components.push(self.component(
-                        (problem, rank_gap),
-                        &class.points,
-                        Some(trace),
-                        doubts,
-                    ));
-                }
-                None => {
-                    classes_left += 1;
-                    left.extend(&class.points);
-                }
-            }
+            let sure = |trace: Trace| self.smallest_wrong.is_none_or(|s| s > OPEN * trace.noise);
+            let doubts = match closed.is_none_or(sure) {
+                true => Vec::new(),
+                false => vec![Doubt::Open { classes: 1 }],
+            };
+            components.push(self.component(about, &points, closed, doubts));
         }
         if !left.is_empty() {
-            left.sort_unstable();
-            let trace = self.trace(left.iter().copied());
-            if !is_closed(&trace) {
+            if !is_closed(&trace_of_left) {
                 doubts.push(Doubt::PointsMissing);
             }
             let open = vec![Doubt::Open {
                 classes: classes_left,
             }];
-            components.push(self.component((problem, rank_gap), &left, Some(trace), open));
+            components.push(self.component(about, &left, Some(trace_of_left), open));
         }
         if self.broken > 0 && !left.is_empty() {
             doubts.push(Doubt::BrokenLoops { loops: self.broken });
@@ -634,19 +626,23 @@ impl Split {
         }
     }
 
+    /// One component. Its points are moved into it.
     fn component(
-        &self,
-        (problem, rank_gap): (&Problem, Option<f64>),
+        &mut self,
+        (problem, slice, rank_gap): (&Problem, &Arc<Vec<Vec<Complex64>>>, Option<f64>),
         points: &[usize],
         trace: Option<Trace>,
         mut doubts: Vec<Doubt>,
     ) -> WitnessSet {
         let own = problem.variables();
-        let set = &self.set;
-        let values = |&k: &usize| {
-            let point: Vec<_> = set.points[k].point[..own].iter().map(rounded).collect();
+        let self_conjugate = self.is_self_conjugate(points);
+        let set = &mut self.set;
+        let mut values = |&k: &usize| {
+            let point = std::mem::take(&mut set.points[k].point);
+            let point: Vec<_> = point[..own].iter().map(rounded).collect();
             problem.to_variables(&point)
         };
+        let values = points.iter().map(&mut values).collect();
         let condition = |&k: &usize| set.points[k].condition;
         let irreducible = match doubts.is_empty() {
             true => Irreducible::Yes,
@@ -664,9 +660,9 @@ impl Split {
             multiplicity: set.multiplicity.clone(),
             irreducible,
             deflation: set.ranks.clone(),
-            self_conjugate: self.is_self_conjugate(points),
-            slice: problem.slices_of_variables(set.dimension),
-            points: points.iter().map(values).collect(),
+            self_conjugate,
+            slice: Arc::clone(slice),
+            points: values,
             evidence: Evidence {
                 trace,
                 smallest_wrong_union: self.smallest_wrong,

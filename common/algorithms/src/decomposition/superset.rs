@@ -130,7 +130,12 @@ impl Superset {
             if taken[k] {
                 continue;
             }
-            let (mut one, mut regular) = all[k].clone();
+            let nobody = SingularEnd {
+                values: Vec::new(),
+                accuracy: 0.0,
+                paths: 0,
+            };
+            let (mut one, mut regular) = std::mem::replace(&mut all[k], (nobody, false));
             for j in k + 1..all.len() {
                 let near = SAME * (1.0 + first(&one).abs());
                 if first(&all[j].0) - first(&one) > near {

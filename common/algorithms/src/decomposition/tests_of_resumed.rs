@@ -311,7 +311,7 @@ fn what_is_no_component_is_refused() {
     refused(&|known| known.equations = 0);
     refused(&|known| known.equations = 3);
     refused(&|known| known.components[0].points[0][1] += 1e-3);
-    refused(&|known| known.components[0].slice.truncate(1));
+    refused(&|known| Arc::make_mut(&mut known.components[0].slice).truncate(1));
     refused(&|known| known.components[0].points.truncate(1));
     refused(&|known| known.components.push(known.components[0].clone()));
     // A sphere is not among the solutions of the second equation.

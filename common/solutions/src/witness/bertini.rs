@@ -10,6 +10,7 @@ use cognate_numeric::rational::Rational;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// Bits of a double, as Bertini counts them.
 const DOUBLE_BITS: u32 = 52;
@@ -129,7 +130,7 @@ fn write_matrices(
     unit(text);
     let _ = writeln!(text, "0 0");
     let _ = writeln!(text, "{} {}", set.slice.len(), variables + 1);
-    for row in &set.slice {
+    for row in &*set.slice {
         for z in row {
             let _ = writeln!(text, "{} {}", exact(z.re), exact(z.im));
         }
@@ -369,6 +370,7 @@ fn components(dimension: usize, slice: &[Vec<Complex64>], points: Vec<ReadPoint>
     for point in points {
         groups.entry(point.component).or_default().push(point);
     }
+    let slice = Arc::new(slice.to_vec());
     let sets = groups.into_values().enumerate();
     sets.map(|(number, points)| ReadSet {
         deflations: points.iter().map(|p| p.deflations).max().unwrap_or(0),
@@ -387,7 +389,7 @@ fn components(dimension: usize, slice: &[Vec<Complex64>], points: Vec<ReadPoint>
             irreducible: Irreducible::Yes,
             deflation: Vec::new(),
             self_conjugate: None,
-            slice: slice.to_vec(),
+            slice: Arc::clone(&slice),
             points: points.into_iter().map(|p| p.values).collect(),
             evidence: Evidence::default(),
         },
@@ -484,7 +486,7 @@ mod tests {
             irreducible: Irreducible::Yes,
             deflation: Vec::new(),
             self_conjugate: None,
-            slice: vec![vec![z(-2.0, 0.1), z(0.3, 0.7), z(1.0, 0.0)]],
+            slice: Arc::new(vec![vec![z(-2.0, 0.1), z(0.3, 0.7), z(1.0, 0.0)]]),
             points: vec![
                 vec![z(1.4, 0.25), z(2.0, 0.0)],
                 vec![z(-1.4, 0.0), z(2.0, 1e-9)],

@@ -3,7 +3,7 @@
 use super::evidence::Doubt;
 use super::family::Family;
 use super::method::{Method, Verification};
-use super::witness_set::WitnessSet;
+use super::witness_set::{WitnessSet, sharing_slices};
 use crate::completeness::Completeness;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -72,6 +72,7 @@ pub struct Decomposition {
     /// Lowest and highest dimension of the components that are wanted.
     pub asked: [u32; 2],
     /// The components: by dimension, degree and multiplicity, largest first.
+    #[serde(deserialize_with = "sharing_slices")]
     pub components: Vec<WitnessSet>,
     /// The dimensions that were asked, highest first.
     pub dimensions: Vec<Dimension>,

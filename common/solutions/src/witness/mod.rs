@@ -25,4 +25,4 @@ pub use family::{CarriedComponent, Family};
 pub use known_components::KnownComponents;
 pub use method::{Method, Verification};
 pub use question::Question;
-pub use witness_set::{ComponentId, Irreducible, Multiplicity, WitnessSet};
+pub use witness_set::{ComponentId, Irreducible, Multiplicity, WitnessSet, sharing_slices};

@@ -2,7 +2,9 @@
 
 use super::evidence::Evidence;
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::sync::Arc;
 
 /// A component's name, such as `1.3`: the third of dimension 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -57,8 +59,9 @@ pub struct WitnessSet {
     /// Whether complex conjugation maps it to itself; `None` where it maps no solutions to solutions, or that was
     /// not found out.
     pub self_conjugate: Option<bool>,
-    /// The slice, a row for each dimension: constant first, then a coefficient for each variable.
-    pub slice: Vec<Vec<Complex64>>,
+    /// The slice, a row for each dimension: constant first, then a coefficient for each variable. Sets of one dimension
+    /// share it.
+    pub slice: Arc<Vec<Vec<Complex64>>>,
     /// Values of the variables at the witness points; in files they are apart.
     #[serde(default)]
     pub points: Vec<Vec<Complex64>>,
@@ -88,4 +91,28 @@ impl WitnessSet {
     pub fn settled(&self) -> bool {
         self.irreducible == Irreducible::Yes && self.evidence.doubts.is_empty()
     }
+}
+
+/// Reads sets of which neighbours with the same slice share it, as they did before they were written.
+pub fn sharing_slices<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<WitnessSet>, D::Error> {
+    struct Sets;
+    impl<'de> Visitor<'de> for Sets {
+        type Value = Vec<WitnessSet>;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str("a sequence of witness sets")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut sets: A) -> Result<Self::Value, A::Error> {
+            let mut read: Vec<WitnessSet> = Vec::new();
+            while let Some(mut set) = sets.next_element::<WitnessSet>()? {
+                if let Some(before) = read.last().filter(|before| before.slice == set.slice) {
+                    set.slice = Arc::clone(&before.slice);
+                }
+                read.push(set);
+            }
+            Ok(read)
+        }
+    }
+    from.deserialize_seq(Sets)
 }
