@@ -137,11 +137,11 @@ step "the Python package, with the program that is built"
 step "the gallery, at a small size, into target/gallery"
 deploy/gallery/make.sh target/gallery --small
 
-step "chaos: two minutes of random kills, on either ledger and with two coordinators"
+step "chaos: a minute and a half of random kills, on either ledger and with two coordinators"
 # Built above with everything else; `cargo run` of one package would build half of it once more.
-"$built/chaos" --seconds 40 --seed 1
-"$built/chaos" --seconds 40 --seed 2 --ledger postgres
-"$built/chaos" --seconds 40 --seed 3 --ledger postgres --coordinators 2
+"$built/chaos" --seconds 30 --seed 1
+"$built/chaos" --seconds 30 --seed 2 --ledger postgres
+"$built/chaos" --seconds 30 --seed 3 --ledger postgres --coordinators 2
 
 step "partitions: ten workers join and leave in networks whose wires are cut"
 "$built/partitions" --seconds 20
@@ -163,8 +163,8 @@ case $fleet in
   *) exit 1 ;;
 esac
 
-step "many solves: 20 seeds each on one warm coordinator"
-"$built/many_solves"
+step "many solves: 10 seeds each on one warm coordinator"
+"$built/many_solves" --solves 10
 
 if [ -s "$COGNATE_SKIPS" ]; then
   step "skipped: $(wc -l <"$COGNATE_SKIPS")"

@@ -307,7 +307,7 @@ impl WorkerApi for WorkerService {
         done.map_err(ApiError::from)?;
         if m.leaving {
             tracing::info!(worker = %by.worker, "a worker leaves");
-            let left = coordinator.worker_leaves(&by.worker).await;
+            let left = coordinator.worker_leaves(&by).await;
             left.map_err(ApiError::from)?;
         }
         Ok(Response::new(v1::GiveBackResponse {}))

@@ -125,6 +125,8 @@ pub struct Coordinator {
     unattended: Notify,
     /// What workers said last, and when that was written.
     seen: Mutex<HashMap<WorkerId, (WorkerSeen, i64)>>,
+    /// The session of a worker that left last.
+    left: Mutex<HashMap<WorkerId, String>>,
     systems: Recent<Digest, System>,
     stages: Recent<Digest, Stage>,
     /// What the ends of a stage's paths are held against; none where that cannot be done.
@@ -162,6 +164,7 @@ impl Coordinator {
             drives: Mutex::default(),
             unattended: Notify::new(),
             seen: Mutex::default(),
+            left: Mutex::default(),
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),
             end_checks: Recent::new(KEPT),

@@ -467,6 +467,40 @@ async fn a_report_of_other_paths_is_refused() {
     assert_eq!(stale, crate::ledger::rows::Completion::Stale);
 }
 
+/// Its question may be under way while it leaves: that is no sign of life.
+#[tokio::test]
+async fn a_worker_that_left_is_gone_though_it_is_still_asking() {
+    let mut cluster = cluster(4, 3);
+    cluster.start_coordinator();
+    let coordinator = Arc::clone(cluster.coordinator(0));
+    let by = Speaker {
+        worker: crate::ledger::conformance::worker("w"),
+        session: "life".into(),
+    };
+    let pull = |request: &str, slots| Pull {
+        worker: crate::ledger::conformance::seen("w", 1),
+        request: RequestId::new(request).unwrap(),
+        slots,
+        wait: Duration::from_secs(3),
+    };
+    let asks = {
+        let (coordinator, pull) = (Arc::clone(&coordinator), pull("life.1", 1));
+        tokio::spawn(async move { coordinator.pull(pull).await })
+    };
+    while coordinator.workers(9).await.unwrap().is_empty() {
+        tokio::task::yield_now().await;
+    }
+    let is_leaving = async || coordinator.workers(9).await.unwrap()[0].says.draining;
+    coordinator.worker_leaves(&by).await.unwrap();
+    assert!(is_leaving().await);
+    assert!(asks.await.unwrap().unwrap().is_empty());
+    assert!(is_leaving().await);
+    let late = coordinator.pull(pull("life.2", 1)).await.unwrap();
+    assert!(late.is_empty() && is_leaving().await);
+    coordinator.pull(pull("another.1", 0)).await.unwrap();
+    assert!(!is_leaving().await, "it is back");
+}
+
 /// The shell: real clock, its own tasks, two workers that poll.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_running_coordinator_needs_nobody_to_drive_it() {

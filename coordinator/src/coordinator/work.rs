@@ -23,6 +23,8 @@ const SEEN_MS: i64 = 5000;
 /// While a worker waits, the ledger is asked again after this time: another coordinator may have
 /// opened a stage.
 const POLL: Duration = Duration::from_secs(1);
+/// Workers of which it is kept what they said last, and of which it is kept that they left.
+const MOST_KEPT: usize = 100_000;
 
 /// A worker asks for chunks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,8 +56,8 @@ impl Coordinator {
     /// Leases chunks to a worker; waits for some, if there are none. A worker that wants none is
     /// only written down.
     pub async fn pull(&self, pull: Pull) -> Result<Vec<Lease>, CoordinatorError> {
-        self.note(&pull.worker).await?;
-        if pull.slots == 0 || pull.worker.draining {
+        let is_here = self.note_pull(&pull).await?;
+        if !is_here || pull.slots == 0 || pull.worker.draining {
             return Ok(Vec::new());
         }
         let deadline = Instant::now() + pull.wait;
@@ -69,7 +71,9 @@ impl Coordinator {
         }
         loop {
             // Whoever waits here is here: others may be waiting for its word on a chunk.
-            self.note(&pull.worker).await?;
+            if !self.note_pull(&pull).await? {
+                return Ok(Vec::new());
+            }
             if self.health.is_troubled() {
                 // What is leased now could be neither fetched nor kept.
                 if Instant::now() >= deadline {
@@ -142,6 +146,32 @@ impl Coordinator {
         losses.longest_ms(Instant::now(), workers, percent, longest_ms)
     }
 
+    /// Remembers that the worker of a pull was here; `false` where its session has left since it asked.
+    async fn note_pull(&self, pull: &Pull) -> Result<bool, CoordinatorError> {
+        let by = Speaker {
+            worker: pull.worker.worker.clone(),
+            session: pull.request.session().trim_end_matches('.').to_owned(),
+        };
+        if self.has_left(&by) {
+            return Ok(false);
+        }
+        self.note(&pull.worker).await?;
+        if self.has_left(&by) {
+            // In this moment: its last word is that it leaves.
+            self.worker_leaves(&by).await?;
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    fn has_left(&self, by: &Speaker) -> bool {
+        let left = self
+            .left
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        left.get(&by.worker) == Some(&by.session)
+    }
+
     /// Remembers that a worker was here; not every time.
     async fn note(&self, says: &WorkerSeen) -> Result<(), CoordinatorError> {
         let now = self.ledger.now().await?.0;
@@ -154,7 +184,7 @@ impl Coordinator {
                 Some((said, when)) if said == says && now - when < SEEN_MS => return Ok(()),
                 _ => seen.insert(says.worker.clone(), (says.clone(), now)),
             };
-            if seen.len() > 100_000 {
+            if seen.len() > MOST_KEPT {
                 seen.retain(|_, (_, when)| now - *when < SEEN_MS);
             }
         }
@@ -176,14 +206,24 @@ impl Coordinator {
         }
     }
 
-    /// A worker says that it leaves.
-    pub async fn worker_leaves(&self, worker: &WorkerId) -> Result<(), CoordinatorError> {
+    /// A worker says that it leaves. What it asked before may still wait, and says nothing any more.
+    pub async fn worker_leaves(&self, by: &Speaker) -> Result<(), CoordinatorError> {
+        {
+            let mut left = self
+                .left
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            if left.len() >= MOST_KEPT {
+                left.clear();
+            }
+            left.insert(by.worker.clone(), by.session.clone());
+        }
         let said = {
             let mut seen = self
                 .seen
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            seen.remove(worker)
+            seen.remove(&by.worker)
         };
         if let Some((mut says, _)) = said {
             says.draining = true;
