@@ -24,7 +24,7 @@ use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions};
 use prost::Message;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::io::{BufWriter, Read};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -491,15 +491,34 @@ async fn off_thread<T: Send + 'static>(long: bool, work: impl FnOnce() -> T + Se
 /// The object of a record, compressed as it is written: its plain bytes are never all in memory.
 pub fn packed_record(kind: &RecordKind, value: &impl Serialize) -> Vec<u8> {
     const MEMORY: &str = "memory takes every byte";
-    let plain = postcard::experimental::serialized_size(value).expect(MEMORY) as u64;
-    let mut bytes = kind.0.to_vec();
-    bytes.extend_from_slice(&plain.to_le_bytes());
-    let mut encoder = zstd::stream::write::Encoder::new(bytes, LEVEL).expect(MEMORY);
-    encoder.set_pledged_src_size(Some(plain)).expect(MEMORY);
-    let pieces = BufWriter::with_capacity(PIECE, encoder);
+    let mut head = kind.0.to_vec();
+    head.resize(RECORD_HEAD, 0);
+    let encoder = zstd::stream::write::Encoder::new(head, LEVEL).expect(MEMORY);
+    let pieces = BufWriter::with_capacity(PIECE, Counted { encoder, plain: 0 });
     let pieces = postcard::to_io(value, pieces).expect(MEMORY);
-    let encoder = pieces.into_inner().map_err(|error| error.into_error());
-    encoder.and_then(|e| e.finish()).expect(MEMORY)
+    let written = pieces.into_inner().map_err(|error| error.into_error());
+    let Counted { encoder, plain } = written.expect(MEMORY);
+    let mut bytes = encoder.finish().expect(MEMORY);
+    bytes[kind.0.len()..RECORD_HEAD].copy_from_slice(&plain.to_le_bytes());
+    bytes
+}
+
+/// Compresses, and counts what was written.
+struct Counted {
+    encoder: zstd::stream::write::Encoder<'static, Vec<u8>>,
+    plain: u64,
+}
+
+impl Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.encoder.write(bytes)?;
+        self.plain += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.encoder.flush()
+    }
 }
 
 /// The plain bytes of a record of this kind.
