@@ -29,7 +29,12 @@ use std::io::Write;
 /// Writes to standard output. A reader that has gone away (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), ClientError> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    unless_gone(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// What came of writing to standard output, where a reader that has gone away is no error.
+fn unless_gone(written: std::io::Result<()>) -> Result<(), ClientError> {
+    match written {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(ClientError::File {
             action: "cannot write",
             path: "standard output".into(),

@@ -5,6 +5,7 @@ use crate::error::ClientError;
 use crate::mechanism::summary::Summary;
 use crate::mechanism::target_answer::TargetAnswer;
 use crate::output::files::Written;
+use crate::output::unless_gone;
 use std::io::{BufWriter, Stdout, Write};
 
 /// What is known when all targets are answered.
@@ -54,16 +55,5 @@ impl Sink {
             Self::Standard(mut out) => unless_gone(out.flush()),
             Self::File(file) => file.finish(),
         }
-    }
-}
-
-fn unless_gone(written: std::io::Result<()>) -> Result<(), ClientError> {
-    match written {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(ClientError::File {
-            action: "cannot write",
-            path: "standard output".into(),
-            source: e,
-        }),
-        _ => Ok(()),
     }
 }
