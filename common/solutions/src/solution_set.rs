@@ -287,7 +287,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Whether ends coincide depends a little on which others are looked at with them. What counts as regular is looked
-    /// at by itself, as [`Self::merge`] does, until no two are at one point.
+    /// at by itself until no two are at one point.
     fn fail_what_coincides(&mut self) {
         loop {
             let finite = |place: usize| self.decisions[place].verdict == Verdict::Finite;
@@ -382,16 +382,24 @@ impl<'a> Draft<'a> {
         let mut undecided: Vec<Solution> = Vec::new();
         let mut broken = Vec::new();
         for verdict in [Verdict::Finite, Verdict::Singular, Verdict::Undecided] {
-            let groups = coincidences(
-                self.results,
-                &self.shape,
-                self.tolerances,
-                self.seed,
-                |place| {
-                    let declared = self.on_declared_sets[place] && verdict == Verdict::Undecided;
-                    self.decisions[place].verdict == verdict && !declared
-                },
-            );
+            let chosen = |place: usize| {
+                let declared = self.on_declared_sets[place] && verdict == Verdict::Undecided;
+                self.decisions[place].verdict == verdict && !declared
+            };
+            let groups = match verdict {
+                // No two are at one point: see `fail_what_coincides`.
+                Verdict::Finite => (0..self.results.len())
+                    .filter(|place| chosen(*place))
+                    .map(|place| vec![place])
+                    .collect(),
+                _ => coincidences(
+                    self.results,
+                    &self.shape,
+                    self.tolerances,
+                    self.seed,
+                    chosen,
+                ),
+            };
             for members in groups {
                 let solution = self.solution(&members, verdict);
                 if !broken_cycles(self.results, &members).is_empty() {

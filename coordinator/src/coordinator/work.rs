@@ -150,7 +150,7 @@ impl Coordinator {
     async fn note_pull(&self, pull: &Pull) -> Result<bool, CoordinatorError> {
         let by = Speaker {
             worker: pull.worker.worker.clone(),
-            session: pull.request.session().trim_end_matches('.').to_owned(),
+            session: pull.request.speaker_session().to_owned(),
         };
         if self.has_left(&by) {
             return Ok(false);

@@ -112,6 +112,11 @@ impl RequestId {
         let text = self.as_str();
         text.rfind('.').map_or(text, |dot| &text[..=dot])
     }
+
+    /// The session as a [`Speaker`] names it, without the dot.
+    pub fn speaker_session(&self) -> &str {
+        self.session().trim_end_matches('.')
+    }
 }
 
 /// Who speaks: a worker, in one life of its process.

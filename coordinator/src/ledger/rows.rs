@@ -462,8 +462,8 @@ impl Standing {
         let Self::Held { worker, request } = self else {
             return false;
         };
-        let session = request.as_ref().map(RequestId::session);
-        let same = session.is_none_or(|session| session.trim_end_matches('.') == by.session);
+        let session = request.as_ref().map(RequestId::speaker_session);
+        let same = session.is_none_or(|session| session == by.session);
         *worker == by.worker && same
     }
 }

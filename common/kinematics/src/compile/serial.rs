@@ -240,7 +240,7 @@ impl Formulation for SixRevolute {
         let (arm, pose) = self.arm(target)?;
         // R1 A1 ... A5 R6 is the pose without base, first offset, last link and tool.
         let first = Pose::shift(0.0, 0.0, arm.joints[0].d);
-        let last = link(&arm.joints[5]).then(&arm.tool);
+        let last = common_normal(&arm.joints[5]).then(&arm.tool);
         let inner = arm
             .base
             .then(&first)
@@ -379,7 +379,7 @@ pub fn is_position(parameters: &[Complex64], point: &[Complex64]) -> bool {
 }
 
 /// The common normal of a row: Tx(a) Rx(alpha).
-fn link(joint: &ChainJoint) -> Pose {
+fn common_normal(joint: &ChainJoint) -> Pose {
     let [c, s] = joint.alpha.direction.map(Complex64::from);
     Pose::shift(joint.a, 0.0, 0.0).then(&Pose::about_x(c, s))
 }

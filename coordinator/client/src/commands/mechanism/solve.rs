@@ -10,10 +10,10 @@ use crate::mechanism::summary::Summary;
 use crate::output::mechanisms::listing::{Finished, Listing, Sink};
 use crate::output::mechanisms::table::Table;
 use crate::output::mechanisms::{View, csv, folder, json};
-use crate::output::text::{Look, count};
+use crate::output::progress::{Progress, Standing};
+use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
 use cognate_kinematics::mechanism::targets;
-use std::io::IsTerminal;
 use std::time::Instant;
 
 /// `cognate mechanism inverse`.
@@ -134,7 +134,10 @@ fn respond(
         targets => targets,
     };
     let mut summary = Summary::of(solver.preparation());
-    let progress = std::io::stderr().is_terminal() && targets.len() > ROUND;
+    let mut progress = match targets.len() > ROUND {
+        true => Progress::new(true, start),
+        false => Progress::silent(),
+    };
     for round in targets.chunks(ROUND) {
         for answer in solver.solve(round).map_err(|e| described(&e))? {
             for listing in &mut listings {
@@ -142,14 +145,16 @@ fn respond(
             }
             summary.note(&answer);
         }
-        if progress {
-            let all = count(targets.len() as u64);
-            eprint!("\r  {} of {all} targets", count(summary.targets));
-        }
+        let standing = Standing {
+            phase: "solving".into(),
+            done: summary.targets,
+            total: targets.len() as u64,
+            failed: 0,
+            unit: "target",
+        };
+        progress.show(&standing, Instant::now());
     }
-    if progress {
-        eprintln!();
-    }
+    progress.finish();
     if a.format != MechanismFormat::Json {
         for warning in &summary.warnings {
             eprintln!("warning: {warning}");

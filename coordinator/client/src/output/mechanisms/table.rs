@@ -19,7 +19,7 @@ const MOST_ROWS: usize = 100;
 pub struct Table<'a> {
     view: View<'a>,
     look: Look,
-    /// The counts of targets in the order of columns; of more than [`MOST_ROWS`] targets none is kept.
+    /// The counts of the first targets in the order of columns: one more than [`MOST_ROWS`] at most.
     rows: Vec<Vec<u64>>,
     /// How many targets have these counts, and which of them came first.
     alike: BTreeMap<Vec<u64>, (u64, u64)>,
