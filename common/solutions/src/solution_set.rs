@@ -747,6 +747,11 @@ mod tests {
             let set = set_of(&results, &complete());
             assert_eq!(set.paths.finite + set.paths.failed, 5);
             assert_eq!(set.counts.nonsingular, set.paths.finite);
+            let failed = |place: usize| set.failed.iter().any(|f| f.path == place as u64);
+            let shape = PointShape::of(&system());
+            let kept = |place: usize| !failed(place);
+            let points = coincidences(&results, &shape, &Tolerances::default(), 42, kept);
+            assert!(points.iter().all(|members| members.len() == 1));
             met += set.paths.failed;
         }
         assert!((200..1800).contains(&met), "{met}");
