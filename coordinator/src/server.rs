@@ -80,6 +80,10 @@ pub struct RunningServer {
     /// Address of the page for browsers, where there is one.
     pub page: Option<String>,
     context: Arc<Context>,
+    routes: Routes,
+    security: Security,
+    admission: Admission,
+    connections: Connections,
     memory: CancellationToken,
     tasks: JoinSet<()>,
     database: Option<Arc<SqlLedger>>,
@@ -98,9 +102,14 @@ pub struct Server;
 impl Server {
     /// Starts one as configured: opens the ledger and the store, binds all listeners.
     pub async fn start(config: Config) -> Result<RunningServer, ServerError> {
-        if config.listen.is_empty() {
-            return Err(ListenError::NoAddress.into());
+        match config.listen.is_empty() {
+            true => Err(ListenError::NoAddress.into()),
+            false => Self::start_in_process(config).await,
         }
+    }
+
+    /// The same, where calls may come from within the process alone and no address is named.
+    pub async fn start_in_process(config: Config) -> Result<RunningServer, ServerError> {
         raise_open_files();
         // Listeners first: a caller that is refused here has touched nothing.
         let mut listeners = Vec::new();
@@ -153,27 +162,18 @@ impl Server {
         };
         let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
             .expect("a UUID is a name");
-        let memory = config.shared_memory.and_then(|least_free| {
-            let opened = SharedMemoryListener::open(least_free);
-            let refused = |error| tracing::info!(%error, "no shared memory; workers use gRPC");
-            opened.map_err(refused).ok()
-        });
         let measures = Arc::new(StorageMeasures::default());
         if let Some(database) = &database {
             database.measure(Arc::clone(&measures));
         }
         let store = store.measured(Arc::clone(&measures));
-        let mut running = Self::serve(
-            listeners,
-            page,
-            memory,
-            security,
-            ledger,
-            store,
-            who,
-            config.rules,
-        )
-        .await;
+        let mut running = Self::serve(page, security, ledger, store, who, config.rules).await;
+        for listener in listeners {
+            running.listen(listener);
+        }
+        if let Some(least_free) = config.shared_memory {
+            running.offer_shared_memory(least_free);
+        }
         running.database = database;
         if let Some(listener) = metrics {
             let monitor = Monitor::new(
@@ -187,11 +187,9 @@ impl Server {
         Ok(running)
     }
 
-    /// Starts one on parts that are there already, behind these listeners.
-    pub async fn serve(
-        listeners: Vec<Listener>,
+    /// Starts one on parts that are there already; nobody can call it from without yet.
+    async fn serve(
         page: Option<PageListener>,
-        memory: Option<SharedMemoryListener>,
         security: Security,
         ledger: Arc<dyn Ledger>,
         store: Store,
@@ -206,51 +204,30 @@ impl Server {
         let admission = Admission::new(rules.calls);
         let connections = Connections::new(rules.connections);
         let stopping = CancellationToken::new();
-        let named = memory.as_ref().map(SharedMemoryListener::named);
-        let context = Arc::new(Context::new(
-            coordinator.clone(),
-            rules,
-            stopping.clone(),
-            named.unwrap_or_default(),
-            accounting.clone(),
-        ));
+        let context = Context::new(coordinator.clone(), rules, stopping.clone(), accounting);
+        let context = Arc::new(context);
         let (routes, health) = routes(&context).await;
         let mut tasks = JoinSet::new();
-        let addresses: Vec<_> = listeners.iter().map(Listener::address).collect();
-        for listener in listeners {
-            tasks.spawn(listen(
-                listener,
-                security.clone(),
-                admission.clone(),
-                connections.clone(),
-                routes.clone(),
-                context.clone(),
-            ));
-        }
         let page_url = page.as_ref().map(PageListener::url);
         if let Some(page) = page {
             tasks.spawn(page.serve(
-                security,
+                security.clone(),
                 admission.clone(),
                 routes.clone(),
                 stopping.clone(),
             ));
         }
-        let memory_ends = stopping.child_token();
-        if let Some(memory) = memory {
-            let services = Before(accounting).layer(Before(admission).layer(routes));
-            tasks.spawn(memory.serve(services, memory_ends.clone()));
-        }
         tasks.spawn(report_health(health, Arc::clone(&context)));
-        tasks.spawn(coordinator.run(stopping));
-        for address in &addresses {
-            tracing::info!(%address, "listening");
-        }
+        tasks.spawn(coordinator.run(stopping.clone()));
         RunningServer {
-            addresses,
+            addresses: Vec::new(),
             page: page_url,
             context,
-            memory: memory_ends,
+            routes,
+            security,
+            admission,
+            connections,
+            memory: stopping.child_token(),
             tasks,
             database: None,
         }
@@ -261,6 +238,52 @@ impl RunningServer {
     /// The coordinator behind the listeners.
     pub fn coordinator(&self) -> &Arc<Coordinator> {
         &self.context.coordinator
+    }
+
+    /// The services, for calls from within the process.
+    pub fn services(&self) -> Routes {
+        self.routes.clone()
+    }
+
+    /// Takes calls at this address from now on, too.
+    pub async fn listen_at(&mut self, address: &ListenAddress) -> Result<(), ListenError> {
+        let listener = Listener::open(address, &self.security, false).await?;
+        self.listen(listener);
+        Ok(())
+    }
+
+    /// Takes calls from this listener, too.
+    fn listen(&mut self, listener: Listener) {
+        let address = listener.address();
+        tracing::info!(%address, "listening");
+        self.addresses.push(address);
+        self.tasks.spawn(listen(
+            listener,
+            self.security.clone(),
+            self.admission.clone(),
+            self.connections.clone(),
+            with_reflection(self.routes.clone()),
+            self.context.clone(),
+        ));
+    }
+
+    /// Offers shared memory to workers from now on, unless less than `least_free` bytes of /dev/shm are free or it
+    /// was offered before.
+    pub fn offer_shared_memory(&mut self, least_free: u64) {
+        let memory = match SharedMemoryListener::open(least_free) {
+            Ok(memory) => memory,
+            Err(error) => {
+                tracing::info!(%error, "no shared memory; workers use gRPC");
+                return;
+            }
+        };
+        if self.context.shared_memory.set(memory.named()).is_ok() {
+            let accounting = Before(self.context.accounting.clone());
+            let services =
+                accounting.layer(Before(self.admission.clone()).layer(self.routes.clone()));
+            self.tasks
+                .spawn(memory.serve(services, self.memory.clone()));
+        }
     }
 
     /// Cancelled when the server begins to stop.
@@ -353,7 +376,7 @@ fn make_folder(path: &Path) -> Result<(), ServerError> {
     }
 }
 
-/// All services: ours, health and reflection.
+/// Our services and their health.
 async fn routes(context: &Arc<Context>) -> (Routes, HealthReporter) {
     let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
     let clients = ClientApiServer::new(ClientService::new(context.clone()))
@@ -363,6 +386,14 @@ async fn routes(context: &Arc<Context>) -> (Routes, HealthReporter) {
         .max_decoding_message_size(limit)
         .max_encoding_message_size(limit);
     let (health, health_service) = tonic_health::server::health_reporter();
+    let routes = Routes::new(clients)
+        .add_service(workers)
+        .add_service(health_service);
+    (routes, health)
+}
+
+/// The services and what they are, for programs that ask.
+fn with_reflection(routes: Routes) -> Routes {
     let reflection = || {
         tonic_reflection::server::Builder::configure()
             .register_encoded_file_descriptor_set(DESCRIPTORS)
@@ -371,12 +402,9 @@ async fn routes(context: &Arc<Context>) -> (Routes, HealthReporter) {
     // Clients of other languages ask by the older name of the service or by the newer.
     let (newer, older) = (reflection().build_v1(), reflection().build_v1alpha());
     let sound = "the descriptors were made by the compiler of the messages";
-    let routes = Routes::new(clients)
-        .add_service(workers)
-        .add_service(health_service)
+    routes
         .add_service(newer.expect(sound))
-        .add_service(older.expect(sound));
-    (routes, health)
+        .add_service(older.expect(sound))
 }
 
 /// Says whether each service can do what it is for; the process lives whatever they say, which is the

@@ -34,7 +34,11 @@ async fn house() -> House {
 async fn worker(house: &House, name: &str, choice: TransportChoice) -> FakeWorker {
     let worker = house.worker_api_by(name, choice).await;
     let wanted = choice == TransportChoice::SharedMemory;
-    assert_eq!(worker.route.by_shared_memory(), wanted, "{choice:?}");
+    assert_eq!(
+        worker.route.transport() == "shared-memory",
+        wanted,
+        "{choice:?}"
+    );
     worker
 }
 
@@ -230,7 +234,7 @@ async fn messages_of_any_size_go_through() {
         let answer = worker.api.report(report).await.unwrap().into_inner();
         assert_eq!(answer.verdicts[0].verdict(), Verdict::Invalid, "{bytes}");
         assert!(
-            worker.route.by_shared_memory(),
+            worker.route.transport() == "shared-memory",
             "a call declined is no break"
         );
     }
@@ -259,7 +263,7 @@ async fn many_calls_at_once_are_all_answered() {
         stages.push(call.await.unwrap());
     }
     assert!(stages.iter().all(|stage| *stage == stages[0]));
-    assert!(one.route.by_shared_memory() && two.route.by_shared_memory());
+    assert!(one.route.transport() == "shared-memory" && two.route.transport() == "shared-memory");
     house.server.shutdown().await;
 }
 
@@ -284,7 +288,7 @@ async fn calls_that_take_the_places_of_called_off_ones_are_answered() {
         for call in next {
             call.await.unwrap().unwrap();
         }
-        assert!(worker.route.by_shared_memory());
+        assert!(worker.route.transport() == "shared-memory");
     }
     house.server.shutdown().await;
 }
@@ -296,7 +300,7 @@ async fn where_shared_memory_ends_calls_go_on_by_grpc() {
     // The listener in shared memory closes; the others stay open.
     house.server.close_shared_memory();
     let begin = Instant::now();
-    while worker.route.by_shared_memory() {
+    while worker.route.transport() == "shared-memory" {
         assert!(begin.elapsed() < WOKEN, "it is noticed");
         tokio::time::sleep(Duration::from_millis(20)).await;
     }

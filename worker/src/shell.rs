@@ -11,6 +11,7 @@ use crate::retry::{Backoff, Moment};
 use crate::session::{Command, Ending, Grant, Input, Limits, Session};
 use crate::transport::connect::UnusableAddress;
 use crate::transport::grpc::Grpc;
+use crate::transport::route::Route;
 use crate::transport::{Announcement, Lease, LeaseId, Receipt, Transport, TransportError};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -18,6 +19,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 use tokio::task::{AbortHandle, JoinSet};
 use tokio_util::sync::CancellationToken;
+use tonic::service::Routes;
 
 /// A chunk whose stage could not be fetched after so many attempts goes back: some 12 s.
 const MOST_FETCHES: u32 = 10;
@@ -46,17 +48,34 @@ pub enum WorkerError {
 ///
 /// `shutdown` makes it stop pulling, give back what is unfinished and return.
 pub async fn run(config: Config, shutdown: CancellationToken) -> Result<Ending, WorkerError> {
+    let announcement = announcement(&config);
+    announcement.machine.check()?;
+    let transport = Arc::new(Grpc::new(&config, &announcement)?);
+    run_over(config, announcement, transport, shutdown).await
+}
+
+/// Works for a coordinator of this process, until `shutdown` makes it give back what is unfinished and return.
+pub async fn run_in_process(
+    config: Config,
+    services: Routes,
+    shutdown: CancellationToken,
+) -> Result<Ending, WorkerError> {
+    let announcement = announcement(&config);
+    let routes = vec![Route::in_process(services)];
+    let transport = Arc::new(Grpc::over(routes, config.message_bytes, &announcement));
+    run_over(config, announcement, transport, shutdown).await
+}
+
+/// What this process says of itself.
+fn announcement(config: &Config) -> Announcement {
     let machine = Machine::detect();
-    machine.check()?;
-    let announcement = Announcement {
+    Announcement {
         worker: format!("{}-{}", machine.host, std::process::id()),
         session: uuid::Uuid::new_v4().to_string(),
         machine,
         threads: config.threads,
         lane_width: config.lane_width.map_or(16, |width| width.lanes()),
-    };
-    let transport = Arc::new(Grpc::new(&config, &announcement)?);
-    run_over(config, announcement, transport, shutdown).await
+    }
 }
 
 /// [`run`] with a transport that is there already.
@@ -100,7 +119,7 @@ fn limits(config: &Config) -> Limits {
         unacknowledged: config.unacknowledged,
         // One of several coordinators that stands still takes the call and says nothing.
         poll: match config.coordinators.len() {
-            1 => config.poll,
+            0 | 1 => config.poll,
             _ => config.poll.min(POLL_OF_SEVERAL),
         },
         heartbeat: HEARTBEAT,

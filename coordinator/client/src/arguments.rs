@@ -250,9 +250,9 @@ pub struct Solve {
     /// The file, its format, and what of the answer is known.
     #[command(flatten)]
     pub problem: ProblemArguments,
-    /// Local worker processes
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256))]
-    pub workers: u32,
+    /// Local worker processes [default: none for a tenth of a second, then 2]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub workers: Option<u32>,
     /// Threads of each worker [default: cores / workers]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,

@@ -65,9 +65,9 @@ pub struct OwnOrRunning {
     /// Token and certificates.
     #[command(flatten)]
     pub credentials: CredentialFiles,
-    /// Local worker processes
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
-    pub workers: u32,
+    /// Local worker processes [default: none for a tenth of a second, then 2]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), conflicts_with = "coordinator", help_heading = "Service")]
+    pub workers: Option<u32>,
     /// Threads of each worker [default: cores / workers]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), conflicts_with = "coordinator", help_heading = "Service")]
     pub threads: Option<u32>,

@@ -5,11 +5,12 @@ use cognate_protocol::limits::{MESSAGE_BYTES, PIECE_BYTES};
 use cognate_protocol::v1::client_api_client::ClientApiClient;
 use cognate_protocol::{from_proto, v1};
 use cognate_solutions::solution::Solution;
+use cognate_worker::config::TransportChoice;
 use cognate_worker::transport::address::Address;
-use cognate_worker::transport::connect::{Bearer, CredentialFiles, Credentials, Role, innermost};
+use cognate_worker::transport::connect::{CredentialFiles, Credentials, Role, innermost};
+use cognate_worker::transport::route::Route;
 use std::time::Duration;
-use tonic::service::interceptor::InterceptedService;
-use tonic::transport::Channel;
+use tonic::service::Routes;
 use tonic::{Code, Status};
 use tonic_health::pb::HealthCheckRequest;
 use tonic_health::pb::health_client::HealthClient;
@@ -17,20 +18,25 @@ use tonic_health::pb::health_client::HealthClient;
 /// How long a coordinator may take to accept a connection.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Where calls go, with what they show.
+/// Where calls go.
 #[derive(Clone, Debug)]
-pub struct Target {
-    /// Addresses, with commas between.
-    pub addresses: String,
-    /// Token and certificates.
-    pub credentials: Credentials,
+pub enum Target {
+    /// To a coordinator elsewhere.
+    Elsewhere {
+        /// Its addresses, with commas between.
+        addresses: String,
+        /// What is shown to it: token and certificates.
+        credentials: Credentials,
+    },
+    /// To the coordinator of this process.
+    Here(Routes),
 }
 
 impl Target {
     /// These addresses, with what these files hold.
     pub fn read(addresses: &str, files: &CredentialFiles) -> Result<Self, ClientError> {
         let read = Credentials::read(files, Role::Client);
-        Ok(Self {
+        Ok(Self::Elsewhere {
             addresses: addresses.to_owned(),
             credentials: read.map_err(|error| ClientError::Input {
                 origin: error.file,
@@ -39,11 +45,11 @@ impl Target {
         })
     }
 
-    /// An address that asks for nothing.
-    pub fn open_to_all(address: &str) -> Self {
-        Self {
-            addresses: address.to_owned(),
-            credentials: Credentials::default(),
+    /// As people know it.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Elsewhere { addresses, .. } => addresses,
+            Self::Here(_) => "this process",
         }
     }
 }
@@ -51,21 +57,41 @@ impl Target {
 /// A connection to one coordinator.
 #[derive(Clone, Debug)]
 pub struct Connection {
-    client: ClientApiClient<InterceptedService<Channel, Bearer>>,
+    client: ClientApiClient<Route>,
     address: String,
 }
 
 impl Connection {
     /// Connects to the first of these addresses that answers, or says that nobody does.
     pub async fn open(target: &Target) -> Result<Self, ClientError> {
+        let (addresses, credentials) = match target {
+            Target::Here(services) => {
+                let route = Route::in_process(services.clone());
+                return Ok(Self::by(route, target.name()));
+            }
+            Target::Elsewhere {
+                addresses,
+                credentials,
+            } => (addresses, credentials),
+        };
         let mut last = None;
-        for address in target.addresses.split(',') {
-            match Self::open_one(address.trim(), &target.credentials).await {
+        for address in addresses.split(',') {
+            match Self::open_one(address.trim(), credentials).await {
                 Err(error @ ClientError::Unreachable { .. }) => last = Some(error),
                 done => return done,
             }
         }
         last.map_or_else(|| unreachable!("a split text has a first part"), Err)
+    }
+
+    fn by(route: Route, address: &str) -> Self {
+        let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
+        Self {
+            client: ClientApiClient::new(route)
+                .max_decoding_message_size(limit)
+                .max_encoding_message_size(limit),
+            address: address.to_owned(),
+        }
     }
 
     async fn open_one(address: &str, credentials: &Credentials) -> Result<Self, ClientError> {
@@ -75,21 +101,13 @@ impl Connection {
         };
         let parsed: Address = address.parse().map_err(|e| wrong(&e))?;
         let channel = credentials.channel(&parsed).map_err(|e| wrong(&e))?;
+        let route = Route::new(channel, credentials.bearer(), parsed, TransportChoice::Grpc);
         // Asked at once whether anybody is there: later errors are about the call.
-        let mut health = HealthClient::new(channel.clone());
+        let mut health = HealthClient::new(route.clone());
         let answer = health.check(HealthCheckRequest::default());
         let reason = match tokio::time::timeout(CONNECT_TIMEOUT, answer).await {
             Ok(Err(status)) if std::error::Error::source(&status).is_some() => innermost(&status),
-            Ok(_) => {
-                let limit = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
-                let client = ClientApiClient::with_interceptor(channel, credentials.bearer());
-                return Ok(Self {
-                    client: client
-                        .max_decoding_message_size(limit)
-                        .max_encoding_message_size(limit),
-                    address: address.to_string(),
-                });
-            }
+            Ok(_) => return Ok(Self::by(route, address)),
             Err(_) => "no answer in time".into(),
         };
         Err(ClientError::Unreachable {

@@ -1,19 +1,32 @@
-//! Embedded: a coordinator in this process and workers beside it, for one problem.
+//! Embedded: a coordinator in this process for one problem, and what works for it.
 //!
-//! Everything lives in a folder of its own and ends with this value: workers are
-//! killed when it is dropped, and give up by themselves within seconds when the
-//! process that holds it is gone.
+//! Most problems are solved before a process could have been started. So a worker in this process begins, called
+//! without a socket; a problem that lasts gets worker processes, which take over from it. Everything that these need
+//! lives in a folder of its own and ends with this value: workers are killed when it is dropped, and give up by
+//! themselves within seconds when the process that holds it is gone.
 
+use super::connection::Target;
 use super::error::ClientError;
 use cognate_coordinator::chunks::leasing::Policy;
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress, Rules};
 use cognate_coordinator::server::{RunningServer, Server};
+use cognate_worker::transport::shared_memory::place::LEAST_FREE;
+use cognate_worker::{config, shell};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 use tempfile::TempDir;
 use tokio::process::{Child, Command};
+use tokio_util::sync::CancellationToken;
+
+/// Worker processes where no number is named.
+const WORKERS: u32 = 2;
+
+/// So long the worker in this process works alone; it is as fast as processes are, but what ends it ends all.
+const ALONE: Duration = Duration::from_millis(250);
+/// Afterwards it takes up nothing new, and has so long to finish what it holds.
+const FINISH: Duration = Duration::from_secs(20);
 
 /// A worker without its coordinator ends after so many seconds: the process that started it is gone.
 const ORPHAN_SECONDS: &str = "2";
@@ -24,8 +37,12 @@ const LOG_LINES: usize = 12;
 /// A coordinator and its workers.
 pub struct Embedded {
     server: RunningServer,
+    /// Stops the worker in this process.
+    alone: Option<CancellationToken>,
+    wanted: u32,
+    threads: u32,
     workers: Vec<Worker>,
-    folder: TempDir,
+    folder: Option<TempDir>,
 }
 
 /// One worker process, and where its log is.
@@ -40,24 +57,21 @@ const PREFIX: &str = "cognate-";
 const SWEPT_AFTER: Duration = Duration::from_secs(60);
 
 impl Embedded {
-    /// Starts a coordinator on a socket in a new folder, and workers of the same program.
-    pub async fn start(workers: u32, threads: Option<u32>) -> Result<Self, ClientError> {
+    /// Starts a coordinator, and so many worker processes of this program; where no number is named, they are
+    /// started by [`Self::tend`] once a worker in this process has worked for a while.
+    pub async fn start(workers: Option<u32>, threads: Option<u32>) -> Result<Self, ClientError> {
         Self::start_with_page(workers, threads, None).await
     }
 
     /// The same, with a page for browsers at this address.
     pub async fn start_with_page(
-        workers: u32,
+        workers: Option<u32>,
         threads: Option<u32>,
         page: Option<&str>,
     ) -> Result<Self, ClientError> {
-        sweep(&std::env::temp_dir());
-        let folder = tempfile::Builder::new()
-            .prefix(PREFIX)
-            .tempdir()
-            .map_err(|e| local("a temporary folder could not be made", &e))?;
         let config = Config {
-            listen: vec![ListenAddress::Unix(socket(folder.path()))],
+            listen: vec![],
+            shared_memory: None,
             page: page.map(str::to_owned),
             ledger: LedgerPlace::Memory,
             results: None,
@@ -71,35 +85,74 @@ impl Embedded {
             },
             ..Config::default()
         };
-        let server = Server::start(config)
+        let server = Server::start_in_process(config)
             .await
             .map_err(|e| local("the coordinator could not be started", &e))?;
-        let program = std::env::current_exe()
-            .map_err(|e| local("this program could not be found to start workers", &e))?;
-        let threads = threads.unwrap_or_else(|| {
-            let cores = std::thread::available_parallelism().map_or(1, |n| n.get() as u32);
-            (cores / workers).max(1)
-        });
+        let wanted = workers.unwrap_or(WORKERS);
         let mut embedded = Self {
             server,
+            alone: None,
+            wanted,
+            threads: threads.unwrap_or_else(|| (cores() / wanted).max(1)),
             workers: vec![],
-            folder,
+            folder: None,
         };
-        for number in 1..=workers {
-            let worker = embedded.worker(&program, number, threads)?;
-            embedded.workers.push(worker);
+        match workers {
+            Some(_) => embedded.start_workers().await?,
+            None => embedded.start_alone(),
         }
         Ok(embedded)
     }
 
-    fn worker(&self, program: &Path, number: u32, threads: u32) -> Result<Worker, ClientError> {
-        let log = self.folder.path().join(format!("worker-{number}.log"));
+    /// A worker in this process, with as many threads as the processes will have together.
+    fn start_alone(&mut self) {
+        let config = config::Config {
+            threads: self.wanted.saturating_mul(self.threads) as usize,
+            wall_time: Some(ALONE + FINISH),
+            wind_up: FINISH,
+            ..config::Config::new(vec![])
+        };
+        let stop = CancellationToken::new();
+        let work = shell::run_in_process(config, self.server.services(), stop.clone());
+        tokio::spawn(async {
+            if let Err(error) = work.await {
+                // The processes will say so where people see it.
+                tracing::error!(%error, "the worker in this process has ended");
+            }
+        });
+        self.alone = Some(stop);
+    }
+
+    /// Worker processes, on a socket in a new folder.
+    async fn start_workers(&mut self) -> Result<(), ClientError> {
+        sweep(&std::env::temp_dir());
+        let folder = tempfile::Builder::new()
+            .prefix(PREFIX)
+            .tempdir()
+            .map_err(|e| local("a temporary folder could not be made", &e))?;
+        let address = ListenAddress::Unix(socket(folder.path()));
+        let listens = self.server.listen_at(&address).await;
+        listens.map_err(|e| local("the coordinator could not be reached by workers", &e))?;
+        self.server.offer_shared_memory(LEAST_FREE);
+        let program = std::env::current_exe()
+            .map_err(|e| local("this program could not be found to start workers", &e))?;
+        for number in 1..=self.wanted {
+            let worker = self.worker(&program, folder.path(), number)?;
+            self.workers.push(worker);
+        }
+        self.folder = Some(folder);
+        Ok(())
+    }
+
+    fn worker(&self, program: &Path, folder: &Path, number: u32) -> Result<Worker, ClientError> {
+        let log = folder.join(format!("worker-{number}.log"));
         let failed = |e| local("a worker could not be started", &e);
         let file = std::fs::File::create(&log).map_err(failed)?;
+        let address = format!("unix:{}", socket(folder).display());
         let child = Command::new(program)
             .arg("worker")
-            .args(["--coordinator", &self.address()])
-            .args(["--threads", &threads.to_string()])
+            .args(["--coordinator", &address])
+            .args(["--threads", &self.threads.to_string()])
             .args(["--give-up-after", ORPHAN_SECONDS])
             .stdin(Stdio::null())
             .stdout(Stdio::null())
@@ -110,9 +163,9 @@ impl Embedded {
         Ok(Worker { child, log })
     }
 
-    /// Where the coordinator listens.
-    pub fn address(&self) -> String {
-        format!("unix:{}", socket(self.folder.path()).display())
+    /// Where calls go.
+    pub fn target(&self) -> Target {
+        Target::Here(self.server.services())
     }
 
     /// Address of the page for browsers, where one was asked for.
@@ -120,8 +173,19 @@ impl Embedded {
         self.server.page.as_deref()
     }
 
+    /// Has worker processes take over in time. Returns when nobody works any more, with the reason.
+    pub async fn tend(&mut self) -> ClientError {
+        if self.alone.is_some() {
+            tokio::time::sleep(ALONE).await;
+            if let Err(error) = self.start_workers().await {
+                return error;
+            }
+        }
+        self.abandoned().await
+    }
+
     /// Returns when no worker is left, with the end of the last one's log.
-    pub async fn abandoned(&mut self) -> ClientError {
+    async fn abandoned(&mut self) -> ClientError {
         let mut last = None;
         for worker in &mut self.workers {
             // A worker whose end cannot be seen counts as gone, too.
@@ -140,12 +204,19 @@ impl Embedded {
 
     /// Stops the workers, then the coordinator; the folder goes with it.
     pub async fn stop(mut self) {
+        if let Some(alone) = self.alone.take() {
+            alone.cancel();
+        }
         for worker in &mut self.workers {
             // Paths are pure and the job is over: there is nothing to wait for.
             let _ = worker.child.kill().await;
         }
         self.server.shutdown().await;
     }
+}
+
+fn cores() -> u32 {
+    std::thread::available_parallelism().map_or(1, |n| n.get() as u32)
 }
 
 /// Removes what solves left that were killed: folders of ours with a socket that nobody answers on.

@@ -28,7 +28,7 @@ use held_stream::HeldStreams;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::io::{self, BufWriter, Write};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tokio_util::sync::CancellationToken;
@@ -46,8 +46,8 @@ pub struct Context {
     pub rules: Rules,
     /// Cancelled when the service is to stop: waiting calls return at once.
     pub stopping: CancellationToken,
-    /// The listener in shared memory, where there is one; else the empty message.
-    pub shared_memory: v1::SharedMemory,
+    /// The listener in shared memory, once there is one.
+    pub shared_memory: OnceLock<v1::SharedMemory>,
     /// Streams of results that are open.
     pub streams: HeldStreams,
     /// Who used how much, and where it is written who did what.
@@ -62,7 +62,6 @@ impl Context {
         coordinator: Arc<Coordinator>,
         rules: Rules,
         stopping: CancellationToken,
-        shared_memory: v1::SharedMemory,
         accounting: Accounting,
     ) -> Self {
         Self {
@@ -70,7 +69,7 @@ impl Context {
             streams: HeldStreams::new(rules.streams),
             rules,
             stopping,
-            shared_memory,
+            shared_memory: OnceLock::new(),
             accounting,
             refused: Mutex::default(),
         }

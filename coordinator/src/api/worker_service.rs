@@ -351,6 +351,7 @@ impl WorkerApi for WorkerService {
         &self,
         _: Request<v1::GetSharedMemoryRequest>,
     ) -> Result<Response<v1::SharedMemory>, Status> {
-        Ok(Response::new(self.context.shared_memory.clone()))
+        let named = self.context.shared_memory.get().cloned();
+        Ok(Response::new(named.unwrap_or_default()))
     }
 }

@@ -20,10 +20,12 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
-use tokio::time::{sleep, timeout};
+use tokio::time::{Instant, sleep, timeout};
 
-/// Clients that watch hear of a change at most this often.
+/// Clients that watch hear of a change at most this often ...
 const SHORTEST: Duration = Duration::from_millis(50);
+/// ... once they have watched for so many times as long: a small job's end is heard of at once.
+const WATCHED: u32 = 10;
 /// ... and at least this often: another coordinator may have changed something.
 const LONGEST: Duration = Duration::from_secs(1);
 
@@ -80,6 +82,7 @@ impl Coordinator {
         tokio::spawn(async move {
             let mut changes = coordinator.changes.of(job);
             let mut last: Option<JobProgress> = None;
+            let begin = Instant::now();
             loop {
                 changes.mark_unchanged();
                 let progress = coordinator.progress(job).await;
@@ -102,7 +105,7 @@ impl Coordinator {
                 }
                 tokio::select! {
                     () = sender.closed() => return,
-                    () = sleep(SHORTEST) => {}
+                    () = sleep(SHORTEST.min(begin.elapsed() / WATCHED)) => {}
                 }
                 tokio::select! {
                     () = sender.closed() => return,

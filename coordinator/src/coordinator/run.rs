@@ -24,10 +24,11 @@ const LOOK: Duration = Duration::from_secs(1);
 /// ... but not so often that asking takes more than one part in so many of the time, unless that would let a
 /// job wait that nobody drives (see [`pause_between_looks`]).
 const LOOK_SHARE: u32 = 20;
-/// A driven job that nobody wakes is looked at after this time all the same, and after [`PAUSE`] at the earliest.
+/// A driven job that nobody wakes is looked at after this time all the same.
 const LATEST_LOOK: Duration = Duration::from_secs(60);
-/// The least time between two steps of a job that waits.
-const PAUSE: Duration = Duration::from_millis(5);
+/// A job that waits is not looked at again before as much time has passed as the last look took, or this: chunks that
+/// end meanwhile are taken together, and looking takes at most half of the time.
+const LONGEST_PAUSE: Duration = Duration::from_millis(5);
 /// After a failure of ledger or store, a job is tried again after this time.
 const RETRY: Duration = Duration::from_secs(1);
 
@@ -302,6 +303,7 @@ impl Coordinator {
                 }
                 renewed = Instant::now();
             }
+            let begin = Instant::now();
             let Some(driven) = self.step(&mut drive, renewal, &mut renewed).await? else {
                 return Ok(());
             };
@@ -315,7 +317,7 @@ impl Coordinator {
                     return Ok(());
                 }
                 Driven::Waits => {
-                    sleep(PAUSE).await;
+                    pause_after(begin.elapsed()).await;
                     tokio::select! {
                         () = stop.cancelled() => {}
                         // Woken, or not: the ledger says what there is.
@@ -326,6 +328,14 @@ impl Coordinator {
         }
         // The next coordinator need not wait.
         drive.give_up(&tools).await
+    }
+}
+
+/// The pause after a look that `took` so long. The clock of sleeps has milliseconds: a shorter pause is none.
+async fn pause_after(took: Duration) {
+    let pause = took.min(LONGEST_PAUSE);
+    if pause.as_millis() > 0 {
+        sleep(pause).await;
     }
 }
 

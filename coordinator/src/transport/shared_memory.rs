@@ -30,7 +30,7 @@ use tonic::service::Routes;
 
 use tower::ServiceExt;
 
-/// Whether the service is to stop is looked at so often where nobody rings. Default 200 ms.
+/// Who waits for an answer, and whether the service is to stop, is looked at so often where nobody rings. Default 200 ms.
 const LOOK: Duration = Duration::from_millis(200);
 /// Where a worker has more calls open than it may have, the next is taken after this.
 const FULL: Duration = Duration::from_millis(1);
@@ -52,6 +52,8 @@ type Active = ActiveRequest<Ipc, [u8], (), [u8], ()>;
 pub struct SharedMemoryListener {
     server: Server<Ipc, [u8], (), [u8], ()>,
     listener: Listener<Ipc>,
+    /// Wakes `listener`.
+    waker: Arc<Notifier<Ipc>>,
     bell: Arc<Notifier<Ipc>>,
     node: Node<Ipc>,
     place: Arc<Place>,
@@ -82,10 +84,12 @@ impl SharedMemoryListener {
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create();
         let listener = requests.listener_builder().create();
+        let waker = requests.notifier_builder().create();
         let bell = responses.notifier_builder().create();
         Ok(Self {
             server: server.map_err(failed("no server"))?,
             listener: listener.map_err(failed("no listener"))?,
+            waker: Arc::new(waker.map_err(failed("no waker"))?),
             bell: Arc::new(bell.map_err(failed("no bell"))?),
             node,
             place: Arc::new(place),
@@ -105,6 +109,14 @@ impl SharedMemoryListener {
         stopping: CancellationToken,
     ) -> impl Future<Output = ()> + Send + 'static {
         let runtime = Handle::current();
+        // The thread that it wakes owns it.
+        let (stops, waker) = (stopping.clone(), Arc::downgrade(&self.waker));
+        runtime.spawn(async move {
+            stops.cancelled().await;
+            if let Some(Err(error)) = waker.upgrade().map(|waker| waker.notify()) {
+                tracing::debug!(?error, "it looks by itself within a fraction of a second");
+            }
+        });
         tokio::task::spawn_blocking(move || {
             let served = catch_unwind(AssertUnwindSafe(|| {
                 self.answer_until(&routes, &stopping, &runtime)
@@ -205,11 +217,12 @@ impl SharedMemoryListener {
         let Self {
             server,
             listener,
+            waker,
             bell,
             node,
             place,
         } = self;
-        drop((server, listener, bell));
+        drop((server, listener, waker, bell));
         let Some(place) = Arc::into_inner(place) else {
             // A call is still answered; the next coordinator sweeps.
             return;

@@ -1,4 +1,4 @@
-//! gRPC over TCP, a Unix socket or shared memory: the calls of a worker as messages.
+//! gRPC over TCP, a Unix socket, shared memory or within a process: the calls of a worker as messages.
 //!
 //! Connections are made when they are needed and again when they broke; where
 //! several coordinators are named, a call without an answer is made to the next.
@@ -47,7 +47,7 @@ pub struct Grpc {
 impl Grpc {
     /// Prepares the connections; none is made yet. Must be called within a tokio runtime.
     pub fn new(config: &Config, announcement: &Announcement) -> Result<Self, UnusableAddress> {
-        let routes = config
+        let routes: Result<Vec<_>, _> = config
             .coordinators
             .iter()
             .map(|address| {
@@ -60,8 +60,12 @@ impl Grpc {
                     config.transport,
                 ))
             })
-            .collect::<Result<Vec<_>, _>>()?;
-        let bytes = config.message_bytes;
+            .collect();
+        Ok(Self::over(routes?, config.message_bytes, announcement))
+    }
+
+    /// Calls by these routes, of which there is at least one; messages have at most so many `bytes`.
+    pub fn over(routes: Vec<Route>, bytes: usize, announcement: &Announcement) -> Self {
         let client = |route: &Route| {
             Client::new(route.clone())
                 .max_decoding_message_size(bytes)
@@ -70,7 +74,7 @@ impl Grpc {
         let clients: Vec<_> = routes.iter().map(client).collect();
         assert!(!clients.is_empty(), "a configuration names a coordinator");
         let machine = &announcement.machine;
-        Ok(Self {
+        Self {
             clients,
             routes,
             current: watch::Sender::new(0),
@@ -86,9 +90,9 @@ impl Grpc {
                 lane_width: u32::try_from(announcement.lane_width).unwrap_or(u32::MAX),
                 threads: u32::try_from(announcement.threads).unwrap_or(u32::MAX),
                 host: machine.host.clone(),
-                transport: "grpc".to_owned(),
+                transport: String::new(),
             },
-        })
+        }
     }
 
     fn identity(&self) -> Option<v1::WorkerIdentity> {
@@ -244,9 +248,7 @@ impl Transport for Grpc {
         let route = &self.routes[*self.current.borrow() % self.routes.len()];
         route.look_for_shared_memory().await;
         let mut machine = self.machine.clone();
-        if route.by_shared_memory() {
-            machine.transport = "shared-memory".to_owned();
-        }
+        route.transport().clone_into(&mut machine.transport);
         let request = v1::PullRequest {
             identity: self.identity(),
             sequence,

@@ -1,4 +1,4 @@
-//! Route: how one coordinator is called: by shared memory while it works, else by a connection.
+//! Route: how one coordinator is called: within the process, by shared memory while it works, else by a connection.
 //!
 //! It stands below the generated client, so that every call is written once, whatever
 //! carries it.
@@ -19,7 +19,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 use tonic::body::Body;
+use tonic::service::Routes;
 use tonic::transport::Channel;
+use tower::util::BoxCloneSyncService;
 use tower::{BoxError, Service, ServiceExt};
 
 /// How long a coordinator may take to say whether it offers shared memory.
@@ -29,18 +31,29 @@ const PAUSE: Duration = Duration::from_secs(2);
 /// At the latest after this: somebody may have made room.
 const LONGEST_PAUSE: Duration = Duration::from_secs(300);
 
+/// What carries calls where shared memory does not.
+type Carrier = BoxCloneSyncService<http::Request<Body>, http::Response<Body>, BoxError>;
+
 /// The ways to one coordinator.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Route {
-    channel: Channel,
+    carrier: Carrier,
+    name: &'static str,
     bearer: Bearer,
-    shared: Arc<Shared>,
+    /// Shared memory, where it may be used.
+    shared: Option<Arc<Shared>>,
 }
 
 struct Shared {
     choice: TransportChoice,
     address: Address,
     state: Mutex<State>,
+}
+
+impl std::fmt::Debug for Shared {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "shared memory with {}", self.address)
+    }
 }
 
 #[derive(Default)]
@@ -58,31 +71,71 @@ impl Route {
         address: Address,
         choice: TransportChoice,
     ) -> Self {
-        let state = Mutex::default();
-        Self {
-            channel,
-            bearer,
-            shared: Arc::new(Shared {
+        let shared = (choice != TransportChoice::Grpc).then(|| {
+            Arc::new(Shared {
                 choice,
                 address,
-                state,
-            }),
+                state: Mutex::default(),
+            })
+        });
+        Self {
+            carrier: Carrier::new(channel.map_err(BoxError::from)),
+            name: "grpc",
+            bearer,
+            shared,
         }
     }
 
-    fn state(&self) -> std::sync::MutexGuard<'_, State> {
-        let state = &self.shared.state;
-        state.lock().unwrap_or_else(PoisonError::into_inner)
+    /// To a coordinator of this process: nothing lies between.
+    pub fn in_process(services: Routes) -> Self {
+        Self {
+            carrier: Carrier::new(ServiceExt::<http::Request<Body>>::map_err(
+                services,
+                BoxError::from,
+            )),
+            name: "in-process",
+            bearer: Bearer::default(),
+            shared: None,
+        }
+    }
+
+    /// What carries calls now, as reports name it.
+    pub fn transport(&self) -> &'static str {
+        match self.memory() {
+            Some(_) => "shared-memory",
+            None => self.name,
+        }
     }
 
     /// The shared memory, while it works.
+    fn memory(&self) -> Option<Arc<SharedMemory>> {
+        self.shared.as_deref().and_then(Shared::memory)
+    }
+
+    /// Looks for shared memory, where it is wanted, not there, and not refused a moment ago.
+    pub async fn look_for_shared_memory(&self) {
+        if let Some(shared) = &self.shared {
+            let without = Self {
+                shared: None,
+                ..self.clone()
+            };
+            shared.look(without).await;
+        }
+    }
+}
+
+impl Shared {
+    fn state(&self) -> std::sync::MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn memory(&self) -> Option<Arc<SharedMemory>> {
         let mut state = self.state();
         let memory = state.memory.clone()?;
         match memory.broken() {
             None => Some(memory),
             Some(why) => {
-                tracing::warn!(coordinator = %self.shared.address, why, "shared memory ended; on by gRPC");
+                tracing::warn!(coordinator = %self.address, why, "shared memory ended; on by gRPC");
                 state.memory = None;
                 state.refusals = 0;
                 state.next = Some(Instant::now() + PAUSE);
@@ -91,21 +144,15 @@ impl Route {
         }
     }
 
-    /// Whether calls go by shared memory now.
-    pub fn by_shared_memory(&self) -> bool {
-        self.memory().is_some()
-    }
-
-    /// Looks for shared memory, where it is wanted, not there, and not refused a moment ago.
-    pub async fn look_for_shared_memory(&self) {
-        if self.shared.choice == TransportChoice::Grpc || self.by_shared_memory() {
+    async fn look(&self, without: Route) {
+        if self.memory().is_some() {
             return;
         }
         if self.state().next.is_some_and(|next| Instant::now() < next) {
             return;
         }
-        let address = &self.shared.address;
-        match self.connect().await {
+        let address = &self.address;
+        match connect(without).await {
             Ok(memory) => {
                 tracing::info!(coordinator = %address, "by shared memory");
                 let mut state = self.state();
@@ -120,7 +167,7 @@ impl Route {
                     state.refusals = state.refusals.saturating_add(1);
                     state.refusals
                 };
-                if self.shared.choice == TransportChoice::SharedMemory && refusals == 1 {
+                if self.choice == TransportChoice::SharedMemory && refusals == 1 {
                     tracing::warn!(coordinator = %address, why, "no shared memory; by gRPC");
                 } else {
                     tracing::debug!(coordinator = %address, why, "no shared memory; by gRPC");
@@ -128,19 +175,19 @@ impl Route {
             }
         }
     }
+}
 
-    async fn connect(&self) -> Result<SharedMemory, Unusable> {
-        let mut client =
-            WorkerApiClient::with_interceptor(self.channel.clone(), self.bearer.clone());
-        let asked = client.get_shared_memory(GetSharedMemoryRequest {});
-        let named = match tokio::time::timeout(ANSWER, asked).await {
-            Ok(Ok(named)) => named.into_inner(),
-            Ok(Err(status)) => return Err(Unusable(status.message().to_owned())),
-            Err(_) => return Err(Unusable("the coordinator does not answer".to_owned())),
-        };
-        let connected = tokio::task::spawn_blocking(move || SharedMemory::connect(&named)).await;
-        connected.unwrap_or_else(|error| Err(Unusable(error.to_string())))
-    }
+/// Asks the coordinator for its shared memory, by a route without any.
+async fn connect(route: Route) -> Result<SharedMemory, Unusable> {
+    let mut client = WorkerApiClient::new(route);
+    let asked = client.get_shared_memory(GetSharedMemoryRequest {});
+    let named = match tokio::time::timeout(ANSWER, asked).await {
+        Ok(Ok(named)) => named.into_inner(),
+        Ok(Err(status)) => return Err(Unusable(status.message().to_owned())),
+        Err(_) => return Err(Unusable("the coordinator does not answer".to_owned())),
+    };
+    let connected = tokio::task::spawn_blocking(move || SharedMemory::connect(&named)).await;
+    connected.unwrap_or_else(|error| Err(Unusable(error.to_string())))
 }
 
 impl Service<http::Request<Body>> for Route {
@@ -155,9 +202,9 @@ impl Service<http::Request<Body>> for Route {
 
     fn call(&mut self, mut request: http::Request<Body>) -> Self::Future {
         self.bearer.mark(request.headers_mut());
-        let channel = self.channel.clone();
+        let carrier = self.carrier.clone();
         let Some(memory) = self.memory() else {
-            return Box::pin(async move { Ok(channel.oneshot(request).await?) });
+            return Box::pin(carrier.oneshot(request));
         };
         Box::pin(async move {
             let (head, body) = request.into_parts();
@@ -169,7 +216,7 @@ impl Service<http::Request<Body>> for Route {
                     tracing::debug!(path = head.uri.path(), why, "this call by gRPC");
                     // Every call may be made again, so it does not matter how far it had come.
                     let again = http::Request::from_parts(head, Body::new(Full::new(body)));
-                    Ok(channel.oneshot(again).await?)
+                    carrier.oneshot(again).await
                 }
             }
         })

@@ -33,7 +33,7 @@ pub async fn run(
         Some(_) => None,
         None => Some(a.service.start().await?),
     };
-    let own = service.as_ref().map(|s| Target::open_to_all(&s.address()));
+    let own = service.as_ref().map(Embedded::target);
     let target = running.or(own.as_ref()).expect("one of them is there");
     let Some(mut service) = service else {
         return tokio::select! {
@@ -43,7 +43,7 @@ pub async fn run(
     };
     let ended = tokio::select! {
         ended = sweep(a, target, prepared) => ended,
-        error = Embedded::abandoned(&mut service) => Err(error),
+        error = service.tend() => Err(error),
         () = crate::interrupted() => Err(ClientError::Interrupted),
     };
     service.stop().await;

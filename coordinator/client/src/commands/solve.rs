@@ -58,10 +58,10 @@ async fn embedded(
     prepared: Prepared,
     mut service: Embedded,
 ) -> Result<Exit, ClientError> {
-    let target = Target::open_to_all(&service.address());
+    let target = service.target();
     let ended = tokio::select! {
         ended = follow(output, progress, prepared, &target) => ended,
-        error = service.abandoned() => Err(error),
+        error = service.tend() => Err(error),
         () = crate::interrupted() => Err(ClientError::Interrupted),
     };
     if let Some(url) = service.page().filter(|_| ended.is_ok()) {

@@ -40,10 +40,10 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
         };
     }
     let mut service = a.service.start().await?;
-    let target = Target::open_to_all(&service.address());
+    let target = service.target();
     let ended = tokio::select! {
         ended = perform(a, &task, &target) => ended,
-        error = service.abandoned() => Err(error),
+        error = service.tend() => Err(error),
         () = crate::interrupted() => Err(ClientError::Interrupted),
     };
     service.stop().await;

@@ -30,7 +30,7 @@ pub async fn run(a: &Top) -> Result<Exit, ClientError> {
     let target = a.service.target()?;
     let mut connection = Connection::open(&target).await?;
     let mut standing = Standing {
-        address: target.addresses.clone(),
+        address: target.name().to_owned(),
         jobs: connection.jobs().await?,
         workers: connection.workers().await?,
         trouble: String::new(),

@@ -222,7 +222,8 @@ impl Place {
 
     /// The events that wake the coordinator.
     pub fn requests(&self, node: &Node<Ipc>) -> Result<Bells, Unusable> {
-        self.bells(node, "cognate/requests", 1, CLIENTS)
+        // One more than workers: the coordinator wakes itself when it is to stop.
+        self.bells(node, "cognate/requests", 1, CLIENTS + 1)
     }
 
     /// The events that wake workers, each by the name of its listener.
