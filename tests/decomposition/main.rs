@@ -3,6 +3,7 @@
 //! `SEEDS=30 cargo test -p cognate-tests --test decomposition` takes more seeds than the three of every run.
 
 mod carried;
+mod symmetry;
 
 use cognate_algorithms::Root;
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};

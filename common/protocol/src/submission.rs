@@ -94,6 +94,8 @@ pub struct Decompose {
     pub method: Option<Method>,
     /// Whether a second way is compared with the first.
     pub verify: bool,
+    /// Whether the points of each dimension stay one set.
+    pub without_split: bool,
     /// All components of the first equations, where they are known.
     pub known: Option<KnownComponents>,
 }

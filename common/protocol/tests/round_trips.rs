@@ -55,7 +55,8 @@ proptest! {
             parameters: vec![Complex64::new(0.5, -2.0); (seed % 3) as usize],
         });
         let verify = seed % 3 == 1;
-        let decompose = Some(Decompose { dimensions, idle_loops, method, verify, known });
+        let without_split = seed % 5 == 2;
+        let decompose = Some(Decompose { dimensions, idle_loops, method, verify, without_split, known });
         for options in [Options { decompose, ..options.clone() }, options] {
             let submission = Submission { source: source.clone(), options };
             let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
@@ -179,6 +180,7 @@ fn component(dimension: u32, points: usize) -> WitnessSet {
         irreducible: Irreducible::Yes,
         deflation: vec![1, 3],
         self_conjugate: None,
+        orbit: None,
         slice: vec![vec![number(7); 3]; dimension as usize].into(),
         points: (0..points)
             .map(|k| vec![number(k), number(k + 1)])

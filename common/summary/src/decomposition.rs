@@ -8,7 +8,7 @@ use cognate_solutions::witness::{
     Decomposition, Dimension, Doubt, Irreducible, Proof, TrackedPaths, Verification, WitnessSet,
 };
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// More components of one dimension than these stand together, those that are alike.
 const MOST_LISTED: usize = 1000;
@@ -107,6 +107,10 @@ pub struct ComponentBlock {
     pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
     /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
     pub self_conjugate: Option<bool>,
+    /// Its orbit under the symmetry group, by number in its dimension; `null` where no group was named, or that was not
+    /// found out, or the entry stands for several.
+    #[serde(default)]
+    pub orbit: Option<u32>,
     /// Witness points that are proved; `null` where no proof was asked for.
     pub certified: Option<u64>,
     /// What the claims rest on.
@@ -155,6 +159,9 @@ pub struct DimensionBlock {
     /// Paths that must have been lost, by witness points that loops found and to which none came.
     #[serde(default)]
     pub found_by_loops: u64,
+    /// Orbits of its components under the symmetry group; `null` where no group was named, or that was not found out.
+    #[serde(default)]
+    pub orbits: Option<u64>,
     /// Whether all components of this dimension are found.
     pub complete: Completeness,
     /// Reasons why this part of the answer is not settled.
@@ -240,6 +247,7 @@ impl ComponentBlock {
     /// Takes another that is like it: of the evidence what is worst.
     fn add(&mut self, other: Self) {
         self.count += other.count;
+        self.orbit = self.orbit.filter(|_| self.orbit == other.orbit);
         let (a, b) = (&mut self.evidence, other.evidence);
         // Where one is not known the worst is not, either.
         let worst = |x: Option<f64>, y: Option<f64>| x.zip(y).map(|(x, y)| x.max(y));
@@ -269,6 +277,7 @@ fn component(set: &WitnessSet) -> ComponentBlock {
         deflation: set.deflation.clone(),
         multidegree: None,
         self_conjugate: set.self_conjugate,
+        orbit: set.orbit,
         certified: evidence.proof.map(|proof| proof.points),
         evidence: EvidenceBlock {
             trace_deviation: evidence.trace.and_then(|trace| finite(trace.deviation)),
@@ -288,14 +297,17 @@ fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
     let own = sets
         .iter()
         .filter(|set| set.dimension() == dimension.number);
+    let orbits: Option<BTreeSet<u32>> = own.clone().map(|set| set.orbit).collect();
+    let orbits = orbits.map(|orbits| orbits.len() as u64);
     DimensionBlock {
-        components: own.count() as u64,
+        components: own.clone().count() as u64,
         degree: dimension.degree,
         superset: dimension.superset,
         junk: dimension.junk,
         excess: dimension.excess,
         failed: dimension.failed,
         found_by_loops: dimension.found_by_loops,
+        orbits: orbits.filter(|&orbits| orbits > 0),
         complete: dimension.complete,
         doubts: dimension.doubts.clone(),
     }

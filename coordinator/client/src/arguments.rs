@@ -306,6 +306,9 @@ pub struct ComponentArguments {
     /// Find the components a second way, too, and compare: what differs is not settled
     #[arg(long)]
     pub verify: bool,
+    /// Leave the witness points of each dimension together; it is still said whether some are missing
+    #[arg(long)]
+    pub no_split: bool,
 }
 
 impl ComponentArguments {
@@ -315,6 +318,7 @@ impl ComponentArguments {
             || self.loops.is_some()
             || self.method != MethodName::Auto
             || self.verify
+            || self.no_split
     }
 }
 
@@ -377,6 +381,14 @@ pub struct Decompose {
     /// Prove every witness point by a box, and which unions of them are no components
     #[arg(long, help_heading = "Components")]
     pub certify: bool,
+    /// Generators of a symmetry group (JSON): components are told by orbits, and one of each orbit is split
+    #[arg(
+        long,
+        value_name = "FILE",
+        help_heading = "Problem",
+        conflicts_with = "resume"
+    )]
+    pub symmetry: Option<PathBuf>,
     /// Values of the parameters: Bertini's format or JSON. Of several sets each is decomposed, from components at general
     /// values, and it is said where the list of components changes, which split and which join
     #[arg(long, value_name = "FILE", help_heading = "Problem")]
@@ -417,6 +429,7 @@ impl Decompose {
             file: file.to_path_buf(),
             target_parameters: self.target_parameters.clone(),
             groups: self.groups.clone(),
+            symmetry: self.symmetry.clone(),
             seed: self.seed,
             certify: self.certify,
             preset: self.preset,

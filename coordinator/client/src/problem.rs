@@ -190,6 +190,7 @@ pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Pr
         idle_loops: wanted.loops,
         method: wanted.method.method(),
         verify: wanted.verify,
+        without_split: wanted.no_split,
         known,
     });
     prepared

@@ -273,6 +273,7 @@ fn plan_decomposition(
         idle_loops: wanted.idle_loops.unwrap_or(default.idle_loops),
         method: wanted.method,
         verify: wanted.verify,
+        split: !wanted.without_split,
         certify: options.closings.certify,
         known: wanted.known,
         ..tracking_of_components(options)?

@@ -15,7 +15,7 @@ const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL06");
 const LARGE: RecordKind = RecordKind(b"CGNLRG05");
 
 /// Decompositions as objects.
-const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC07");
+const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC08");
 
 /// Answers of components as objects.
 const ANSWER: RecordKind = RecordKind(b"CGNANS01");

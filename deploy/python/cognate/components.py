@@ -29,7 +29,8 @@ class Component:
     """One irreducible component.
 
     `id`: its name, such as `2.1`, dimension first. `degree`; `multiplicity`: None where it is not known.
-    `irreducible`: `yes`, `no` or `not known`. `self_conjugate`: conjugation maps it to itself, or None. `points`:
+    `irreducible`: `yes`, `unsettled` or `not_asked`. `self_conjugate`: conjugation maps it to itself, or None. `orbit`:
+    its number among those of its dimension under the symmetry group, or None. `points`:
     its witness points, as many as its degree. `count`: of how many components this stands for: isolated points of
     one kind are listed together where there are very many, with their `points` in `Decomposition.witness_points`.
     """
@@ -40,6 +41,7 @@ class Component:
     multiplicity: int | None
     irreducible: str
     self_conjugate: bool | None
+    orbit: int | None
     count: int
     points: tuple[Point, ...]
 
@@ -244,7 +246,7 @@ def decompose(
     precision: str | int | None = None,
     exact: bool = False,
     service: Service | None = None,
-    workers: int = 2,
+    workers: int | None = None,
     threads: int | None = None,
     progress: Wanted = None,
     strict: bool = False,
@@ -295,11 +297,12 @@ def decompose(
     return found
 
 
-def _place(service: Service | None, workers: int, threads: int | None) -> tuple[str, ...]:
+def _place(service: Service | None, workers: int | None, threads: int | None) -> tuple[str, ...]:
     """The arguments that say who does it."""
     if service is not None:
         return tuple(service._where)
-    return ("--workers", str(workers), *(() if threads is None else ("--threads", str(threads))))
+    given = {"--workers": workers, "--threads": threads}
+    return tuple(word for name, n in given.items() if n is not None for word in (name, str(n)))
 
 
 def _read(summary: Mapping[str, Any], folder: Path, where: tuple[str, ...], kept: object) -> Decomposition:
@@ -325,6 +328,7 @@ def _read(summary: Mapping[str, Any], folder: Path, where: tuple[str, ...], kept
                 multiplicity=block["multiplicity"],
                 irreducible=str(block["irreducible"]),
                 self_conjugate=block["self_conjugate"],
+                orbit=block.get("orbit"),
                 count=count,
                 points=own,
             )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def solve(
     problem: object,
     *,
-    workers: int = 2,
+    workers: int | None = None,
     threads: int | None = None,
     progress: Wanted = None,
     strict: bool = False,
@@ -32,7 +32,7 @@ def solve(
 
     `problem`: a `System`; equations, as strings or of sympy, one or a list; our JSON as a mapping; a file
     (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of such a file.
-    `workers`: processes that track, with `threads` each. `progress`: see `cognate.progress.Wanted`. `strict`: an
+    `workers`: processes that track, with `threads` each; by default none for what is done in a moment, else two. `progress`: see `cognate.progress.Wanted`. `strict`: an
     answer that is not settled is raised as `Unsettled` instead of a warning. `output`: a folder for all files,
     paths.parquet and Bertini's among them. `options`: see `Options`.
 
@@ -56,7 +56,7 @@ def solve(
 async def solve_async(
     problem: object,
     *,
-    workers: int = 2,
+    workers: int | None = None,
     threads: int | None = None,
     progress: Wanted = None,
     strict: bool = False,
@@ -95,7 +95,7 @@ def _arguments(
     problem: object,
     options: Options,
     folder: program.Folder,
-    workers: int,
+    workers: int | None,
     threads: int | None,
     output: str | os.PathLike[str] | None,
     bar: Bar,
@@ -103,7 +103,8 @@ def _arguments(
     found, own = problem_arguments(problem, options, folder)
     kept = None if output is None else Path(output)
     arguments = ["solve", "--format", "json", "--output", str(kept or folder.path / "answer")]
-    arguments += ["--workers", str(workers)]
+    if workers is not None:
+        arguments += ["--workers", str(workers)]
     if threads is not None:
         arguments += ["--threads", str(threads)]
     # A program that shows nothing by itself is not asked for lines that nobody reads.

@@ -82,7 +82,7 @@ def synthesize(
     preset: str | None = None,
     precision: str | int | None = None,
     service: Service | None = None,
-    workers: int = 2,
+    workers: int | None = None,
     threads: int | None = None,
     progress: Wanted = None,
     strict: bool = False,

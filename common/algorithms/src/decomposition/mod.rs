@@ -28,6 +28,7 @@ mod search;
 mod slices;
 pub(crate) mod split;
 pub(crate) mod superset;
+mod symmetry;
 #[cfg(test)]
 mod tests_of_carried;
 #[cfg(test)]
@@ -63,6 +64,7 @@ use resumed::Resumed;
 use serde::{Deserialize, Serialize, Serializer};
 use slices::Slices;
 use split::Split;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Where a decomposition is.
@@ -490,6 +492,7 @@ pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
             };
             dimension.degree += set.degree;
         }
+        number_orbits(&mut found.components, dimension.number);
         let missing = dimension.doubts.contains(&Doubt::PointsMissing);
         dimension.complete = match dimension.doubts.is_empty() {
             true => Completeness::Yes,
@@ -499,6 +502,18 @@ pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
     }
     found.check_counts();
     found
+}
+
+/// Numbers the orbits of the components of a dimension in the order of their first components.
+fn number_orbits(components: &mut [WitnessSet], dimension: u32) {
+    let mut numbers = BTreeMap::new();
+    for set in components
+        .iter_mut()
+        .filter(|set| set.dimension() == dimension)
+    {
+        let next = numbers.len() as u32 + 1;
+        set.orbit = set.orbit.map(|orbit| *numbers.entry(orbit).or_insert(next));
+    }
 }
 
 /// Takes back the doubt about paths that failed in a dimension that was solved by itself, where loops found points to

@@ -24,6 +24,9 @@ pub struct DecompositionOptions {
     pub verify: bool,
     /// Whether witness points are proved, and which unions of them are no components.
     pub certify: bool,
+    /// Whether the points of a dimension are split into components; else they are one set, of which it is said
+    /// whether points are missing.
+    pub split: bool,
     /// How paths are tracked.
     pub settings: Settings,
     /// How verdicts are reached.
@@ -50,6 +53,7 @@ impl Default for DecompositionOptions {
             method: None,
             verify: false,
             certify: false,
+            split: true,
             settings: Settings::default(),
             tolerances: Tolerances::default(),
             max_retries: MAX_RETRIES,

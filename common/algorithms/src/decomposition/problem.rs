@@ -2,6 +2,7 @@
 
 use super::job::Tracking;
 use super::options::DecompositionOptions;
+use super::symmetry::{GeneratorError, LinearMap};
 use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
@@ -67,6 +68,9 @@ pub enum ProblemError {
     /// Known components are none of the first equations.
     #[error("known components: {0}")]
     Known(String),
+    /// A generator of the symmetry group that is of no use here.
+    #[error(transparent)]
+    Symmetry(#[from] GeneratorError),
 }
 
 impl From<PolynomialError> for ProblemError {
@@ -108,6 +112,10 @@ pub(crate) struct Problem {
     scaling: Scaling,
     /// Complex conjugation, where it maps solutions to solutions.
     pub involution: Option<Involution>,
+    /// Generators of the symmetry group that is named.
+    pub symmetry: Vec<LinearMap>,
+    /// Whether sets are split into components.
+    pub split: bool,
 }
 
 impl Problem {
@@ -162,6 +170,7 @@ impl Problem {
             ..system.into_owned()
         };
         let scaling = system.scaling.clone();
+        let symmetry = LinearMap::all(&system)?;
         let given = equilibrate(&affine_chart(&system.in_unknowns(), seed), seed);
         let patches = given.equation_count() - kept.len();
         let sources = vec![None; patches].into_iter();
@@ -220,6 +229,8 @@ impl Problem {
             factors,
             scaling,
             involution,
+            symmetry,
+            split: options.split,
         })
     }
 
@@ -252,6 +263,8 @@ impl Problem {
             confirm_junk: self.confirm_junk,
             scaling: self.scaling.clone(),
             involution: None,
+            symmetry: Vec::new(),
+            split: true,
         })
     }
 
@@ -289,6 +302,8 @@ impl Problem {
             idle_loops: self.idle_loops,
             confirm_junk: self.confirm_junk,
             scaling: self.scaling.clone(),
+            symmetry: Vec::new(),
+            split: true,
         })
     }
 
@@ -347,6 +362,8 @@ impl Problem {
             idle_loops: self.idle_loops,
             confirm_junk: self.confirm_junk,
             scaling: self.scaling.clone(),
+            symmetry: Vec::new(),
+            split: true,
         }))
     }
 

@@ -12,6 +12,7 @@ use super::moved::{MovedPoints, bounded, is_closed, misses_points};
 use super::problem::Problem;
 use super::proof::moving_slices;
 use super::search::Search;
+use super::symmetry::PointImages;
 use cognate_continuation::bend::{length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::form;
@@ -38,8 +39,8 @@ const GAPS_ASKED: usize = 16;
 const MOST_LOOPS: u32 = 200;
 /// A path that came back is at a witness point within this, relative to the point.
 const BACK: f64 = 1e-6;
-/// Most points of a set whose conjugates are followed.
-const MOST_CONJUGATES: usize = 5000;
+/// Most points of a set whose conjugates and images under a symmetry group are followed.
+const MOST_IMAGES: usize = 5000;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
 
@@ -92,6 +93,10 @@ pub(crate) struct Split {
     travellers: Vec<usize>,
     /// Points that were lost, looked for by loops.
     search: Search,
+    /// Where the symmetry group takes the points.
+    symmetry: PointImages,
+    /// Images under one of its generators are under way.
+    turning: bool,
     /// Conjugates of the witness points are under way.
     mirroring: bool,
     /// The witness point where the conjugate of each is after its slice has moved back; `None` where that was not
@@ -113,6 +118,8 @@ impl Split {
             leg: 0,
             travellers: Vec::new(),
             search: Search::default(),
+            symmetry: PointImages::default(),
+            turning: false,
             mirroring: false,
             mirrored: None,
         }
@@ -128,6 +135,10 @@ impl Split {
         if self.set.dimension == 0 {
             let conjugates = self.conjugates(problem);
             self.mirrored = self.images(&conjugates, own);
+            while let Some((_, images)) = self.next_images(problem) {
+                let images = self.images(&images, own);
+                self.symmetry.take(images);
+            }
             return None;
         }
         if self.mirroring {
@@ -135,13 +146,18 @@ impl Split {
             self.mirrored = ends.and_then(|ends| self.images(&ends, own));
             return None;
         }
+        if std::mem::take(&mut self.turning) {
+            let ends = done.as_ref().and_then(arrivals);
+            let images = ends.and_then(|ends| self.images(&ends, own));
+            self.symmetry.take(images);
+            return self.next_stage(problem, deflations);
+        }
         let Some(_) = &self.bends else {
             let Some(job) = done else {
                 return Some(self.ask_bends(problem));
             };
             self.bends = job.into_moved();
-            let next = self.next_loop(problem, deflations);
-            return next.or_else(|| self.mirror(problem, deflations));
+            return self.next_stage(problem, deflations);
         };
         let mut points = self.travelling();
         if self.search.asks_bends() {
@@ -168,8 +184,43 @@ impl Split {
                 return Some(self.track(problem, deflations, &points));
             }
         }
-        let next = self.next_loop(problem, deflations);
+        self.next_stage(problem, deflations)
+    }
+
+    /// What comes next where no loop is under way.
+    fn next_stage(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
+        let turn = self.turn(problem, deflations);
+        let next = turn.or_else(|| self.next_loop(problem, deflations));
         next.or_else(|| self.mirror(problem, deflations))
+    }
+
+    /// The images of all points under the next generator of the symmetry group, with its number; `None` where there
+    /// is none, or the set has many points or is deflated.
+    fn next_images(&mut self, problem: &Problem) -> Option<(usize, Vec<Vec<Complex64>>)> {
+        let number = self.symmetry.asked();
+        let map = problem.symmetry.get(number)?;
+        if !self.set.ranks.is_empty() || self.set.points.len() > MOST_IMAGES {
+            return None;
+        }
+        self.travellers = (0..self.set.points.len()).collect();
+        let points = self.set.doubles().into_iter();
+        Some((number, points.map(|point| map.image(&point)).collect()))
+    }
+
+    /// The stage that moves the images of the points from the images of the slices back to their own.
+    fn turn(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
+        let (number, points) = self.next_images(problem)?;
+        self.turning = true;
+        let target = problem.slices(self.set.dimension);
+        let map = &problem.symmetry[number];
+        let start = target.iter().flat_map(|row| map.slice(row)).collect();
+        let homotopy = HomotopyKind::Parameter {
+            start,
+            targets: vec![target.concat()],
+        };
+        let system = deflations.of_stage(problem, &self.set.tracked());
+        let system = (self.set.tracked(), &*system);
+        Some(Job::track(system, homotopy, &points, &problem.tracking).ends_only())
     }
 
     /// The conjugates of the points; none where conjugation means nothing or the set has many points.
@@ -178,7 +229,7 @@ impl Split {
         let Some(involution) = &problem.involution else {
             return Vec::new();
         };
-        if !self.set.ranks.is_empty() || self.set.points.len() > MOST_CONJUGATES {
+        if !self.set.ranks.is_empty() || self.set.points.len() > MOST_IMAGES {
             return Vec::new();
         }
         let points = self.set.doubles().into_iter();
@@ -218,6 +269,9 @@ impl Split {
 
     /// The next loop, where there are classes that it may bring together.
     fn next_loop(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
+        if !problem.split {
+            return None;
+        }
         let own = problem.variables();
         self.close(own);
         let open = self.open().count();
@@ -238,6 +292,10 @@ impl Split {
         }
         self.travellers = self.open().flat_map(|c| c.points.clone()).collect();
         self.travellers.sort_unstable();
+        if self.symmetry.are_known() && !self.search.is_on() {
+            // The others' loops are images of theirs.
+            self.travellers = self.symmetry.least_of_each(&self.travellers);
+        }
         let points = self.travelling();
         Some(self.track(problem, deflations, &points))
     }
@@ -310,13 +368,22 @@ impl Split {
         let first = self.set.points.len();
         self.set.points.extend(lost);
         let found = first..self.set.points.len();
+        if !found.is_empty() {
+            // Where the symmetry group takes the new ones has not been asked.
+            self.symmetry = PointImages::default();
+        }
         self.classes.extend(found.clone().map(Class::of));
         (!found.is_empty()).then(|| self.ask_bends(problem))
     }
 
-    /// Joins the classes between which the loop leads, where it is a permutation.
+    /// Joins the classes between which the loop leads, where it is a permutation; of points that stand for their orbits,
+    /// where no two come together.
     fn close_loop(&mut self, ends: &[Vec<Complex64>], own: usize) {
-        let Some(images) = self.images(ends, own) else {
+        let images = match self.symmetry.are_known() {
+            true => self.different_images(ends, own),
+            false => self.images(ends, own),
+        };
+        let Some(images) = images else {
             return self.give_up_loop();
         };
         self.loops += 1;
@@ -325,6 +392,7 @@ impl Split {
         let pairs = self.travellers.iter().zip(images);
         let moved = pairs.filter(|(from, to)| **from != *to);
         let edge: Vec<[usize; 2]> = moved.map(|(&from, to)| [from, to]).collect();
+        let edge = self.symmetry.with_images(edge);
         join(&mut self.classes, &edge);
         self.edges.push(edge);
         match self.classes.len() < before {
@@ -340,6 +408,15 @@ impl Split {
         let mut sorted = images.clone();
         sorted.sort_unstable();
         (sorted == self.travellers).then_some(images)
+    }
+
+    /// The open witness point to which each path came; `None` where one came to no such point, or two to one.
+    fn different_images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
+        let open: Vec<usize> = self.open_points().collect();
+        let places = self.places(&open, ends, own).into_iter();
+        let images: Vec<usize> = places.collect::<Option<_>>()?;
+        let different: BTreeSet<usize> = images.iter().copied().collect();
+        (different.len() == images.len()).then_some(images)
     }
 
     /// Which of these witness points each end is; `None`: none of them.
@@ -572,11 +649,15 @@ impl Split {
         let trace_of_left = self.trace(left.iter().copied());
         self.bends = None;
         let classes = std::mem::take(&mut self.classes);
+        let (orbits, generators) = self.orbits(&classes);
+        if generators > 0 {
+            doubts.push(Doubt::Symmetry { generators });
+        }
         let mut components = Vec::with_capacity(classes.len());
         let mut classes_left = 0;
         let slice = Arc::new(problem.slices_of_variables(self.set.dimension));
         let about = (problem, &slice, rank_gap);
-        for Class { points, closed } in classes {
+        for (k, Class { points, closed }) in classes.into_iter().enumerate() {
             if closed.is_none() && dimension > 0 {
                 classes_left += 1;
                 continue;
@@ -586,16 +667,25 @@ impl Split {
                 true => Vec::new(),
                 false => vec![Doubt::Open { classes: 1 }],
             };
-            components.push(self.component(about, &points, closed, doubts));
+            let orbit = orbits.as_ref().map(|orbits| orbits[k] as u32);
+            let component = self.component(about, &points, closed, doubts);
+            components.push(WitnessSet { orbit, ..component });
         }
         if !left.is_empty() {
             if !is_closed(&trace_of_left) {
                 doubts.push(Doubt::PointsMissing);
             }
-            let open = vec![Doubt::Open {
-                classes: classes_left,
-            }];
-            components.push(self.component(about, &left, Some(trace_of_left), open));
+            let whole = Some(trace_of_left);
+            components.push(match problem.split {
+                true => {
+                    let classes = classes_left;
+                    self.component(about, &left, whole, vec![Doubt::Open { classes }])
+                }
+                false => WitnessSet {
+                    irreducible: Irreducible::NotAsked,
+                    ..self.component(about, &left, whole, Vec::new())
+                },
+            });
         }
         if self.broken > 0 && !left.is_empty() {
             doubts.push(Doubt::BrokenLoops { loops: self.broken });
@@ -612,6 +702,21 @@ impl Split {
             doubts,
         };
         (components, dimension)
+    }
+
+    /// The orbit of each class under the symmetry group, by the first class in it, where each class is a component and
+    /// the group is known here; and how many of its generators do not do what symmetries do.
+    fn orbits(&self, classes: &[Class]) -> (Option<Vec<usize>>, u64) {
+        let refused = self.symmetry.refused();
+        let is_component = |class: &Class| class.closed.is_some() || self.set.dimension == 0;
+        if !self.symmetry.are_known() || !classes.iter().all(is_component) {
+            return (None, refused);
+        }
+        let points: Vec<&[usize]> = classes.iter().map(|c| c.points.as_slice()).collect();
+        match self.symmetry.orbits(&points) {
+            Some(orbits) => (Some(orbits), refused),
+            None => (None, self.symmetry.asked() as u64),
+        }
     }
 
     /// Whether the conjugates of these points come to them again, all or none.
@@ -661,6 +766,7 @@ impl Split {
             irreducible,
             deflation: set.ranks.clone(),
             self_conjugate,
+            orbit: None,
             slice: Arc::clone(slice),
             points: values,
             evidence: Evidence {

@@ -242,6 +242,7 @@ fn decompose(m: v1::Decompose) -> Result<Decompose, ProtocolError> {
         idle_loops: m.idle_loops,
         method,
         verify: m.verify,
+        without_split: m.without_split,
         known,
     })
 }

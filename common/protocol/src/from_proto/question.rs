@@ -142,6 +142,7 @@ fn witness_set(m: v1::WitnessSet) -> Result<WitnessSet, ProtocolError> {
         irreducible: Irreducible::Yes,
         deflation: m.deflation,
         self_conjugate: None,
+        orbit: None,
         slice: slice.into(),
         points,
         evidence: Evidence::default(),

@@ -114,6 +114,7 @@ fn decompose(wanted: &Decompose) -> v1::Decompose {
         idle_loops: wanted.idle_loops,
         method: wanted.method.map(|method| method_number(method) as i32),
         verify: wanted.verify,
+        without_split: wanted.without_split,
         known: wanted.known.as_ref().map(|known| v1::KnownComponents {
             equations: known.equations,
             components: known.components.iter().map(witness_set).collect(),

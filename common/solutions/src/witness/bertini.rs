@@ -389,6 +389,7 @@ fn components(dimension: usize, slice: &[Vec<Complex64>], points: Vec<ReadPoint>
             irreducible: Irreducible::Yes,
             deflation: Vec::new(),
             self_conjugate: None,
+            orbit: None,
             slice: Arc::clone(&slice),
             points: points.into_iter().map(|p| p.values).collect(),
             evidence: Evidence::default(),
@@ -486,6 +487,7 @@ mod tests {
             irreducible: Irreducible::Yes,
             deflation: Vec::new(),
             self_conjugate: None,
+            orbit: None,
             slice: Arc::new(vec![vec![z(-2.0, 0.1), z(0.3, 0.7), z(1.0, 0.0)]]),
             points: vec![
                 vec![z(1.4, 0.25), z(2.0, 0.0)],

@@ -77,6 +77,12 @@ pub enum Doubt {
         /// How many loops.
         loops: u64,
     },
+    /// Generators of the symmetry group that was named take witness points to others than witness points, or those of a
+    /// component to several: they are no symmetries, or points are missing.
+    Symmetry {
+        /// How many.
+        generators: u64,
+    },
     /// No box proves these witness points, where proofs were asked for.
     NotProved {
         /// How many.
@@ -198,6 +204,13 @@ impl fmt::Display for Doubt {
                     counted(loops, "loop")
                 )
             }
+            Self::Symmetry { generators } => write!(
+                f,
+                "{} of the symmetry group {} not take witness points to witness points, or components to components: \
+                 no symmetries, or points are missing",
+                counted(generators, "generator"),
+                if *generators == 1 { "does" } else { "do" }
+            ),
             Self::NotProved { points } => {
                 write!(f, "{} without a proof", counted(points, "witness point"))
             }

@@ -41,6 +41,8 @@ pub enum Irreducible {
     Yes,
     /// It may be several, or a part of one.
     Unsettled,
+    /// That was not asked.
+    NotAsked,
 }
 
 /// A component, or points of one dimension that could not be told apart.
@@ -59,6 +61,10 @@ pub struct WitnessSet {
     /// Whether complex conjugation maps it to itself; `None` where it maps no solutions to solutions, or that was
     /// not found out.
     pub self_conjugate: Option<bool>,
+    /// The orbit of components of its dimension that it is in, by number; `None` where no symmetry group was named, or
+    /// that was not found out.
+    #[serde(default)]
+    pub orbit: Option<u32>,
     /// The slice, a row for each dimension: constant first, then a coefficient for each variable. Sets of one dimension
     /// share it.
     pub slice: Arc<Vec<Vec<Complex64>>>,
@@ -89,7 +95,7 @@ impl WitnessSet {
 
     /// Whether nothing about it is in doubt.
     pub fn settled(&self) -> bool {
-        self.irreducible == Irreducible::Yes && self.evidence.doubts.is_empty()
+        self.irreducible != Irreducible::Unsettled && self.evidence.doubts.is_empty()
     }
 }
 

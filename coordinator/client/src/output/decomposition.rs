@@ -183,6 +183,7 @@ fn components(summary: &DecompositionSummary, look: Look) -> String {
             match first.irreducible {
                 Irreducible::Yes => "yes".into(),
                 Irreducible::Unsettled => "unsettled".into(),
+                Irreducible::NotAsked => "not asked".into(),
             },
             evidence(alike),
         ]);
@@ -291,6 +292,10 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
         ">failed",
     ];
     names.extend(by_loops.then_some(">found by loops"));
+    let by_orbits = by_dimension.values().any(|d| d.orbits.is_some());
+    if by_orbits {
+        names.push(">orbits");
+    }
     names.push("complete");
     let mut columns = Columns::new(&names);
     for (number, d) in by_dimension.iter().rev() {
@@ -304,6 +309,10 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
             count(d.failed),
         ];
         row.extend(by_loops.then(|| count(d.found_by_loops)));
+        row.extend(by_orbits.then(|| match (d.components, d.orbits) {
+            (0, _) => "0".into(),
+            (_, orbits) => orbits.map_or_else(|| "?".into(), count),
+        }));
         row.push(d.complete.name().into());
         columns.row(row);
     }

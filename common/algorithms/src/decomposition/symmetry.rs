@@ -1,0 +1,309 @@
+//! Symmetry: linear maps that take solutions to solutions, and where they take witness points and components.
+//!
+//! The image of a witness set lies on the image of its slice. A path for each point moves it back to the witness set's
+//! own slice; then the map permutes witness points, and those of one component come to those of one component.
+
+use cognate_numeric::linear_algebra::inverse::inverse;
+use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::scalar::Complex;
+use cognate_solutions::symmetry::action::Action;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A map is linear where its value at a random point is the sum of its parts within this, relative to the value.
+const LINEAR: f64 = 1e-10;
+
+/// Why a generator is of no use here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GeneratorError {
+    /// The image of a slice would be none.
+    #[error(
+        "not in this version: symmetry generator {0} is no invertible linear map of the variables, which components need"
+    )]
+    NotLinear(usize),
+    /// It would act on points by their coordinates in a chart.
+    #[error(
+        "not in this version: components of a system with homogeneous groups and a symmetry group"
+    )]
+    Homogeneous,
+}
+
+/// A map x -> A x + b of the unknowns that are tracked.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LinearMap {
+    /// Columns of A.
+    columns: Vec<Vec<Complex64>>,
+    shift: Vec<Complex64>,
+    /// Rows of the inverse of A.
+    inverse: Vec<Vec<Complex64>>,
+}
+
+impl LinearMap {
+    /// The generators of a system that is tracked in its own units.
+    pub fn all(system: &System) -> Result<Vec<Self>, GeneratorError> {
+        if system.symmetry.is_empty() {
+            return Ok(Vec::new());
+        }
+        if system.groups.iter().any(|group| group.homogeneous) {
+            return Err(GeneratorError::Homogeneous);
+        }
+        let generators = (1..).zip(&system.symmetry);
+        generators
+            .map(|(number, generator)| {
+                let action = Action::of(generator, system);
+                let found = action.and_then(|action| Self::of(&action, system));
+                found.ok_or(GeneratorError::NotLinear(number))
+            })
+            .collect()
+    }
+
+    fn of(action: &Action, system: &System) -> Option<Self> {
+        let (scaling, n) = (&system.scaling, system.variable_count());
+        let value = |x: &[Complex64]| {
+            let image = action.image(&scaling.to_variables(x))?;
+            Some(scaling.to_unknowns(&image))
+        };
+        let zero = vec![Complex64::default(); n];
+        let shift = value(&zero)?;
+        let column = |k: usize| {
+            let mut unit = zero.clone();
+            unit[k] = Complex64::new(1.0, 0.0);
+            let image = value(&unit)?;
+            Some(image.iter().zip(&shift).map(|(y, b)| y - b).collect())
+        };
+        let columns: Vec<Vec<Complex64>> = (0..n).map(column).collect::<Option<_>>()?;
+        let mut matrix: Matrix<f64> = Matrix::zeros((), n, n);
+        for (j, column) in columns.iter().enumerate() {
+            for (i, z) in column.iter().enumerate() {
+                *matrix.at_mut(i, j) = Complex::from_f64((), z.re, z.im);
+            }
+        }
+        let inverse = inverse((), &matrix)?;
+        let entry = |i: usize, j: usize| Complex64::new(inverse.at(i, j).re, inverse.at(i, j).im);
+        let map = Self {
+            columns,
+            shift,
+            inverse: (0..n)
+                .map(|i| (0..n).map(|j| entry(i, j)).collect())
+                .collect(),
+        };
+        let mut random = RandomStream::new(0, Purpose::Probe, 5);
+        let point: Vec<Complex64> = (0..n).map(|_| random.unit()).collect();
+        let (told, found) = (value(&point)?, map.image(&point));
+        let apart = told.iter().zip(&found).map(|(a, b)| (a - b).norm_sqr());
+        let size = found.iter().map(|z| z.norm_sqr()).sum::<f64>();
+        (apart.sum::<f64>() <= LINEAR * LINEAR * size).then_some(map)
+    }
+
+    /// The image of a point.
+    pub fn image(&self, point: &[Complex64]) -> Vec<Complex64> {
+        let mut image = self.shift.clone();
+        for (column, x) in self.columns.iter().zip(point) {
+            for (y, a) in image.iter_mut().zip(column) {
+                *y += a * x;
+            }
+        }
+        image
+    }
+
+    /// The image of a slice: constant first, then a coefficient for each unknown.
+    pub fn slice(&self, row: &[Complex64]) -> Vec<Complex64> {
+        let mut image = vec![Complex64::default(); row.len()];
+        for (of_row, c) in self.inverse.iter().zip(&row[1..]) {
+            for (coefficient, a) in image[1..].iter_mut().zip(of_row) {
+                *coefficient += c * a;
+            }
+        }
+        let of_shift = image[1..].iter().zip(&self.shift).map(|(c, b)| c * b);
+        image[0] = row[0] - of_shift.sum::<Complex64>();
+        image
+    }
+}
+
+/// Where the generators of a symmetry group take the witness points of a set.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PointImages {
+    /// Of each generator that permutes the witness points, where each of them comes.
+    permutations: Vec<Vec<usize>>,
+    /// Generators whose images are not the witness points.
+    refused: u64,
+}
+
+impl PointImages {
+    /// How many generators were asked.
+    pub fn asked(&self) -> usize {
+        self.permutations.len() + self.refused as usize
+    }
+
+    /// How many of them do not permute the witness points.
+    pub fn refused(&self) -> u64 {
+        self.refused
+    }
+
+    /// Whether some of them do.
+    pub fn are_known(&self) -> bool {
+        !self.permutations.is_empty()
+    }
+
+    /// Takes where the next generator takes all points; `None`: they are no permutation.
+    pub fn take(&mut self, images: Option<Vec<usize>>) {
+        match images {
+            Some(images) => self.permutations.push(images),
+            None => self.refused += 1,
+        }
+    }
+
+    /// The least of these points in each of their orbits, ascending.
+    pub fn least_of_each(&self, points: &[usize]) -> Vec<usize> {
+        let mut reached = BTreeSet::new();
+        let mut least = Vec::new();
+        for &point in points {
+            if !reached.insert(point) {
+                continue;
+            }
+            least.push(point);
+            let mut next = vec![point];
+            while let Some(point) = next.pop() {
+                let images = self.permutations.iter().map(|images| images[point]);
+                next.extend(images.filter(|&image| reached.insert(image)));
+            }
+        }
+        least
+    }
+
+    /// Pairs of points that bring together what these do, and all their images.
+    pub fn with_images(&self, pairs: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
+        let Some(count) = self.permutations.first().map(Vec::len) else {
+            return pairs;
+        };
+        let mut parent: Vec<usize> = (0..count).collect();
+        fn root(parent: &mut [usize], mut k: usize) -> usize {
+            while parent[k] != k {
+                parent[k] = parent[parent[k]];
+                k = parent[k];
+            }
+            k
+        }
+        let mut all = pairs;
+        let mut next = all.clone();
+        // Each pair that joins is followed once: there are fewer than points.
+        while let Some([a, b]) = next.pop() {
+            let roots = (root(&mut parent, a), root(&mut parent, b));
+            if roots.0 == roots.1 {
+                continue;
+            }
+            parent[roots.0.max(roots.1)] = roots.0.min(roots.1);
+            for images in &self.permutations {
+                let image = [images[a], images[b]];
+                all.push(image);
+                next.push(image);
+            }
+        }
+        all
+    }
+
+    /// The orbit of each of these classes, by the first of its classes; `None` where the images of one are not one.
+    pub fn orbits(&self, classes: &[&[usize]]) -> Option<Vec<usize>> {
+        let mut class_of = BTreeMap::new();
+        for (k, class) in classes.iter().enumerate() {
+            class_of.extend(class.iter().map(|&point| (point, k)));
+        }
+        let mut orbits: Vec<usize> = (0..classes.len()).collect();
+        for images in &self.permutations {
+            for (k, class) in classes.iter().enumerate() {
+                let image = *class_of.get(&images[*class.first()?])?;
+                let whole = class
+                    .iter()
+                    .all(|&point| class_of.get(&images[point]) == Some(&image));
+                if !whole || classes[image].len() != class.len() {
+                    return None;
+                }
+                let (a, b) = (orbits[k], orbits[image]);
+                let least = a.min(b);
+                for orbit in orbits.iter_mut().filter(|o| **o == a || **o == b) {
+                    *orbit = least;
+                }
+            }
+        }
+        Some(orbits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(symmetry: &str) -> System {
+        let text = format!(
+            r#"{{"system": {{"variables": ["x", "y", "z"], "equations": ["x*y*z - 1"], "symmetry": {symmetry}}}}}"#
+        );
+        cognate_systems::formats::read("test", text.as_bytes())
+            .unwrap()
+            .system
+    }
+
+    #[test]
+    fn the_image_of_a_point_is_on_the_image_of_its_slice() {
+        let cycle = r#"[{"permutation": {"x": "y", "y": "z", "z": "x"}}, {"map": {"x": "2*x - y + 3", "y": "I*z"}}]"#;
+        let maps = LinearMap::all(&read(cycle)).unwrap();
+        let number = |re: f64, im: f64| Complex64::new(re, im);
+        let point = [number(1.0, 2.0), number(-0.5, 1.0), number(3.0, -1.0)];
+        let row = [
+            number(0.0, 0.0),
+            number(1.0, 1.0),
+            number(2.0, -1.0),
+            number(0.5, 0.25),
+        ];
+        let value = |row: &[Complex64], x: &[Complex64]| -> Complex64 {
+            row[0]
+                + row[1..]
+                    .iter()
+                    .zip(x)
+                    .map(|(a, x)| a * x)
+                    .sum::<Complex64>()
+        };
+        for map in &maps[..1] {
+            let found = value(&map.slice(&row), &map.image(&point));
+            assert!((found - value(&row, &point)).norm_sqr() < 1e-24, "{found}");
+        }
+        assert_eq!(maps[0].image(&point), [point[1], point[2], point[0]]);
+    }
+
+    #[test]
+    fn what_is_no_linear_map_is_refused() {
+        for wrong in [
+            r#"[{"map": {"x": "x^2"}}]"#,
+            r#"[{"map": {"x": "1/x"}}]"#,
+            r#"[{"map": {"x": "y"}}]"#,
+        ] {
+            let refused = LinearMap::all(&read(wrong)).unwrap_err();
+            assert_eq!(refused, GeneratorError::NotLinear(1), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn pairs_and_classes_go_with_their_images() {
+        let mut images = PointImages::default();
+        // Two squares that are turned, and exchanged.
+        images.take(Some(vec![1, 2, 3, 0, 5, 6, 7, 4]));
+        images.take(Some(vec![4, 5, 6, 7, 0, 1, 2, 3]));
+        assert_eq!(images.least_of_each(&[2, 3, 5]), [2]);
+        let pairs = images.with_images(vec![[0, 2]]);
+        for pair in [[0, 2], [1, 3], [4, 6], [5, 7]] {
+            let turned = [pair[1], pair[0]];
+            assert!(
+                pairs.contains(&pair) || pairs.contains(&turned),
+                "{pairs:?}"
+            );
+        }
+        let classes: [&[usize]; 4] = [&[0, 2], &[1, 3], &[4, 6], &[5, 7]];
+        assert_eq!(images.orbits(&classes), Some(vec![0; 4]));
+        let torn: [&[usize]; 3] = [&[0, 1], &[2, 3], &[4, 5, 6, 7]];
+        assert_eq!(images.orbits(&torn), None);
+        images.take(None);
+        assert_eq!((images.asked(), images.refused()), (3, 1));
+    }
+}
