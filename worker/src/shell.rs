@@ -11,7 +11,7 @@ use crate::retry::{Backoff, Moment};
 use crate::session::{Command, Ending, Grant, Input, Limits, Session};
 use crate::transport::connect::UnusableAddress;
 use crate::transport::grpc::Grpc;
-use crate::transport::route::Route;
+use crate::transport::route::{Route, Services};
 use crate::transport::{Announcement, Lease, LeaseId, Receipt, Transport, TransportError};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -19,7 +19,6 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 use tokio::task::{AbortHandle, JoinSet};
 use tokio_util::sync::CancellationToken;
-use tonic::service::Routes;
 
 /// A chunk whose stage could not be fetched after so many attempts goes back: some 12 s.
 const MOST_FETCHES: u32 = 10;
@@ -57,7 +56,7 @@ pub async fn run(config: Config, shutdown: CancellationToken) -> Result<Ending, 
 /// Works for a coordinator of this process, until `shutdown` makes it give back what is unfinished and return.
 pub async fn run_in_process(
     config: Config,
-    services: Routes,
+    services: Services,
     shutdown: CancellationToken,
 ) -> Result<Ending, WorkerError> {
     let announcement = announcement(&config);

@@ -19,7 +19,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 use tonic::body::Body;
-use tonic::service::Routes;
 use tonic::transport::Channel;
 use tower::util::BoxCloneSyncService;
 use tower::{BoxError, Service, ServiceExt};
@@ -30,6 +29,9 @@ const ANSWER: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_secs(2);
 /// At the latest after this: somebody may have made room.
 const LONGEST_PAUSE: Duration = Duration::from_secs(300);
+
+/// The services of a coordinator.
+pub type Services = tonic::service::Routes;
 
 /// What carries calls where shared memory does not.
 type Carrier = BoxCloneSyncService<http::Request<Body>, http::Response<Body>, BoxError>;
@@ -87,7 +89,7 @@ impl Route {
     }
 
     /// To a coordinator of this process: nothing lies between.
-    pub fn in_process(services: Routes) -> Self {
+    pub fn in_process(services: Services) -> Self {
         Self {
             carrier: Carrier::new(ServiceExt::<http::Request<Body>>::map_err(
                 services,
