@@ -221,14 +221,14 @@ fn exceptional_sets_lie_in_one_another() {
     let family = r#"{"variables": ["x", "y"], "parameters": ["a", "b", "c", "d"],
         "equations": ["a*x + b*y", "c*x + d*y"]}"#;
     let (lines, _) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
-    assert_eq!(lines, [[3, 2, 1]]);
+    assert_eq!(lines, [[3, 2, 1], [0, 1, 2]]);
     let (planes, found) = exceptional(&folder, family, &["--fibre-dimension", "2"]);
     assert_eq!(planes, [[0, 1, 2]]);
     let set = &found["exceptional"]["sets"][0];
     assert_eq!(value(set, "a"), [0.0; 2]);
     // No value of a parameter makes a square vanish everywhere.
     let none = r#"{"variables": ["x"], "parameters": ["a"], "equations": ["x^2 - a"]}"#;
-    let (none, _) = exceptional(&folder, none, &["--fibre-dimension", "1"]);
+    let (none, _) = exceptional(&folder, none, &["--fibre-dimension", "1", "--copies", "2"]);
     assert!(none.is_empty());
 }
 

@@ -128,7 +128,13 @@ impl Exceptional {
                     set.fibre_dimension.to_string(),
                     set.components.join(", "),
                 ];
-                row.extend(set.point.iter().take(shown).map(|&z| complex(z, 6, 1e-12)));
+                let size = set.point.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
+                let is_zero = |z: &Complex64| z.norm_sqr() < 1e-24 * size;
+                let cell = |z: &Complex64| match is_zero(z) {
+                    true => "0".into(),
+                    false => complex(*z, 6, 1e-12),
+                };
+                row.extend(set.point.iter().take(shown).map(cell));
                 columns.row(row);
             }
             let _ = write!(text, "\n{}", columns.render(look));

@@ -194,7 +194,8 @@ Examples:
   cognate exceptional family.json --fibre-dimension 1 --copies 4 --output here
 
 Products with 1, 2, ... copies of the variables are decomposed. A component whose image in the parameters has too high
-a dimension to be cut out by so many general linear spaces is of an exceptional set; when all are, no other is missing.")]
+a dimension to be cut out by so many general linear spaces is of an exceptional set; when all are, no other is missing.
+Of sets inside others, over which the dimension is higher still, some may be listed, too; a higher H finds all of them.")]
 pub struct Exceptional {
     /// A family: a system with parameters, in any notation that has them; - is standard input
     pub file: PathBuf,
