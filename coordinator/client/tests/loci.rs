@@ -214,6 +214,48 @@ fn kites_are_exceptional_among_locked_four_bars() {
     assert_eq!((kites.count(), lines.count()), (1, 2));
 }
 
+/// Planar four-bars with ground 1, crank a, rocker b and coupler c in which the half tangents of both angles stay in
+/// proportion, s = m t (x = t^2): parallelograms (a = b, c = 1 or -1, m = 1) and the same as antiparallelograms,
+/// (a - 1) m = a + 1; kites (b = -1, c = a or -a, m = 0); and those with a = 0, two with m = 0, two with b = 0.
+#[test]
+fn parallelograms_and_kites_are_exceptional_among_four_bars() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let family = r#"{"variables": ["x"], "parameters": ["a", "b", "c", "m"],
+        "definitions": {"B": "(a + b + 1)^2 - c^2", "C": "(a + b - 1)^2 - c^2"},
+        "equations": ["((a - b + 1)^2 - c^2)*m^2*x^2 + (B + C*m^2 - 8*a*b*m)*x + (a - b - 1)^2 - c^2"]}"#;
+    let (sets, found) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
+    assert_eq!(sets.len(), 10);
+    let all = found["exceptional"]["sets"].as_array().unwrap();
+    let mut kinds = [0; 4];
+    for (set, numbers) in all.iter().zip(&sets) {
+        let [a, b, c, m] = ["a", "b", "c", "m"].map(|name| {
+            let [re, im] = value(set, name);
+            num_complex::Complex64::new(re, im)
+        });
+        let zero = |z: num_complex::Complex64| z.norm_sqr() < 1e-18;
+        let (kind, degree) = match () {
+            () if zero(a) => (3, 1),
+            () if zero(m) && zero(b + 1.0) && zero(c * c - a * a) => (2, 1),
+            () if zero(a - b) && zero(c * c - 1.0) && zero(m - 1.0) => (0, 1),
+            () if zero(a - b) && zero(c * c - 1.0) && zero((a - 1.0) * m - a - 1.0) => (1, 2),
+            () => panic!("{set}"),
+        };
+        assert_eq!(numbers, &[1, degree, 1]);
+        kinds[kind] += 1;
+    }
+    assert_eq!(kinds, [2, 2, 2, 4]);
+}
+
+/// Of the 27 lines on the cubic of Fermat those that are not in a plane z = constant.
+#[test]
+fn eighteen_lines_on_the_cubic_of_fermat_are_exceptional() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let family = r#"{"variables": ["t"], "parameters": ["a", "b", "c", "d"],
+        "equations": ["(a*t + b)^3 + (c*t + d)^3 + t^3 - 1"]}"#;
+    let (sets, _) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
+    assert_eq!(sets, [[0, 1, 1]; 18]);
+}
+
 /// Two linear equations without constants: solutions are lines where the determinant is 0, a plane where all is 0.
 #[test]
 fn exceptional_sets_lie_in_one_another() {

@@ -10,7 +10,7 @@ use super::sequence::{Sequence, Working, served};
 use crate::arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::output::exceptional::{Exceptional, Level, Set};
-use crate::output::{self, files};
+use crate::output::{self, files, text};
 use crate::problem::{self, Prepared};
 use crate::sets::KnownSet;
 use crate::sets::arguments;
@@ -97,8 +97,8 @@ async fn search(
             break;
         }
         jobs.say(&format!(
-            "{copies} copies: {} components, not all of exceptional sets for sure",
-            level.images.len()
+            "product {copies}: {}, not all of exceptional sets for sure",
+            text::counted(level.images.len() as u64, "component")
         ));
     }
     if let Some(folder) = &a.output {
