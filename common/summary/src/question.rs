@@ -212,8 +212,8 @@ fn surface_counts(surface: &RealSurface) -> Value {
 fn mesh(surface: &RealSurface) -> Value {
     let mesh = &surface.mesh;
     json!({
-        "id": surface.id.to_string(), "vertices": mesh.vertices, "triangles": mesh.triangles,
-        "segments": mesh.segments,
+        "id": surface.id.to_string(), "compact": surface.compact, "vertices": mesh.vertices,
+        "triangles": mesh.triangles, "segments": mesh.segments,
     })
 }
 

@@ -1,6 +1,7 @@
 //! Real surfaces as files: JSON, OBJ and STL for other programs, a picture, and a page on which the surface can be turned.
 
 use super::files::{create, write_file};
+use super::text::real;
 use crate::error::ClientError;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -17,8 +18,13 @@ const VIEW: [[f64; 3]; 3] = [
     [0.526_361, 0.701_814, 0.48],
 ];
 
+/// A picture of a surface that goes to infinity ends at so many times the median distance of its vertices.
+const CUT: f64 = 2.0;
+
 /// Triangles of a surface and curves on it.
 struct Mesh {
+    /// Whether it goes to infinity.
+    unbounded: bool,
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[usize; 3]>,
     segments: Vec<[usize; 2]>,
@@ -38,6 +44,7 @@ fn read(surface: &Value) -> Option<Mesh> {
         list.as_array()?.iter().map(row).collect()
     }
     let mesh = Mesh {
+        unbounded: surface["compact"] == false,
         vertices: all(&surface["vertices"], number)?,
         triangles: all(&surface["triangles"], place)?,
         segments: all(&surface["segments"], place)?,
@@ -118,10 +125,55 @@ fn normal(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
     }
 }
 
+/// The part of surfaces that pictures show, where one goes to infinity: a middle, and the greatest distance from it.
+fn ball(meshes: &[Mesh]) -> Option<([f64; 3], f64)> {
+    let unbounded = meshes.iter().filter(|mesh| mesh.unbounded);
+    let points: Vec<&[f64; 3]> = unbounded.flat_map(|mesh| &mesh.vertices).collect();
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    };
+    let coordinate = |k: usize| median(points.iter().map(|p| p[k]).collect());
+    let middle = [coordinate(0)?, coordinate(1)?, coordinate(2)?];
+    let distances = points.iter().map(|p| distance(p, &middle)).collect();
+    Some((middle, CUT * median(distances)?))
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let squares = a.iter().zip(b).map(|(x, y)| (x - y) * (x - y));
+    squares.sum::<f64>().sqrt()
+}
+
+/// What of the places is within a ball.
+fn within<const N: usize>(
+    mesh: &Mesh,
+    places: &[[usize; N]],
+    ball: Option<([f64; 3], f64)>,
+) -> Vec<[usize; N]> {
+    let is_in = |k: &usize| match ball {
+        None => true,
+        Some((middle, most)) => distance(&mesh.vertices[*k], &middle) <= most,
+    };
+    let all = places.iter().filter(|row| row.iter().all(is_in));
+    all.copied().collect()
+}
+
 /// The triangles from far to near, each as bright as it faces the light.
 fn picture(meshes: &[Mesh]) -> String {
     let seen = |p: &[f64; 3]| VIEW.map(|row| row.iter().zip(p).map(|(a, b)| a * b).sum::<f64>());
-    let points = meshes.iter().flat_map(|mesh| &mesh.vertices).map(seen);
+    let ball = ball(meshes);
+    let shown = meshes.iter().map(|mesh| Mesh {
+        unbounded: mesh.unbounded,
+        vertices: mesh.vertices.clone(),
+        triangles: within(mesh, &mesh.triangles, ball),
+        segments: within(mesh, &mesh.segments, ball),
+    });
+    let meshes: Vec<Mesh> = shown.collect();
+    let points = meshes.iter().flat_map(|mesh| {
+        let corners = mesh.triangles.iter().flatten();
+        let all = corners.chain(mesh.segments.iter().flatten());
+        all.map(|&k| seen(&mesh.vertices[k]))
+    });
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for point in points {
         for ((low, high), x) in low.iter_mut().zip(&mut high).zip(point) {
@@ -138,7 +190,7 @@ fn picture(meshes: &[Mesh]) -> String {
         format!("{x:.1},{y:.1}")
     };
     let mut parts: Vec<(f64, String)> = Vec::new();
-    for mesh in meshes {
+    for mesh in &meshes {
         for triangle in &mesh.triangles {
             let corners = triangle.map(|k| seen(&mesh.vertices[k]));
             let depth = corners.iter().map(|p| p[2]).sum::<f64>() / 3.0;
@@ -172,6 +224,14 @@ fn picture(meshes: &[Mesh]) -> String {
     );
     for (_, part) in parts {
         text.push_str(&part);
+    }
+    if let Some((middle, most)) = ball {
+        let [x, y, z] = middle.map(|x| real(x, 3));
+        let _ = writeln!(
+            text,
+            "<text x=\"8\" y=\"18\" font-family=\"sans-serif\" font-size=\"12\">cut at distance {} from ({x}, {y}, {z})</text>",
+            real(most, 3)
+        );
     }
     text.push_str("</svg>\n");
     text
