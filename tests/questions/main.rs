@@ -471,7 +471,9 @@ macro_rules! real_surfaces {
     )*};
 }
 
-// Euler characteristics by hand: a sphere has 2, a torus 0, a plane 1, a cylinder 0; at a cone's apex two planes meet.
+// Euler characteristics by hand: a sphere has 2, a torus 0, a plane 1, a cylinder 0; at a cone's apex two planes meet. The
+// cubic of Cayley is a ball with four cones at its nodes, 2 + 4 * 0. That of Clebsch, with 27 real lines, has -5 with its
+// points at infinity, which are three lines, 3 - 6.
 real_surfaces! {
     surface_sphere: "x^2 + y^2 + z^2 - 1", (2, true, 1);
     surface_ellipsoid: "x^2 + 4*y^2 + 9*z^2 - 2*x - 5", (2, true, 1);
@@ -484,6 +486,8 @@ real_surfaces! {
     surface_empty: "x^2 + y^2 + z^2 + 1", (0, true, 0);
     surface_point: "x^2 + 2*y^2 + 3*z^2", (1, true, 1);
     surface_quartic_ball: "x^4 + y^4 + z^4 - 1", (2, true, 1);
+    surface_cayley: "x^2 + y^2 + z^2 - 2*x*y*z - 1", (2, false, 1);
+    surface_clebsch: "x^3 + y^3 + z^3 + 1 - (x + y + z + 1)^3", (-2, false, 1);
 }
 
 /// What is said of a surface without doubt: its Euler characteristic, and whether it is bounded.

@@ -510,7 +510,9 @@ impl RealSurfaces {
                     .iter()
                     .map(|own| {
                         let (level, place) = vertex(own)?;
-                        Some((level, found.at_level(level, place, curves.singular)))
+                        // Where the outline is singular, sheets come as near as beside a double curve.
+                        let singular = curves.singular || own.is_singular();
+                        Some((level, found.at_level(level, place, singular)))
                     })
                     .collect();
                 for edge in &curve.edges {

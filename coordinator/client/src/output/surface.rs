@@ -144,35 +144,36 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// What of the places is within a ball.
-fn within<const N: usize>(
-    mesh: &Mesh,
-    places: &[[usize; N]],
-    ball: Option<([f64; 3], f64)>,
-) -> Vec<[usize; N]> {
-    let is_in = |k: &usize| match ball {
-        None => true,
-        Some((middle, most)) => distance(&mesh.vertices[*k], &middle) <= most,
+/// The part of a triangle or a line that is within a ball.
+fn within(corners: &[[f64; 3]], ball: Option<([f64; 3], f64)>) -> Vec<[f64; 3]> {
+    let Some((middle, most)) = ball else {
+        return corners.to_vec();
     };
-    let all = places.iter().filter(|row| row.iter().all(is_in));
-    all.copied().collect()
+    let mut part = Vec::with_capacity(corners.len() + 1);
+    let next = corners.iter().cycle().skip(1);
+    for (a, b) in corners.iter().zip(next) {
+        let [from, to] = [a, b].map(|p| distance(p, &middle) - most);
+        if from <= 0.0 {
+            part.push(*a);
+        }
+        if (from <= 0.0) != (to <= 0.0) {
+            part.push([0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * from / (from - to)));
+        }
+    }
+    part
 }
 
 /// The triangles from far to near, each as bright as it faces the light.
 fn picture(meshes: &[Mesh]) -> String {
     let seen = |p: &[f64; 3]| VIEW.map(|row| row.iter().zip(p).map(|(a, b)| a * b).sum::<f64>());
     let ball = ball(meshes);
-    let shown = meshes.iter().map(|mesh| Mesh {
-        unbounded: mesh.unbounded,
-        vertices: mesh.vertices.clone(),
-        triangles: within(mesh, &mesh.triangles, ball),
-        segments: within(mesh, &mesh.segments, ball),
-    });
-    let meshes: Vec<Mesh> = shown.collect();
+    let part = |mesh: &Mesh, places: &[usize]| -> Vec<[f64; 3]> {
+        let corners: Vec<[f64; 3]> = places.iter().map(|&k| mesh.vertices[k]).collect();
+        within(&corners, ball).iter().map(seen).collect()
+    };
     let points = meshes.iter().flat_map(|mesh| {
-        let corners = mesh.triangles.iter().flatten();
-        let all = corners.chain(mesh.segments.iter().flatten());
-        all.map(|&k| seen(&mesh.vertices[k]))
+        let triangles = mesh.triangles.iter().flat_map(|t| part(mesh, t));
+        triangles.chain(mesh.segments.iter().flat_map(|s| part(mesh, s)))
     });
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for point in points {
@@ -190,10 +191,13 @@ fn picture(meshes: &[Mesh]) -> String {
         format!("{x:.1},{y:.1}")
     };
     let mut parts: Vec<(f64, String)> = Vec::new();
-    for mesh in &meshes {
+    for mesh in meshes {
         for triangle in &mesh.triangles {
-            let corners = triangle.map(|k| seen(&mesh.vertices[k]));
-            let depth = corners.iter().map(|p| p[2]).sum::<f64>() / 3.0;
+            let corners = part(mesh, triangle);
+            if corners.len() < 3 {
+                continue;
+            }
+            let depth = corners.iter().map(|p| p[2]).sum::<f64>() / corners.len() as f64;
             let n = normal(corners[0], corners[1], corners[2]);
             // The light comes from the viewer, a little from above and from the left.
             let light = (-0.3 * n[0] + 0.5 * n[1] + 0.8 * n[2]).abs().min(1.0);
@@ -201,15 +205,16 @@ fn picture(meshes: &[Mesh]) -> String {
             let shade = 60.0 + 180.0 * if front { light } else { 0.7 * light };
             let [r, g, b] = [0.55, 0.75, 1.0].map(|part| (shade * part) as u8);
             let color = format!("#{r:02x}{g:02x}{b:02x}");
-            let corners = corners.map(at).join(" ");
+            let corners = corners.into_iter().map(at).collect::<Vec<_>>().join(" ");
             parts.push((depth, format!(
                 "<polygon points=\"{corners}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.4\"/>\n"
             )));
         }
         for segment in &mesh.segments {
-            let ends = segment.map(|k| seen(&mesh.vertices[k]));
-            let depth = (ends[0][2] + ends[1][2]) / 2.0 + 0.01 * range;
-            let ends = ends.map(at).join(" ");
+            let ends = part(mesh, segment);
+            let Some(first) = ends.first() else { continue };
+            let depth = first[2] + 0.01 * range;
+            let ends = ends.into_iter().map(at).collect::<Vec<_>>().join(" ");
             parts.push((depth, format!(
                 "<polyline points=\"{ends}\" fill=\"none\" stroke=\"#b02020\" stroke-width=\"1.5\"/>\n"
             )));
