@@ -120,7 +120,8 @@ fn blocks(answer: &Answer) -> Blocks {
                 json!({
                     "id": c.id.to_string(), "dimension": c.dimension, "degree": c.degree,
                     "fiber_dimension": c.fiber_dimension, "fiber_degree": c.fiber_degree,
-                    "rank_gap": c.rank_gap, "doubts": c.doubts,
+                    "same_image": c.same_image.map(|id| id.to_string()), "rank_gap": c.rank_gap,
+                    "doubts": c.doubts,
                 })
             });
             (None, Some(each.collect()), None)
@@ -211,8 +212,8 @@ fn surface_counts(surface: &RealSurface) -> Value {
 fn mesh(surface: &RealSurface) -> Value {
     let mesh = &surface.mesh;
     json!({
-        "id": surface.id.to_string(), "vertices": mesh.vertices, "triangles": mesh.triangles,
-        "segments": mesh.segments,
+        "id": surface.id.to_string(), "compact": surface.compact, "vertices": mesh.vertices,
+        "triangles": mesh.triangles, "segments": mesh.segments,
     })
 }
 

@@ -82,6 +82,8 @@ pub enum Command {
     Intersect(sets::Intersect),
     /// Where the equations lose rank on components
     SingularLocus(sets::Plain),
+    /// Values of a family's parameters over which its solutions have a higher dimension, by fibre products
+    Exceptional(sets::Exceptional),
     /// One path again, step by step
     Path(TracePath),
     /// Run the service that plans jobs and hands out their paths

@@ -52,6 +52,7 @@ fn start(command: Command) -> Started {
         Command::Coordinator(a) => Orderly(Box::pin(async move { coordinator::run(&a).await })),
         Command::Solve(a) => Orderly(Box::pin(async move { solve::run(&a).await })),
         Command::Decompose(a) => Orderly(Box::pin(async move { decompose::run(&a).await })),
+        Command::Exceptional(a) => Orderly(Box::pin(async move { exceptional::run(&a).await })),
         Command::Synthesize(a) => Orderly(Box::pin(async move { synthesize::run(&a).await })),
         Command::Member(a) => Orderly(Box::pin(async move { question::member(&a).await })),
         Command::Sample(a) => Orderly(Box::pin(async move { question::sample(&a).await })),

@@ -4,11 +4,12 @@
 //! special position, as many in the variables of the projection as the image has dimensions, the others
 //! general, cut out of the component the general fibres over the points of a general slice of the image: so many
 //! different images, each as often as the fibre's degree (Hauenstein, Sommese: Witness sets of projections, Appl. Math.
-//! Comput. 217, 2010). Both numbers must come out twice, at two such slices.
+//! Comput. 217, 2010). Both numbers must come out twice, at two such slices. Two images of one dimension meet a general
+//! slice in the same points where they are the same, else in no common one.
 
 use super::{Context, Operand, QuestionError};
 use crate::decomposition::job::Job;
-use cognate_continuation::bend::{Number, SlicedEquations};
+use cognate_continuation::bend::{Number, SlicedEquations, doubles_of};
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
@@ -33,6 +34,8 @@ const OTHER: f64 = 1e-6;
 pub(super) struct Project {
     onto: Vec<u32>,
     found: Vec<Projection>,
+    /// Of each component the points of its image on the first slice; none where they are not clear.
+    images: Vec<Vec<Vec<Complex64>>>,
 }
 
 impl Project {
@@ -55,6 +58,7 @@ impl Project {
         Ok(Self {
             onto: onto.to_vec(),
             found: Vec::new(),
+            images: Vec::new(),
         })
     }
 
@@ -70,6 +74,7 @@ impl Project {
                 degree: None,
                 fiber_degree: None,
                 fiber_dimension: None,
+                same_image: None,
                 rank_gap: gap.min(f64::MAX),
                 doubts: Vec::new(),
             };
@@ -77,12 +82,14 @@ impl Project {
                 let doubt = format!("ranks do not tell the dimension of the image: gap {gap:.1e}");
                 known.doubts.push(doubt);
                 self.found.push(known);
+                self.images.push(Vec::new());
                 continue;
             };
             known.fiber_dimension = Some(operand.dimension() as u32 - rank);
             self.found.push(known);
             if operand.dimension() == 0 {
-                self.settle(Some((1, 1)));
+                let point = doubles_of(&operand.set.points[0].point);
+                self.settle((1, 1), vec![self.image(&point)]);
                 continue;
             }
             let slice = |number: usize| self.special(with, operand, rank as usize, number);
@@ -92,10 +99,30 @@ impl Project {
         None
     }
 
-    fn settle(&mut self, counts: Option<(u64, u64)>) {
-        if let (Some(known), Some((degree, fiber))) = (self.found.last_mut(), counts) {
-            (known.degree, known.fiber_degree) = (Some(degree), Some(fiber));
+    fn image(&self, point: &[Complex64]) -> Vec<Complex64> {
+        self.onto.iter().map(|&v| point[v as usize]).collect()
+    }
+
+    /// Writes down the degrees of the last component, and whether its image is that of one before it.
+    fn settle(&mut self, (degree, fiber): (u64, u64), images: Vec<Vec<Complex64>>) {
+        let (known, before) = self.found.split_last_mut().expect("there is a last one");
+        (known.degree, known.fiber_degree) = (Some(degree), Some(fiber));
+        let others = before.iter().zip(&self.images);
+        for (other, its) in others.filter(|(other, _)| other.same_image.is_none()) {
+            if (other.dimension, other.degree) != (known.dimension, known.degree) {
+                continue;
+            }
+            match alike(&images, its) {
+                Some(true) => known.same_image = Some(other.id),
+                Some(false) => continue,
+                None => known.doubts.push(format!(
+                    "whether its image is that of {} is not clear",
+                    other.id
+                )),
+            }
+            break;
         }
+        self.images.push(images);
     }
 
     /// Rank of the projection on the tangent space at the witness points, and the least gap between singular values
@@ -173,16 +200,14 @@ impl Project {
         let operand = &with.operands[place];
         let mut counted = Vec::new();
         let mut doubts = Vec::new();
+        let mut first_images = Vec::new();
         let ends = job.ends();
         for ends in ends.chunks(operand.degree()) {
             let mut images: Vec<Vec<Complex64>> = Vec::new();
             let mut bad = 0;
             for (_, decision, end) in ends {
                 match decision.verdict {
-                    Verdict::Finite => {
-                        let image = self.onto.iter().map(|&v| end[v as usize]);
-                        images.push(image.collect());
-                    }
+                    Verdict::Finite => images.push(self.image(end)),
                     Verdict::AtInfinity => {}
                     _ => bad += 1,
                 }
@@ -196,15 +221,20 @@ impl Project {
                 Some(counts) => counted.push(counts),
                 None => doubts.push("images of fibres cannot be told apart".into()),
             }
+            if first_images.is_empty() {
+                first_images = images;
+            }
         }
         let first = counted.first().copied();
         if doubts.is_empty() && counted.iter().any(|&counts| Some(counts) != first) {
             doubts.push(format!("two slices give different degrees: {counted:?}"));
         }
-        if doubts.is_empty() {
-            self.settle(first);
-        } else {
-            self.found[place].doubts.extend(doubts);
+        match first.filter(|_| doubts.is_empty()) {
+            Some(first) => self.settle(first, first_images),
+            None => {
+                self.found[place].doubts.extend(doubts);
+                self.images.push(Vec::new());
+            }
         }
     }
 
@@ -220,6 +250,30 @@ fn rank_of(values: &[f64]) -> (usize, f64) {
     let before = rank.checked_sub(1).map_or(0.0, |k| values[k]);
     let after = values.get(rank).copied().unwrap_or(0.0);
     (rank, before / after.max(f64::EPSILON * largest))
+}
+
+/// Whether two lists hold the same points, however often each; `None` where some are neither equal nor different, or
+/// only some are common.
+fn alike(a: &[Vec<Complex64>], b: &[Vec<Complex64>]) -> Option<bool> {
+    let mut common = 0;
+    for point in a {
+        let size = point.iter().map(|z| z.norm_sqr()).sum::<f64>();
+        let size = size.sqrt().max(1.0);
+        let distance = |other: &Vec<Complex64>| {
+            let pairs = point.iter().zip(other);
+            pairs.map(|(x, y)| (x - y).norm_sqr()).sum::<f64>().sqrt() / size
+        };
+        let nearest = b.iter().map(distance).fold(f64::INFINITY, f64::min);
+        match () {
+            () if nearest <= SAME => common += 1,
+            () if nearest <= OTHER => return None,
+            () => {}
+        }
+    }
+    match common {
+        0 => Some(false),
+        _ => (common == a.len()).then_some(true),
+    }
 }
 
 /// The number of different points, and how often each is there; `None` where some are there more often than
@@ -275,5 +329,9 @@ mod tests {
         assert_eq!(grouped(&points[..3]), None);
         let near = [point(1.0, 2.0), point(1.0 + 1e-7, 2.0)];
         assert_eq!(grouped(&near), None);
+        assert_eq!(alike(&points, &points[..2]), Some(true));
+        assert_eq!(alike(&points, &near[..1]), None);
+        assert_eq!(alike(&near[1..], &points), None);
+        assert_eq!(alike(&[point(3.0, 2.0)], &points), Some(false));
     }
 }

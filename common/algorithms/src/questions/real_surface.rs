@@ -35,7 +35,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Forms that are tried until one leaves no doubt.
-const MOST_FORMS: u32 = 3;
+const MOST_FORMS: u32 = 6;
 /// Levels nearer than this part of their range are one.
 const SAME_LEVEL: f64 = 1e-7;
 /// Marks of a level nearer than this, relative to their size, are one.
@@ -510,7 +510,9 @@ impl RealSurfaces {
                     .iter()
                     .map(|own| {
                         let (level, place) = vertex(own)?;
-                        Some((level, found.at_level(level, place, curves.singular)))
+                        // Where the outline is singular, sheets come as near as beside a double curve.
+                        let singular = curves.singular || own.is_singular();
+                        Some((level, found.at_level(level, place, singular)))
                     })
                     .collect();
                 for edge in &curve.edges {

@@ -83,6 +83,8 @@ pub struct Projection {
     pub fiber_degree: Option<u64>,
     /// Dimension of a general fibre.
     pub fiber_dimension: Option<u32>,
+    /// The first of the components before it that has the same image.
+    pub same_image: Option<ComponentId>,
     /// Least gap between singular values that were taken as not 0 and as 0.
     pub rank_gap: f64,
     /// What is not clear.

@@ -24,7 +24,7 @@ pub async fn run(a: &Decompose) -> Result<Exit, ClientError> {
     };
     let prepared = problem::for_components(prepared, &a.components);
     if prepared.submission.options.target_parameters.len() > 1 {
-        return family::run(a, running.as_ref(), prepared).await;
+        return family::run(a, running, prepared).await;
     }
     let output = a.output();
     solve::anywhere(&a.service, running.as_ref(), &output, &a.progress, prepared).await

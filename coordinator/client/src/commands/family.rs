@@ -1,21 +1,18 @@
 //! A family at many values of its parameters: one decomposition at general values, from which components are followed
 //! to all others.
 
-use super::{submit, watch};
+use super::sequence::{Sequence, Working, served};
 use crate::arguments::{Decompose, Format};
-use crate::connection::{Connection, Target};
-use crate::embedded::Embedded;
+use crate::connection::Target;
 use crate::error::{ClientError, Exit};
+use crate::output;
 use crate::output::family::{Member, Sweep};
-use crate::output::progress::Progress;
-use crate::output::{self, decomposition, summary};
 use crate::problem::Prepared;
 use crate::sets::KnownSet;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_protocol::submission::Source;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::KnownComponents;
-use cognate_summary::AnySummary;
 use cognate_summary::decomposition::DecompositionSummary;
 use num_complex::Complex64;
 use std::path::Path;
@@ -26,35 +23,15 @@ const SEED: u64 = 1;
 /// Decomposes at general values, then at all that were given, prints, stops everything that it started.
 pub async fn run(
     a: &Decompose,
-    running: Option<&Target>,
+    running: Option<Target>,
     prepared: Prepared,
 ) -> Result<Exit, ClientError> {
-    let service = match running {
-        Some(_) => None,
-        None => Some(a.service.start().await?),
-    };
-    let own = service.as_ref().map(Embedded::target);
-    let target = running.or(own.as_ref()).expect("one of them is there");
-    let Some(mut service) = service else {
-        return tokio::select! {
-            ended = sweep(a, target, prepared) => ended,
-            () = crate::interrupted() => Err(ClientError::Interrupted),
-        };
-    };
-    let ended = tokio::select! {
-        ended = sweep(a, target, prepared) => ended,
-        error = service.tend() => Err(error),
-        () = crate::interrupted() => Err(ClientError::Interrupted),
-    };
-    service.stop().await;
-    ended
+    let shown = (a.progress.progress, a.format);
+    let work = |jobs| -> Working<'_> { Box::pin(sweep(a, jobs, prepared)) };
+    served(&a.service, shown, running, Box::new(work)).await
 }
 
-async fn sweep(
-    a: &Decompose,
-    target: &Target,
-    mut prepared: Prepared,
-) -> Result<Exit, ClientError> {
+async fn sweep(a: &Decompose, jobs: Sequence, mut prepared: Prepared) -> Result<Exit, ClientError> {
     let options = &mut prepared.submission.options;
     let seed = *options.seed.get_or_insert(SEED);
     let values = std::mem::take(&mut options.target_parameters);
@@ -66,10 +43,11 @@ async fn sweep(
     let folder = a.output.as_deref();
     let ask = Asking {
         a,
-        target,
+        jobs,
         prepared: &prepared,
     };
-    ask.say("decomposing at general values of the parameters");
+    ask.jobs
+        .say("decomposing at general values of the parameters");
     let at = folder.map(|folder| folder.join("general"));
     let (first, set) = ask.decompose(&general, None, at.as_deref()).await?;
     let known = known(&ask, &first, &set, &general);
@@ -105,7 +83,8 @@ fn known(
     let lowest = first.decomposition.by_dimension.first_key_value();
     let whole = lowest.is_some_and(|(_, d)| d.complete == Completeness::Yes);
     if !whole || ask.a.components.dimension.is_some() {
-        ask.say("no base for other values: the lowest dimension was not asked or is not settled");
+        ask.jobs
+            .say("no base for other values: the lowest dimension was not asked or is not settled");
         return None;
     }
     let Source::System(system) = &ask.prepared.submission.source else {
@@ -136,17 +115,12 @@ fn general_values(given: &[Vec<Complex64>], seed: u64) -> Vec<Complex64> {
 /// What all jobs of a sweep have in common.
 struct Asking<'a> {
     a: &'a Decompose,
-    target: &'a Target,
+    jobs: Sequence,
     prepared: &'a Prepared,
 }
 
 impl Asking<'_> {
-    fn say(&self, what: &str) {
-        let quiet = self.a.format == Format::Json;
-        Progress::of(self.a.progress.progress, quiet, std::time::Instant::now()).say(what);
-    }
-
-    /// One job: what it found, in words and as a set; files where a folder is named.
+    /// The family at these values.
     async fn decompose(
         &self,
         values: &[Complex64],
@@ -159,27 +133,6 @@ impl Asking<'_> {
         if let Some(wanted) = &mut options.decompose {
             wanted.known = known.cloned();
         }
-        let mut connection = Connection::open(self.target).await?;
-        let request = uuid::Uuid::new_v4().to_string();
-        let (job, _) = submit::send(&mut connection, &request, prepared).await?;
-        let mut progress = Progress::silent();
-        let (mut connection, last) = watch::follow(self.target, &job, &mut progress).await?;
-        match last.state() {
-            cognate_protocol::v1::JobState::Failed => {
-                return Err(ClientError::GaveUp(last.message));
-            }
-            cognate_protocol::v1::JobState::Cancelled => return Err(ClientError::Cancelled),
-            _ => {}
-        }
-        let text = connection.summary(&job).await?;
-        let AnySummary::Decomposition(found) = summary::read_any(&text)? else {
-            return Err(ClientError::GaveUp("its answer is no decomposition".into()));
-        };
-        if let Some(folder) = folder {
-            let components = connection.decomposition(&job).await?;
-            decomposition::write(folder, &text, components)?;
-        }
-        let set = KnownSet::of_job(&mut connection, &job).await?;
-        Ok((*found, set))
+        self.jobs.decompose(prepared, folder).await
     }
 }

@@ -58,7 +58,7 @@ pub async fn run(a: &Intersect) -> Result<Exit, ClientError> {
     };
     let mut both = first;
     both.system = system;
-    let prepared = prepared(&a.set, &both, Question::Intersect(second))?;
+    let prepared = prepared(a.set.preset, &both, Question::Intersect(second))?;
     send(&a.set, running.as_ref(), prepared).await
 }
 

@@ -2,6 +2,7 @@
 //! `certify`: what is asked of components that were found before. Each is a job, of a coordinator of its own or of a running one.
 
 use crate::commands::solve;
+use crate::common_arguments::PresetName;
 use crate::connection::{Connection, Target};
 use crate::error::{ClientError, Exit};
 use crate::output::curve_svg;
@@ -136,7 +137,7 @@ async fn ask(
 ) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
     let set = read(&a.set, &a.components, running.as_ref()).await?;
-    let prepared = prepared(a, &set, question(&set)?)?;
+    let prepared = prepared(a.preset, &set, question(&set)?)?;
     send(a, running.as_ref(), prepared).await
 }
 
@@ -169,14 +170,14 @@ pub(super) async fn send(
 }
 
 pub(super) fn prepared(
-    a: &SetArguments,
+    preset: PresetName,
     set: &KnownSet,
     question: Question,
 ) -> Result<Prepared, ClientError> {
     let options = Options {
         seed: Some(set.seed),
         settings: SettingsChoice {
-            preset: Some(Preset::from(a.preset)),
+            preset: Some(Preset::from(preset)),
             ..SettingsChoice::default()
         },
         name: set.name.chars().take(60).collect(),

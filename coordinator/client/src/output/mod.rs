@@ -7,6 +7,7 @@ pub mod curve_dxf;
 pub mod curve_svg;
 pub mod decomposition;
 pub mod drawing;
+pub mod exceptional;
 pub mod family;
 pub mod files;
 pub mod json;

@@ -1,6 +1,7 @@
 //! Real surfaces as files: JSON, OBJ and STL for other programs, a picture, and a page on which the surface can be turned.
 
 use super::files::{create, write_file};
+use super::text::real;
 use crate::error::ClientError;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -17,8 +18,13 @@ const VIEW: [[f64; 3]; 3] = [
     [0.526_361, 0.701_814, 0.48],
 ];
 
+/// A picture of a surface that goes to infinity ends at so many times the median distance of its vertices.
+const CUT: f64 = 2.0;
+
 /// Triangles of a surface and curves on it.
 struct Mesh {
+    /// Whether it goes to infinity.
+    unbounded: bool,
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[usize; 3]>,
     segments: Vec<[usize; 2]>,
@@ -38,6 +44,7 @@ fn read(surface: &Value) -> Option<Mesh> {
         list.as_array()?.iter().map(row).collect()
     }
     let mesh = Mesh {
+        unbounded: surface["compact"] == false,
         vertices: all(&surface["vertices"], number)?,
         triangles: all(&surface["triangles"], place)?,
         segments: all(&surface["segments"], place)?,
@@ -118,10 +125,56 @@ fn normal(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
     }
 }
 
+/// The part of surfaces that pictures show, where one goes to infinity: a middle, and the greatest distance from it.
+fn ball(meshes: &[Mesh]) -> Option<([f64; 3], f64)> {
+    let unbounded = meshes.iter().filter(|mesh| mesh.unbounded);
+    let points: Vec<&[f64; 3]> = unbounded.flat_map(|mesh| &mesh.vertices).collect();
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    };
+    let coordinate = |k: usize| median(points.iter().map(|p| p[k]).collect());
+    let middle = [coordinate(0)?, coordinate(1)?, coordinate(2)?];
+    let distances = points.iter().map(|p| distance(p, &middle)).collect();
+    Some((middle, CUT * median(distances)?))
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let squares = a.iter().zip(b).map(|(x, y)| (x - y) * (x - y));
+    squares.sum::<f64>().sqrt()
+}
+
+/// The part of a triangle or a line that is within a ball.
+fn within(corners: &[[f64; 3]], ball: Option<([f64; 3], f64)>) -> Vec<[f64; 3]> {
+    let Some((middle, most)) = ball else {
+        return corners.to_vec();
+    };
+    let mut part = Vec::with_capacity(corners.len() + 1);
+    let next = corners.iter().cycle().skip(1);
+    for (a, b) in corners.iter().zip(next) {
+        let [from, to] = [a, b].map(|p| distance(p, &middle) - most);
+        if from <= 0.0 {
+            part.push(*a);
+        }
+        if (from <= 0.0) != (to <= 0.0) {
+            part.push([0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * from / (from - to)));
+        }
+    }
+    part
+}
+
 /// The triangles from far to near, each as bright as it faces the light.
 fn picture(meshes: &[Mesh]) -> String {
     let seen = |p: &[f64; 3]| VIEW.map(|row| row.iter().zip(p).map(|(a, b)| a * b).sum::<f64>());
-    let points = meshes.iter().flat_map(|mesh| &mesh.vertices).map(seen);
+    let ball = ball(meshes);
+    let part = |mesh: &Mesh, places: &[usize]| -> Vec<[f64; 3]> {
+        let corners: Vec<[f64; 3]> = places.iter().map(|&k| mesh.vertices[k]).collect();
+        within(&corners, ball).iter().map(seen).collect()
+    };
+    let points = meshes.iter().flat_map(|mesh| {
+        let triangles = mesh.triangles.iter().flat_map(|t| part(mesh, t));
+        triangles.chain(mesh.segments.iter().flat_map(|s| part(mesh, s)))
+    });
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for point in points {
         for ((low, high), x) in low.iter_mut().zip(&mut high).zip(point) {
@@ -140,8 +193,11 @@ fn picture(meshes: &[Mesh]) -> String {
     let mut parts: Vec<(f64, String)> = Vec::new();
     for mesh in meshes {
         for triangle in &mesh.triangles {
-            let corners = triangle.map(|k| seen(&mesh.vertices[k]));
-            let depth = corners.iter().map(|p| p[2]).sum::<f64>() / 3.0;
+            let corners = part(mesh, triangle);
+            if corners.len() < 3 {
+                continue;
+            }
+            let depth = corners.iter().map(|p| p[2]).sum::<f64>() / corners.len() as f64;
             let n = normal(corners[0], corners[1], corners[2]);
             // The light comes from the viewer, a little from above and from the left.
             let light = (-0.3 * n[0] + 0.5 * n[1] + 0.8 * n[2]).abs().min(1.0);
@@ -149,15 +205,16 @@ fn picture(meshes: &[Mesh]) -> String {
             let shade = 60.0 + 180.0 * if front { light } else { 0.7 * light };
             let [r, g, b] = [0.55, 0.75, 1.0].map(|part| (shade * part) as u8);
             let color = format!("#{r:02x}{g:02x}{b:02x}");
-            let corners = corners.map(at).join(" ");
+            let corners = corners.into_iter().map(at).collect::<Vec<_>>().join(" ");
             parts.push((depth, format!(
                 "<polygon points=\"{corners}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.4\"/>\n"
             )));
         }
         for segment in &mesh.segments {
-            let ends = segment.map(|k| seen(&mesh.vertices[k]));
-            let depth = (ends[0][2] + ends[1][2]) / 2.0 + 0.01 * range;
-            let ends = ends.map(at).join(" ");
+            let ends = part(mesh, segment);
+            let Some(first) = ends.first() else { continue };
+            let depth = first[2] + 0.01 * range;
+            let ends = ends.into_iter().map(at).collect::<Vec<_>>().join(" ");
             parts.push((depth, format!(
                 "<polyline points=\"{ends}\" fill=\"none\" stroke=\"#b02020\" stroke-width=\"1.5\"/>\n"
             )));
@@ -172,6 +229,14 @@ fn picture(meshes: &[Mesh]) -> String {
     );
     for (_, part) in parts {
         text.push_str(&part);
+    }
+    if let Some((middle, most)) = ball {
+        let [x, y, z] = middle.map(|x| real(x, 3));
+        let _ = writeln!(
+            text,
+            "<text x=\"8\" y=\"18\" font-family=\"sans-serif\" font-size=\"12\">cut at distance {} from ({x}, {y}, {z})</text>",
+            real(most, 3)
+        );
     }
     text.push_str("</svg>\n");
     text

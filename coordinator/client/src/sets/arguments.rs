@@ -186,6 +186,45 @@ pub struct Mobility {
     pub depth: u32,
 }
 
+/// `cognate exceptional`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate exceptional lines_on_a_quadric.json --fibre-dimension 1
+  cognate exceptional family.json --fibre-dimension 1 --copies 4 --output here
+
+Products with 1, 2, ... copies of the variables are decomposed. A component whose image in the parameters has too high
+a dimension to be cut out by so many general linear spaces is of an exceptional set; when all are, no other is missing.
+Of sets inside others, over which the dimension is higher still, some may be listed, too; a higher H finds all of them.")]
+pub struct Exceptional {
+    /// A family: a system with parameters, in any notation that has them; - is standard input
+    pub file: PathBuf,
+    /// Sets of parameters are wanted over which the solutions have at least this dimension
+    #[arg(long, value_name = "H", value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub fibre_dimension: u32,
+    /// Copies of the variables in the first product that is decomposed
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub copies: u32,
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// A coordinator of the command's own, or one that runs.
+    #[command(flatten)]
+    pub service: OwnOrRunning,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+    /// Also write exceptional.json here, and the components of each product as a SET
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
+}
+
 fn accuracy(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
     match (0.0..0.5).contains(&value) {

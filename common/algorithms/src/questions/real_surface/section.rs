@@ -7,13 +7,16 @@
 /// A real point in the three forms: u, v and the third.
 pub(super) type Place = [f64; 3];
 
-/// Part of the width of a strip from which the sheets beside a mark are looked at: a sheet that passes the mark nearer
-/// than this part would be taken for one that comes to it,
-pub(super) const BESIDE: f64 = 2e-5;
+/// Part of the distance to the nearest other mark from which the sheets beside a mark are looked at: a sheet that passes
+/// the mark nearer than this part would be taken for one that comes to it. Beside a pinch point marks come together, and
+/// sheets look as beside a cusp from farther away;
+const BESIDE: f64 = 2e-5;
 /// ... beside one where the surface is singular, since there sheets come as near to one another,
-pub(super) const BESIDE_SINGULAR: f64 = 2e-3;
+const BESIDE_SINGULAR: f64 = 2e-3;
 /// ... and how much nearer the second look is.
-pub(super) const NEARER: f64 = 1.0 / 16.0;
+const NEARER: f64 = 1.0 / 16.0;
+/// No look is nearer than this part of the size of v: marks are known to about 1e-15.
+const NEAREST: f64 = 1e-11;
 /// A sheet whose distance to the mark shrinks at least to this part comes to it: at a fold it shrinks to a quarter, at a
 /// cusp of the projection to 0.4,
 const COMES: f64 = 0.45;
@@ -111,16 +114,24 @@ impl Section {
             }
         }
         let at = |group: &Vec<usize>| marks[group[0]].place[1];
-        let beside = |group: &Vec<usize>| match group.iter().any(|&m| marks[m].singular) {
-            true => BESIDE_SINGULAR,
-            false => BESIDE,
+        let mut borders = vec![window[0]];
+        borders.extend(groups.iter().map(at));
+        borders.push(window[1]);
+        // How far from a group of marks its sheets are looked at.
+        let beside = |j: usize| {
+            let part = match groups[j].iter().any(|&m| marks[m].singular) {
+                true => BESIDE_SINGULAR,
+                false => BESIDE,
+            };
+            let nearest = (borders[j + 1] - borders[j]).min(borders[j + 2] - borders[j + 1]);
+            (part * nearest).max(NEAREST * borders[j + 1].abs())
         };
         let mut strips = Vec::new();
         for j in 0..=groups.len() {
-            let ends = [j.checked_sub(1).map(|j| &groups[j]), groups.get(j)];
-            let [before, after] = ends.map(|group| group.map(at));
-            let (from, to) = (before.unwrap_or(window[0]), after.unwrap_or(window[1]));
-            let values = parts(samples, ends.map(|group| group.map(beside)));
+            let (from, to) = (borders[j], borders[j + 1]);
+            let ends = [j.checked_sub(1), (j < groups.len()).then_some(j)];
+            let part = |group: usize| beside(group) / (to - from);
+            let values = parts(samples, ends.map(|group| group.map(part)));
             let fibre = |part: f64| Fibre {
                 v: from + part * (to - from),
                 ..Fibre::default()

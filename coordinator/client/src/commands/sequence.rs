@@ -1,0 +1,106 @@
+//! Sequence: jobs of one command, one after the other, at a running coordinator or at one of the command's own.
+
+use super::{submit, watch};
+use crate::common_arguments::{Format, OwnOrRunning, ProgressForm};
+use crate::connection::{Connection, Target};
+use crate::embedded::Embedded;
+use crate::error::{ClientError, Exit};
+use crate::output::progress::Progress;
+use crate::output::{decomposition, summary};
+use crate::problem::Prepared;
+use crate::sets::KnownSet;
+use cognate_protocol::v1::JobState;
+use cognate_summary::AnySummary;
+use cognate_summary::decomposition::DecompositionSummary;
+use futures::future::LocalBoxFuture;
+use std::path::Path;
+use std::time::Instant;
+
+/// What a command does with its sequence of jobs.
+pub(super) type Working<'a> = LocalBoxFuture<'a, Result<Exit, ClientError>>;
+
+/// Where all jobs of a command go, and how it shows what it does.
+pub(super) struct Sequence {
+    target: Target,
+    progress: ProgressForm,
+    /// Whether the answer is one JSON object, so that nothing is said beside it unless asked for.
+    quiet: bool,
+}
+
+/// Does the work of a command at the running coordinator that was named, or at one of its own that is stopped then.
+pub(super) async fn served<'a>(
+    service: &OwnOrRunning,
+    (progress, format): (ProgressForm, Format),
+    running: Option<Target>,
+    work: Box<dyn FnOnce(Sequence) -> Working<'a> + 'a>,
+) -> Result<Exit, ClientError> {
+    let mut own = match running {
+        Some(_) => None,
+        None => Some(service.start().await?),
+    };
+    let here = own.as_ref().map(Embedded::target);
+    let sequence = Sequence {
+        target: running.or(here).expect("one of them is there"),
+        progress,
+        quiet: format == Format::Json,
+    };
+    let abandoned = async {
+        match &mut own {
+            Some(service) => service.tend().await,
+            None => std::future::pending().await,
+        }
+    };
+    let ended = tokio::select! {
+        ended = work(sequence) => ended,
+        error = abandoned => Err(error),
+        () = crate::interrupted() => Err(ClientError::Interrupted),
+    };
+    if let Some(service) = own {
+        service.stop().await;
+    }
+    ended
+}
+
+impl Sequence {
+    pub fn say(&self, what: &str) {
+        Progress::of(self.progress, self.quiet, Instant::now()).say(what);
+    }
+
+    /// One job to its end: its id and its summary, as it came and typed.
+    pub async fn answer(
+        &self,
+        prepared: Prepared,
+    ) -> Result<(Connection, String, String, AnySummary), ClientError> {
+        let mut connection = Connection::open(&self.target).await?;
+        let request = uuid::Uuid::new_v4().to_string();
+        let (job, _) = submit::send(&mut connection, &request, prepared).await?;
+        let mut progress = Progress::silent();
+        let (mut connection, last) = watch::follow(&self.target, &job, &mut progress).await?;
+        match last.state() {
+            JobState::Failed => return Err(ClientError::GaveUp(last.message)),
+            JobState::Cancelled => return Err(ClientError::Cancelled),
+            _ => {}
+        }
+        let text = connection.summary(&job).await?;
+        let found = summary::read_any(&text)?;
+        Ok((connection, job, text, found))
+    }
+
+    /// One decomposition: what it found, in words and as a set; files where a folder is named.
+    pub async fn decompose(
+        &self,
+        prepared: Prepared,
+        folder: Option<&Path>,
+    ) -> Result<(DecompositionSummary, KnownSet), ClientError> {
+        let (mut connection, job, text, found) = self.answer(prepared).await?;
+        let AnySummary::Decomposition(found) = found else {
+            return Err(ClientError::GaveUp("its answer is no decomposition".into()));
+        };
+        if let Some(folder) = folder {
+            let components = connection.decomposition(&job).await?;
+            decomposition::write(folder, &text, components)?;
+        }
+        let set = KnownSet::of_job(&mut connection, &job).await?;
+        Ok((*found, set))
+    }
+}
