@@ -45,16 +45,13 @@ fn one_component_of_an_orbit_is_split() {
         )
     };
     let exchange = r#"[{"permutation": {"x": "y", "y": "x"}}]"#;
-    let mut paths = Vec::new();
     for system in [system(), with_symmetry(system(), exchange)] {
         let found = decompose(&system, 1);
         assert!(found.settled(), "{}", doubts(&found));
         assert_eq!(counted(&found), [(1, 15, 1, 2)]);
         let loops = found.components[0].evidence.loops;
         assert!(loops > 0);
-        paths.push(found.paths_of_loops.total);
     }
-    assert!(paths[1] < paths[0], "{paths:?}");
     let found = decompose(&with_symmetry(system(), exchange), 1);
     assert_eq!(orbits(&found), [Some(1), Some(1)]);
 }

@@ -12,7 +12,7 @@ use super::moved::{MovedPoints, bounded, is_closed, misses_points};
 use super::problem::Problem;
 use super::proof::moving_slices;
 use super::search::Search;
-use super::symmetry::PointImages;
+use super::symmetry::{PointImages, WAYS};
 use cognate_continuation::bend::{length, rounded};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::form;
@@ -41,6 +41,8 @@ const MOST_LOOPS: u32 = 200;
 const BACK: f64 = 1e-6;
 /// Most points of a set whose conjugates and images under a symmetry group are followed.
 const MOST_IMAGES: usize = 5000;
+/// Streams of random numbers from this one on are those of images under a symmetry group.
+const IMAGES: u64 = 1 << 40;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
 
@@ -73,6 +75,8 @@ enum Loops {
         number: usize,
         parts: Vec<Vec<usize>>,
     },
+    /// Without this permutation of a symmetry group it falls into parts, some of which are closed together.
+    Exchanged { permutation: usize },
 }
 
 /// One set on its way to components.
@@ -135,7 +139,7 @@ impl Split {
         if self.set.dimension == 0 {
             let conjugates = self.conjugates(problem);
             self.mirrored = self.images(&conjugates, own);
-            while let Some((_, images)) = self.next_images(problem) {
+            while let Some(images) = self.next_images(problem) {
                 let images = self.images(&images, own);
                 self.symmetry.take(images);
             }
@@ -194,26 +198,34 @@ impl Split {
         next.or_else(|| self.mirror(problem, deflations))
     }
 
-    /// The images of all points under the next generator of the symmetry group, with its number; `None` where there
-    /// is none, or the set has many points or is deflated.
-    fn next_images(&mut self, problem: &Problem) -> Option<(usize, Vec<Vec<Complex64>>)> {
-        let number = self.symmetry.asked();
-        let map = problem.symmetry.get(number)?;
+    /// The images of all points under the next generator of the symmetry group; `None` where there is none, or the set
+    /// has many points or is deflated.
+    fn next_images(&mut self, problem: &Problem) -> Option<Vec<Vec<Complex64>>> {
+        let (generator, _) = self.symmetry.next();
+        let map = problem.symmetry.get(generator)?;
         if !self.set.ranks.is_empty() || self.set.points.len() > MOST_IMAGES {
             return None;
         }
         self.travellers = (0..self.set.points.len()).collect();
         let points = self.set.doubles().into_iter();
-        Some((number, points.map(|point| map.image(&point)).collect()))
+        Some(points.map(|point| map.image(&point)).collect())
     }
 
-    /// The stage that moves the images of the points from the images of the slices back to their own.
+    /// The stage that moves the images of the points from the images of the slices back to their own. A multiple of a
+    /// slice is the same slice, and begins another way.
     fn turn(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
-        let (number, points) = self.next_images(problem)?;
+        let points = self.next_images(problem)?;
         self.turning = true;
+        let (generator, way) = self.symmetry.next();
         let target = problem.slices(self.set.dimension);
-        let map = &problem.symmetry[number];
-        let start = target.iter().flat_map(|row| map.slice(row)).collect();
+        let number = (generator * WAYS + way) as u64;
+        let mut random = RandomStream::new(problem.seed(), Purpose::Loop, IMAGES + number);
+        let mut start = Vec::new();
+        for row in &target {
+            let factor = random.unit();
+            let image = problem.symmetry[generator].slice(row);
+            start.extend(image.into_iter().map(|c| c * factor));
+        }
         let homotopy = HomotopyKind::Parameter {
             start,
             targets: vec![target.concat()],
@@ -392,8 +404,8 @@ impl Split {
         let pairs = self.travellers.iter().zip(images);
         let moved = pairs.filter(|(from, to)| **from != *to);
         let edge: Vec<[usize; 2]> = moved.map(|(&from, to)| [from, to]).collect();
-        let edge = self.symmetry.with_images(edge);
-        join(&mut self.classes, &edge);
+        let joined = self.symmetry.with_images(edge.clone(), None);
+        join(&mut self.classes, &joined);
         self.edges.push(edge);
         match self.classes.len() < before {
             true => self.idle = 0,
@@ -483,21 +495,36 @@ impl Split {
         let mut k = 0;
         while k < self.classes.len() {
             let class = &self.classes[k];
-            if let (None, Loops::Jumped { number, parts }) =
-                (&class.closed, self.loops_of(class, own))
-            {
-                let inside = self.classes.remove(k).points;
-                self.edges[number].retain(|pair| !inside.contains(&pair[0]));
-                self.broken += 1;
-                let open = |points| Class {
-                    points,
-                    closed: None,
-                };
-                self.classes.extend(parts.into_iter().map(open));
-                k = 0;
-            } else {
-                k += 1;
-            }
+            let loops = match class.closed {
+                None => self.loops_of(class, own),
+                Some(_) => Loops::Sound,
+            };
+            let parts = match loops {
+                Loops::Sound | Loops::Untested => {
+                    k += 1;
+                    continue;
+                }
+                Loops::Jumped { number, parts } => {
+                    let inside = &self.classes[k].points;
+                    self.edges[number].retain(|pair| !inside.contains(&pair[0]));
+                    parts
+                }
+                Loops::Exchanged { permutation } => {
+                    self.symmetry.take_back(permutation);
+                    let all = self.edges.iter().flatten().copied().collect();
+                    let pairs = self.symmetry.with_images(all, None);
+                    let inside = &self.classes[k].points;
+                    parts(inside, &places(inside), pairs.iter())
+                }
+            };
+            self.classes.remove(k);
+            self.broken += 1;
+            let open = |points| Class {
+                points,
+                closed: None,
+            };
+            self.classes.extend(parts.into_iter().map(open));
+            k = 0;
         }
     }
 
@@ -506,17 +533,30 @@ impl Split {
         if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied())) {
             return Loops::Sound;
         }
-        let places = class.points.iter().enumerate();
-        let place: BTreeMap<usize, usize> = places.map(|(k, &point)| (point, k)).collect();
+        let place = places(&class.points);
+        let pairs = |without: Option<usize>| -> Vec<[usize; 2]> {
+            let edges = self.edges.iter().enumerate();
+            let edges = edges.filter(|(other, _)| Some(*other) != without);
+            edges.flat_map(|(_, edge)| edge).copied().collect()
+        };
         let mut answer = Loops::Sound;
         for number in 0..self.edges.len() {
-            let others = self.edges.iter().enumerate();
-            let others = others.filter(|(other, _)| *other != number);
-            let parts = parts(&class.points, &place, others.flat_map(|(_, edge)| edge));
+            let others = self.symmetry.with_images(pairs(Some(number)), None);
+            let parts = parts(&class.points, &place, others.iter());
             match parts.len() {
                 1 => {}
                 many if many > MOST_PARTS => answer = Loops::Untested,
                 _ if self.has_closed_part(&parts, own) => return Loops::Jumped { number, parts },
+                _ => {}
+            }
+        }
+        for permutation in 0..self.symmetry.count() {
+            let others = self.symmetry.with_images(pairs(None), Some(permutation));
+            let parts = parts(&class.points, &place, others.iter());
+            match parts.len() {
+                1 => {}
+                many if many > MOST_PARTS => answer = Loops::Untested,
+                _ if self.has_closed_part(&parts, own) => return Loops::Exchanged { permutation },
                 _ => {}
             }
         }
@@ -715,7 +755,7 @@ impl Split {
         let points: Vec<&[usize]> = classes.iter().map(|c| c.points.as_slice()).collect();
         match self.symmetry.orbits(&points) {
             Some(orbits) => (Some(orbits), refused),
-            None => (None, self.symmetry.asked() as u64),
+            None => (None, self.symmetry.generators()),
         }
     }
 
@@ -784,6 +824,12 @@ impl Split {
             },
         }
     }
+}
+
+/// Where each of these points is among them.
+fn places(points: &[usize]) -> BTreeMap<usize, usize> {
+    let places = points.iter().enumerate();
+    places.map(|(k, &point)| (point, k)).collect()
 }
 
 /// The points in the parts that these pairs leave; `place`: where each point of the set is among them.
@@ -958,6 +1004,39 @@ mod tests {
         assert!(closed(&split).is_empty());
         go_around(&mut split, &around);
         assert_eq!((closed(&split), split.broken), (components.to_vec(), 1));
+    }
+
+    /// Two components that a symmetry exchanges; by one of two ways two of its paths exchanged their ends.
+    #[test]
+    fn an_image_to_which_a_path_jumped_brings_nothing_together() {
+        const DEGREE: usize = 40;
+        let exchanged: Vec<usize> = (0..2 * DEGREE)
+            .map(|k| (k + DEGREE) % (2 * DEGREE))
+            .collect();
+        let mut around: Vec<usize> = (0..2 * DEGREE).collect();
+        around[..DEGREE].rotate_left(1);
+        around[DEGREE..].rotate_left(1);
+        let all: Vec<usize> = (0..2 * DEGREE).collect();
+        let components = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        for jumps in [false, true] {
+            let mut split = two_components(DEGREE);
+            for way in 0..WAYS {
+                let mut images = exchanged.clone();
+                if jumps && way == 1 {
+                    images.swap(3, DEGREE + 7);
+                }
+                split.symmetry.take(Some(images));
+            }
+            // Points of one component stand for all.
+            for _ in 0..3 {
+                let open: Vec<usize> = split.open_points().collect();
+                split.travellers = split.symmetry.least_of_each(&open);
+                let images: Vec<usize> = split.travellers.iter().map(|&k| around[k]).collect();
+                go_around(&mut split, &images);
+            }
+            assert_eq!(closed(&split), components, "jumps: {jumps}");
+            assert_eq!(split.symmetry.refused(), u64::from(jumps));
+        }
     }
 
     #[test]

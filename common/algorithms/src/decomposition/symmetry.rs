@@ -123,22 +123,27 @@ impl LinearMap {
     }
 }
 
+/// Ways by which the images under each generator are moved back: a path that jumps on one of them does not on the other.
+pub(crate) const WAYS: usize = 2;
+
 /// Where the generators of a symmetry group take the witness points of a set.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PointImages {
-    /// Of each generator that permutes the witness points, where each of them comes.
-    permutations: Vec<Vec<usize>>,
-    /// Generators whose images are not the witness points.
+    /// Generators and ways that were asked, in this order.
+    asked: usize,
+    /// Of each generator that permutes the witness points, by each way, where each of them comes.
+    permutations: Vec<(usize, Vec<usize>)>,
+    /// Generators that do not.
     refused: u64,
 }
 
 impl PointImages {
-    /// How many generators were asked.
-    pub fn asked(&self) -> usize {
-        self.permutations.len() + self.refused as usize
+    /// The generator that is asked next, and the way.
+    pub fn next(&self) -> (usize, usize) {
+        (self.asked / WAYS, self.asked % WAYS)
     }
 
-    /// How many of them do not permute the witness points.
+    /// How many generators do not permute the witness points.
     pub fn refused(&self) -> u64 {
         self.refused
     }
@@ -148,12 +153,40 @@ impl PointImages {
         !self.permutations.is_empty()
     }
 
-    /// Takes where the next generator takes all points; `None`: they are no permutation.
+    /// How many generators were asked.
+    pub fn generators(&self) -> u64 {
+        self.asked.div_ceil(WAYS) as u64
+    }
+
+    /// How many permutations are known, each by its own way.
+    pub fn count(&self) -> usize {
+        self.permutations.len()
+    }
+
+    /// Takes where the next generator takes all points by the next way; `None`: they are no permutation.
     pub fn take(&mut self, images: Option<Vec<usize>>) {
+        let (generator, _) = self.next();
         match images {
-            Some(images) => self.permutations.push(images),
-            None => self.refused += 1,
+            Some(images) => {
+                self.permutations.push((generator, images));
+                self.asked += 1;
+            }
+            None => {
+                self.asked = (generator + 1) * WAYS;
+                self.refuse(generator);
+            }
         }
+    }
+
+    /// Takes back the generator of a permutation that two paths exchanged.
+    pub fn take_back(&mut self, permutation: usize) {
+        let (generator, _) = self.permutations[permutation];
+        self.refuse(generator);
+    }
+
+    fn refuse(&mut self, generator: usize) {
+        self.permutations.retain(|(of, _)| *of != generator);
+        self.refused += 1;
     }
 
     /// The least of these points in each of their orbits, ascending.
@@ -167,16 +200,16 @@ impl PointImages {
             least.push(point);
             let mut next = vec![point];
             while let Some(point) = next.pop() {
-                let images = self.permutations.iter().map(|images| images[point]);
+                let images = self.permutations.iter().map(|(_, images)| images[point]);
                 next.extend(images.filter(|&image| reached.insert(image)));
             }
         }
         least
     }
 
-    /// Pairs of points that bring together what these do, and all their images.
-    pub fn with_images(&self, pairs: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
-        let Some(count) = self.permutations.first().map(Vec::len) else {
+    /// Pairs of points that bring together what these do, and all their images, but for those by one permutation.
+    pub fn with_images(&self, pairs: Vec<[usize; 2]>, without: Option<usize>) -> Vec<[usize; 2]> {
+        let Some(count) = self.permutations.first().map(|(_, images)| images.len()) else {
             return pairs;
         };
         let mut parent: Vec<usize> = (0..count).collect();
@@ -196,7 +229,8 @@ impl PointImages {
                 continue;
             }
             parent[roots.0.max(roots.1)] = roots.0.min(roots.1);
-            for images in &self.permutations {
+            let permutations = self.permutations.iter().enumerate();
+            for (_, (_, images)) in permutations.filter(|(k, _)| Some(*k) != without) {
                 let image = [images[a], images[b]];
                 all.push(image);
                 next.push(image);
@@ -212,7 +246,7 @@ impl PointImages {
             class_of.extend(class.iter().map(|&point| (point, k)));
         }
         let mut orbits: Vec<usize> = (0..classes.len()).collect();
-        for images in &self.permutations {
+        for (_, images) in &self.permutations {
             for (k, class) in classes.iter().enumerate() {
                 let image = *class_of.get(&images[*class.first()?])?;
                 let whole = class
@@ -247,7 +281,7 @@ mod tests {
 
     #[test]
     fn the_image_of_a_point_is_on_the_image_of_its_slice() {
-        let cycle = r#"[{"permutation": {"x": "y", "y": "z", "z": "x"}}, {"map": {"x": "2*x - y + 3", "y": "I*z"}}]"#;
+        let cycle = r#"[{"permutation": {"x": "y", "y": "z", "z": "x"}}, {"map": {"x": "2*x - y + 3", "y": "I*z", "z": "x + y"}}]"#;
         let maps = LinearMap::all(&read(cycle)).unwrap();
         let number = |re: f64, im: f64| Complex64::new(re, im);
         let point = [number(1.0, 2.0), number(-0.5, 1.0), number(3.0, -1.0)];
@@ -288,10 +322,13 @@ mod tests {
     fn pairs_and_classes_go_with_their_images() {
         let mut images = PointImages::default();
         // Two squares that are turned, and exchanged.
-        images.take(Some(vec![1, 2, 3, 0, 5, 6, 7, 4]));
-        images.take(Some(vec![4, 5, 6, 7, 0, 1, 2, 3]));
+        for permutation in [[1, 2, 3, 0, 5, 6, 7, 4], [4, 5, 6, 7, 0, 1, 2, 3]] {
+            for _ in 0..WAYS {
+                images.take(Some(permutation.to_vec()));
+            }
+        }
         assert_eq!(images.least_of_each(&[2, 3, 5]), [2]);
-        let pairs = images.with_images(vec![[0, 2]]);
+        let pairs = images.with_images(vec![[0, 2]], Some(1));
         for pair in [[0, 2], [1, 3], [4, 6], [5, 7]] {
             let turned = [pair[1], pair[0]];
             assert!(
@@ -304,6 +341,11 @@ mod tests {
         let torn: [&[usize]; 3] = [&[0, 1], &[2, 3], &[4, 5, 6, 7]];
         assert_eq!(images.orbits(&torn), None);
         images.take(None);
-        assert_eq!((images.asked(), images.refused()), (3, 1));
+        assert_eq!((images.next(), images.refused()), ((3, 0), 1));
+        // Nothing is left of a generator that one way refuses.
+        images.take(Some((0..8).collect()));
+        images.take(None);
+        assert_eq!((images.generators(), images.refused()), (4, 2));
+        assert_eq!(images.count(), 2 * WAYS);
     }
 }
