@@ -238,7 +238,8 @@ impl Store {
         let failed = matches!(&put, Err(error) if !is_there_already(error));
         self.measures.writes.observe(begin.elapsed(), failed);
         match put {
-            Ok(_) => Ok(true),
+            // Where the folder went away meanwhile, the write made another one, which is none of ours.
+            Ok(_) => self.is_there().map(|()| true),
             Err(object_store::Error::AlreadyExists { .. }) => Ok(false),
             Err(error) => Err(error.into()),
         }
