@@ -11,6 +11,7 @@
 
 mod carried;
 pub(crate) mod cascade;
+mod classes;
 mod costs;
 pub(crate) mod deflated;
 mod dimension_start;

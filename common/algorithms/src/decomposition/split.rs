@@ -6,6 +6,7 @@
 //! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
 //! point comes to one of the same component.
 
+use super::classes::{Class, join, parts, places};
 use super::deflated::{Deflations, PureSet};
 use super::job::Job;
 use super::moved::{MovedPoints, bounded, is_closed, misses_points};
@@ -45,24 +46,6 @@ const MOST_IMAGES: usize = 5000;
 const IMAGES: u64 = 1 << 40;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
-
-/// Points that belong together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Class {
-    points: Vec<usize>,
-    /// What it rests on, once it is a component.
-    closed: Option<Trace>,
-}
-
-impl Class {
-    /// A point by itself.
-    fn of(point: usize) -> Self {
-        Self {
-            points: vec![point],
-            closed: None,
-        }
-    }
-}
 
 /// What is known of the loops that brought a closed class together.
 enum Loops {
@@ -822,64 +805,6 @@ impl Split {
                 proof: None,
                 doubts,
             },
-        }
-    }
-}
-
-/// Where each of these points is among them.
-fn places(points: &[usize]) -> BTreeMap<usize, usize> {
-    let places = points.iter().enumerate();
-    places.map(|(k, &point)| (point, k)).collect()
-}
-
-/// The points in the parts that these pairs leave; `place`: where each point of the set is among them.
-fn parts<'a>(
-    points: &[usize],
-    place: &BTreeMap<usize, usize>,
-    pairs: impl Iterator<Item = &'a [usize; 2]>,
-) -> Vec<Vec<usize>> {
-    let mut parent: Vec<usize> = (0..points.len()).collect();
-    fn root(parent: &mut [usize], mut k: usize) -> usize {
-        while parent[k] != k {
-            parent[k] = parent[parent[k]];
-            k = parent[k];
-        }
-        k
-    }
-    for [from, to] in pairs {
-        if let (Some(&a), Some(&b)) = (place.get(from), place.get(to)) {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b)] = a.min(b);
-        }
-    }
-    let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (k, &point) in points.iter().enumerate() {
-        parts.entry(root(&mut parent, k)).or_default().push(point);
-    }
-    parts.into_values().collect()
-}
-
-/// Joins the classes of each of these pairs of points.
-fn join(classes: &mut Vec<Class>, pairs: &[[usize; 2]]) {
-    let mut place: BTreeMap<usize, usize> = BTreeMap::new();
-    for (k, class) in classes.iter().enumerate() {
-        place.extend(class.points.iter().map(|&point| (point, k)));
-    }
-    let places: Vec<usize> = (0..classes.len()).collect();
-    let identity: BTreeMap<usize, usize> = places.iter().map(|&k| (k, k)).collect();
-    let joined: Vec<[usize; 2]> = pairs
-        .iter()
-        .map(|pair| pair.map(|point| place[&point]))
-        .collect();
-    let together = parts(&places, &identity, joined.iter());
-    let mut before: Vec<Option<Class>> = std::mem::take(classes).into_iter().map(Some).collect();
-    for members in together {
-        let mut taken = members.into_iter().filter_map(|k| before[k].take());
-        if let Some(mut first) = taken.next() {
-            for other in taken {
-                first.points.extend(other.points);
-            }
-            classes.push(first);
         }
     }
 }
