@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Points that belong together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Class {
-    /// Their numbers.
+    /// Numbers of its points within the set.
     pub points: Vec<usize>,
     /// What it rests on, once it is a component.
     pub closed: Option<Trace>,
