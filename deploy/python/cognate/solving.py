@@ -32,9 +32,10 @@ def solve(
 
     `problem`: a `System`; equations, as strings or of sympy, one or a list; our JSON as a mapping; a file
     (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of such a file.
-    `workers`: processes that track, with `threads` each; by default none for what is done in a moment, else two. `progress`: see `cognate.progress.Wanted`. `strict`: an
-    answer that is not settled is raised as `Unsettled` instead of a warning. `output`: a folder for all files,
-    paths.parquet and Bertini's among them. `options`: see `Options`.
+    `workers`: processes that track, with `threads` each; by default none for what is done in a moment, else two.
+    `progress`: see `cognate.progress.Wanted`. `strict`: an answer that is not settled is raised as `Unsettled`
+    instead of a warning. `output`: a folder for all files, paths.parquet and Bertini's among them. `options`: see
+    `Options`.
 
     Warns with `UnsettledWarning` where paths failed, ends are undecided or counts do not add up. Raises
     `InputError` where the problem or an option is wrong, `ServiceError` where the program gives up.
