@@ -15,6 +15,7 @@ pub mod classification;
 pub mod closing_options;
 pub mod completeness;
 pub mod degenerate;
+pub mod disjoint_sets;
 pub mod field;
 pub mod images;
 pub mod involution;

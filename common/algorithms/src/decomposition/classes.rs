@@ -1,5 +1,6 @@
 //! Classes: witness points that belong together, and what pairs of points bring together.
 
+use cognate_solutions::disjoint_sets::DisjointSets;
 use cognate_solutions::witness::Trace;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -35,25 +36,15 @@ pub(super) fn parts<'a>(
     place: &BTreeMap<usize, usize>,
     pairs: impl Iterator<Item = &'a [usize; 2]>,
 ) -> Vec<Vec<usize>> {
-    let mut parent: Vec<usize> = (0..points.len()).collect();
-    fn root(parent: &mut [usize], mut k: usize) -> usize {
-        while parent[k] != k {
-            parent[k] = parent[parent[k]];
-            k = parent[k];
-        }
-        k
-    }
+    let mut joined = DisjointSets::new(points.len());
     for [from, to] in pairs {
         if let (Some(&a), Some(&b)) = (place.get(from), place.get(to)) {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b)] = a.min(b);
+            joined.join(a, b);
         }
     }
-    let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (k, &point) in points.iter().enumerate() {
-        parts.entry(root(&mut parent, k)).or_default().push(point);
-    }
-    parts.into_values().collect()
+    let clusters = joined.clusters().into_iter();
+    let of_points = |members: Vec<usize>| members.into_iter().map(|k| points[k]).collect();
+    clusters.map(of_points).collect()
 }
 
 /// Joins the classes of each of these pairs of points.

@@ -8,7 +8,7 @@
 
 use super::classes::{Class, join, parts, places};
 use super::deflated::{Deflations, PureSet};
-use super::job::Job;
+use super::job::{Job, Tracking};
 use super::moved::{MovedPoints, bounded, is_closed, misses_points};
 use super::problem::Problem;
 use super::proof::moving_slices;
@@ -200,22 +200,15 @@ impl Split {
         let points = self.next_images(problem)?;
         self.turning = true;
         let (generator, way) = self.symmetry.next();
-        let target = problem.slices(self.set.dimension);
         let number = (generator * WAYS + way) as u64;
         let mut random = RandomStream::new(problem.seed(), Purpose::Loop, IMAGES + number);
         let mut start = Vec::new();
-        for row in &target {
+        for row in &problem.slices(self.set.dimension) {
             let factor = random.unit();
             let image = problem.symmetry[generator].slice(row);
             start.extend(image.into_iter().map(|c| c * factor));
         }
-        let homotopy = HomotopyKind::Parameter {
-            start,
-            targets: vec![target.concat()],
-        };
-        let system = deflations.of_stage(problem, &self.set.tracked());
-        let system = (self.set.tracked(), &*system);
-        Some(Job::track(system, homotopy, &points, &problem.tracking).ends_only())
+        Some(self.move_home((problem, deflations), start, &points, &problem.tracking))
     }
 
     /// The conjugates of the points; none where conjugation means nothing or the set has many points.
@@ -236,20 +229,30 @@ impl Split {
         let points = self.conjugates(problem);
         let involution = problem.involution.as_ref().filter(|_| !points.is_empty())?;
         self.mirroring = true;
-        let target = problem.slices(self.set.dimension);
         let mut start = Vec::new();
-        for row in &target {
+        for row in &problem.slices(self.set.dimension) {
             start.push(row[0].conj());
             start.extend(involution.image(&row[1..]));
         }
+        let with = problem.tracking.soon_given_up();
+        Some(self.move_home((problem, deflations), start, &points, &with))
+    }
+
+    /// The stage that moves points from these slices to those of the set.
+    fn move_home(
+        &self,
+        (problem, deflations): (&Problem, &mut Deflations),
+        start: Vec<Complex64>,
+        points: &[Vec<Complex64>],
+        with: &Tracking,
+    ) -> Job {
         let homotopy = HomotopyKind::Parameter {
             start,
-            targets: vec![target.concat()],
+            targets: vec![problem.slices(self.set.dimension).concat()],
         };
         let system = deflations.of_stage(problem, &self.set.tracked());
         let system = (self.set.tracked(), &*system);
-        let with = problem.tracking.soon_given_up();
-        Some(Job::track(system, homotopy, &points, &with).ends_only())
+        Job::track(system, homotopy, points, with).ends_only()
     }
 
     /// The stage that asks how the points move when the slices do.

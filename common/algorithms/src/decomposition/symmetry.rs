@@ -7,6 +7,7 @@ use cognate_numeric::linear_algebra::inverse::inverse;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::Complex;
+use cognate_solutions::disjoint_sets::DisjointSets;
 use cognate_solutions::symmetry::action::Action;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -212,23 +213,14 @@ impl PointImages {
         let Some(count) = self.permutations.first().map(|(_, images)| images.len()) else {
             return pairs;
         };
-        let mut parent: Vec<usize> = (0..count).collect();
-        fn root(parent: &mut [usize], mut k: usize) -> usize {
-            while parent[k] != k {
-                parent[k] = parent[parent[k]];
-                k = parent[k];
-            }
-            k
-        }
+        let mut joined = DisjointSets::new(count);
         let mut all = pairs;
         let mut next = all.clone();
         // Each pair that joins is followed once: there are fewer than points.
         while let Some([a, b]) = next.pop() {
-            let roots = (root(&mut parent, a), root(&mut parent, b));
-            if roots.0 == roots.1 {
+            if !joined.join(a, b) {
                 continue;
             }
-            parent[roots.0.max(roots.1)] = roots.0.min(roots.1);
             let permutations = self.permutations.iter().enumerate();
             for (_, (_, images)) in permutations.filter(|(k, _)| Some(*k) != without) {
                 let image = [images[a], images[b]];

@@ -5,6 +5,7 @@
 //! compared in full. The answer depends on the points alone, not on how they
 //! were split among workers.
 
+use crate::disjoint_sets::DisjointSets;
 use crate::point_shape::PointShape;
 use num_complex::Complex64;
 
@@ -78,47 +79,6 @@ pub(crate) struct Reach {
     pub from: f64,
     pub to: f64,
     pub place: usize,
-}
-
-/// Sets that only ever grow together.
-struct DisjointSets {
-    parent: Vec<usize>,
-}
-
-impl DisjointSets {
-    fn new(count: usize) -> Self {
-        Self {
-            parent: (0..count).collect(),
-        }
-    }
-
-    fn root(&mut self, mut member: usize) -> usize {
-        while self.parent[member] != member {
-            self.parent[member] = self.parent[self.parent[member]];
-            member = self.parent[member];
-        }
-        member
-    }
-
-    /// The smallest member is the root, so that roots do not depend on the order of joining.
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b);
-    }
-
-    fn clusters(mut self) -> Vec<Vec<usize>> {
-        let mut place = vec![usize::MAX; self.parent.len()];
-        let mut clusters: Vec<Vec<usize>> = Vec::new();
-        for member in 0..self.parent.len() {
-            let root = self.root(member);
-            if place[root] == usize::MAX {
-                place[root] = clusters.len();
-                clusters.push(Vec::new());
-            }
-            clusters[place[root]].push(member);
-        }
-        clusters
-    }
 }
 
 #[cfg(test)]

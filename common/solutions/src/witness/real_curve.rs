@@ -2,6 +2,7 @@
 //! the curve singular, and between them arcs on which the form grows.
 
 use super::witness_set::ComponentId;
+use crate::disjoint_sets::DisjointSets;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -104,28 +105,14 @@ impl RealCurve {
         };
         // Vertices first, then edges.
         let vertices = self.vertices.len();
-        let mut part: Vec<usize> = (0..vertices + self.edges.len()).collect();
-        fn root(part: &mut [usize], mut k: usize) -> usize {
-            while part[k] != k {
-                part[k] = part[part[k]];
-                k = part[k];
-            }
-            k
-        }
+        let mut parts = DisjointSets::new(vertices + self.edges.len());
         for (e, edge) in self.edges.iter().enumerate() {
             for end in edge.ends.into_iter().flatten() {
-                let (a, b) = (root(&mut part, vertices + e), root(&mut part, end));
-                part[a.max(b)] = a.min(b);
+                parts.join(vertices + e, end);
             }
         }
-        for own in 0..part.len() {
-            if root(&mut part, own) != own {
-                continue;
-            }
+        for members in parts.clusters() {
             counts.connected_components += 1;
-            let members: Vec<usize> = (0..part.len())
-                .filter(|&k| root(&mut part, k) == own)
-                .collect();
             let (points, arcs): (Vec<usize>, Vec<usize>) =
                 members.into_iter().partition(|&k| k < vertices);
             let open: usize = arcs

@@ -1,8 +1,9 @@
 //! RealSurface: the real part of a component of dimension 2 in space, as a triangulation and by counts of its cells.
 
 use super::witness_set::ComponentId;
+use crate::disjoint_sets::DisjointSets;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Triangles of a surface in a window, and curves and points on it that lie on no triangle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -51,34 +52,20 @@ impl Mesh {
     /// Parts, Euler characteristic, border.
     pub fn counts(&self) -> MeshCounts {
         let mut edges: BTreeMap<[u32; 2], u64> = BTreeMap::new();
-        let mut used = BTreeSet::new();
-        let mut part: Vec<u32> = (0..self.vertices.len() as u32).collect();
-        fn root(part: &mut [u32], mut k: u32) -> u32 {
-            while part[k as usize] != k {
-                part[k as usize] = part[part[k as usize] as usize];
-                k = part[k as usize];
-            }
-            k
-        }
-        let mut join = |a: u32, b: u32| {
-            let (a, b) = (root(&mut part, a), root(&mut part, b));
-            part[a.max(b) as usize] = a.min(b);
-        };
+        let mut joined = DisjointSets::new(self.vertices.len());
+        let mut join = |a: u32, b: u32| joined.join(a as usize, b as usize);
         let ordered = |a: u32, b: u32| [a.min(b), a.max(b)];
         for &[a, b, c] in &self.triangles {
             for [a, b] in [[a, b], [b, c], [c, a]] {
                 *edges.entry(ordered(a, b)).or_default() += 1;
                 join(a, b);
             }
-            used.extend([a, b, c]);
         }
         for &[a, b] in &self.segments {
             edges.entry(ordered(a, b)).or_default();
             join(a, b);
-            used.extend([a, b]);
         }
-        let own = 0..self.vertices.len() as u32;
-        let parts = own.filter(|&k| root(&mut part, k) == k).count() as u64;
+        let parts = joined.clusters().len() as u64;
         let (v, e, f) = (self.vertices.len(), edges.len(), self.triangles.len());
         MeshCounts {
             parts,
