@@ -173,8 +173,20 @@ impl Embedded {
         self.server.page.as_deref()
     }
 
+    /// Does this work while workers are tended; ends it where nobody works any more, or somebody interrupts it.
+    pub async fn attend<T>(
+        &mut self,
+        work: impl Future<Output = Result<T, ClientError>>,
+    ) -> Result<T, ClientError> {
+        tokio::select! {
+            ended = work => ended,
+            error = self.tend() => Err(error),
+            () = crate::interrupted() => Err(ClientError::Interrupted),
+        }
+    }
+
     /// Has worker processes take over in time. Returns when nobody works any more, with the reason.
-    pub async fn tend(&mut self) -> ClientError {
+    async fn tend(&mut self) -> ClientError {
         if self.alone.is_some() {
             tokio::time::sleep(ALONE).await;
             if let Err(error) = self.start_workers().await {

@@ -3,7 +3,6 @@
 use super::{submit, watch};
 use crate::common_arguments::{Format, OwnOrRunning, ProgressForm};
 use crate::connection::{Connection, Target};
-use crate::embedded::Embedded;
 use crate::error::{ClientError, Exit};
 use crate::output::progress::Progress;
 use crate::output::{decomposition, summary};
@@ -34,30 +33,21 @@ pub(super) async fn served<'a>(
     running: Option<Target>,
     work: Box<dyn FnOnce(Sequence) -> Working<'a> + 'a>,
 ) -> Result<Exit, ClientError> {
-    let mut own = match running {
-        Some(_) => None,
-        None => Some(service.start().await?),
-    };
-    let here = own.as_ref().map(Embedded::target);
-    let sequence = Sequence {
-        target: running.or(here).expect("one of them is there"),
+    let sequence = |target| Sequence {
+        target,
         progress,
         quiet: format == Format::Json,
     };
-    let abandoned = async {
-        match &mut own {
-            Some(service) => service.tend().await,
-            None => std::future::pending().await,
-        }
-    };
-    let ended = tokio::select! {
-        ended = work(sequence) => ended,
-        error = abandoned => Err(error),
-        () = crate::interrupted() => Err(ClientError::Interrupted),
-    };
-    if let Some(service) = own {
-        service.stop().await;
+    if let Some(target) = running {
+        return tokio::select! {
+            ended = work(sequence(target)) => ended,
+            () = crate::interrupted() => Err(ClientError::Interrupted),
+        };
     }
+    let mut own = service.start().await?;
+    let jobs = sequence(own.target());
+    let ended = own.attend(work(jobs)).await;
+    own.stop().await;
     ended
 }
 

@@ -59,11 +59,8 @@ async fn embedded(
     mut service: Embedded,
 ) -> Result<Exit, ClientError> {
     let target = service.target();
-    let ended = tokio::select! {
-        ended = follow(output, progress, prepared, &target) => ended,
-        error = service.tend() => Err(error),
-        () = crate::interrupted() => Err(ClientError::Interrupted),
-    };
+    let ended = service.attend(follow(output, progress, prepared, &target));
+    let ended = ended.await;
     if let Some(url) = service.page().filter(|_| ended.is_ok()) {
         eprintln!("the page stays at {url} until this command is interrupted (Ctrl-C)");
         crate::interrupted().await;

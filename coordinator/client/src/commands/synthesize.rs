@@ -41,11 +41,7 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
     }
     let mut service = a.service.start().await?;
     let target = service.target();
-    let ended = tokio::select! {
-        ended = perform(a, &task, &target) => ended,
-        error = service.tend() => Err(error),
-        () = crate::interrupted() => Err(ClientError::Interrupted),
-    };
+    let ended = service.attend(perform(a, &task, &target)).await;
     service.stop().await;
     ended
 }
