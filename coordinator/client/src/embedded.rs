@@ -7,6 +7,7 @@
 
 use super::connection::Target;
 use super::error::ClientError;
+use super::interruption::unless_interrupted;
 use cognate_coordinator::chunks::leasing::Policy;
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress, Rules};
 use cognate_coordinator::server::{RunningServer, Server};
@@ -179,9 +180,8 @@ impl Embedded {
         work: impl Future<Output = Result<T, ClientError>>,
     ) -> Result<T, ClientError> {
         tokio::select! {
-            ended = work => ended,
+            ended = unless_interrupted(work) => ended,
             error = self.tend() => Err(error),
-            () = crate::interrupted() => Err(ClientError::Interrupted),
         }
     }
 

@@ -11,6 +11,7 @@ pub mod connection;
 pub mod embedded;
 pub mod error;
 pub mod fleet;
+pub mod interruption;
 pub mod mechanism;
 pub mod output;
 pub mod problem;
@@ -22,8 +23,8 @@ use arguments::{Arguments, Command};
 use clap::Parser;
 use error::{ClientError, Exit};
 use futures::future::LocalBoxFuture;
+use interruption::unless_interrupted;
 use std::process::ExitCode;
-use tokio::signal::unix::{SignalKind, signal};
 
 /// A command that was started.
 enum Started {
@@ -92,12 +93,7 @@ pub fn main() -> ExitCode {
         Started::Ended(code) => return code,
         Started::Done(ended) => ended,
         Started::Orderly(running) => in_runtime(running),
-        Started::Droppable(running) => in_runtime(async {
-            tokio::select! {
-                ended = running => ended,
-                () = interrupted() => Err(ClientError::Interrupted),
-            }
-        }),
+        Started::Droppable(running) => in_runtime(unless_interrupted(running)),
     };
     let exit = match &ended {
         Ok(exit) => *exit,
@@ -119,22 +115,4 @@ fn in_runtime(
         .build()
         .map_err(|e| ClientError::Local(format!("the runtime could not be started: {e}")))?;
     runtime.block_on(running)
-}
-
-/// Returns when somebody wants this process to end.
-pub async fn interrupted() {
-    let waiting = (
-        signal(SignalKind::interrupt()),
-        signal(SignalKind::terminate()),
-    );
-    match waiting {
-        (Ok(mut interrupt), Ok(mut terminate)) => {
-            tokio::select! {
-                _ = interrupt.recv() => {}
-                _ = terminate.recv() => {}
-            }
-        }
-        // Without handlers the signals end the process by themselves.
-        _ => std::future::pending().await,
-    }
 }

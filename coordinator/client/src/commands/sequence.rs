@@ -4,6 +4,7 @@ use super::{submit, watch};
 use crate::common_arguments::{Format, OwnOrRunning, ProgressForm};
 use crate::connection::{Connection, Target};
 use crate::error::{ClientError, Exit};
+use crate::interruption::unless_interrupted;
 use crate::output::progress::Progress;
 use crate::output::{decomposition, summary};
 use crate::problem::Prepared;
@@ -39,10 +40,7 @@ pub(super) async fn served<'a>(
         quiet: format == Format::Json,
     };
     if let Some(target) = running {
-        return tokio::select! {
-            ended = work(sequence(target)) => ended,
-            () = crate::interrupted() => Err(ClientError::Interrupted),
-        };
+        return unless_interrupted(work(sequence(target))).await;
     }
     let mut own = service.start().await?;
     let jobs = sequence(own.target());

@@ -5,6 +5,7 @@ use crate::arguments::{Format, OutputArguments, OwnOrRunning, ProgressArguments,
 use crate::connection::{Connection, Target};
 use crate::embedded::Embedded;
 use crate::error::{ClientError, Exit};
+use crate::interruption::{interrupted, unless_interrupted};
 use crate::output::progress::Progress;
 use crate::problem::{self, Prepared};
 use cognate_protocol::v1::JobState;
@@ -43,10 +44,7 @@ pub async fn anywhere(
     prepared: Prepared,
 ) -> Result<Exit, ClientError> {
     match running {
-        Some(target) => tokio::select! {
-            ended = follow(output, progress, prepared, target) => ended,
-            () = crate::interrupted() => Err(ClientError::Interrupted),
-        },
+        Some(target) => unless_interrupted(follow(output, progress, prepared, target)).await,
         None => embedded(output, progress, prepared, service.start().await?).await,
     }
 }
@@ -63,7 +61,7 @@ async fn embedded(
     let ended = ended.await;
     if let Some(url) = service.page().filter(|_| ended.is_ok()) {
         eprintln!("the page stays at {url} until this command is interrupted (Ctrl-C)");
-        crate::interrupted().await;
+        interrupted().await;
     }
     service.stop().await;
     ended

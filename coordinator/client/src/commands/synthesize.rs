@@ -3,6 +3,7 @@
 use crate::arguments::{NinePoint, SynthesisArguments, SynthesisFormat, Synthesize};
 use crate::connection::Target;
 use crate::error::{ClientError, Exit};
+use crate::interruption::unless_interrupted;
 use crate::output;
 use crate::output::linkages::designs::{self, Designs};
 use crate::output::linkages::{self, Sheet};
@@ -34,10 +35,7 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
     };
     let a = a.common();
     if let Some(target) = a.service.running()? {
-        return tokio::select! {
-            ended = perform(a, &task, &target) => ended,
-            () = crate::interrupted() => Err(ClientError::Interrupted),
-        };
+        return unless_interrupted(perform(a, &task, &target)).await;
     }
     let mut service = a.service.start().await?;
     let target = service.target();
