@@ -1,12 +1,12 @@
 //! How many certificates a second: Krawczyk's test at the solutions of a file, on one thread.
 //!
 //! `cargo bench -p cognate-tests --bench certification`. CPU seconds of the test alone, beside
-//! those of the tracking that found the points; the work space is made once for each system, as
-//! a worker makes it once for each piece of a chunk.
+//! those of the tracking that found the points; all points of a
+//! system are certified in one call, as a worker certifies a piece of a chunk.
 
 use cognate_algorithms::run_locally::run_locally;
 use cognate_algorithms::{SolveOptions, plan};
-use cognate_continuation::certification::Krawczyk;
+use cognate_continuation::certification::{Candidate, Krawczyk};
 use cognate_tests::measures::cpu_seconds;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -47,11 +47,18 @@ fn main() {
             .filter(|solution| !solution.singular)
             .map(|solution| solution.variables.values().collect())
             .collect();
-        let mut krawczyk = Krawczyk::new(&system, &[]);
+        let krawczyk = Krawczyk::new(&system);
+        let candidates: Vec<Candidate<'_>> = points
+            .iter()
+            .map(|point| Candidate {
+                parameters: &[],
+                point,
+            })
+            .collect();
         let mut bits: BTreeMap<u32, usize> = BTreeMap::new();
         let before = cpu_seconds().ok();
-        for point in &points {
-            if let Some(certificate) = krawczyk.certify(point).certificate() {
+        for certification in krawczyk.certify_all(&candidates) {
+            if let Some(certificate) = certification.certificate() {
                 *bits.entry(certificate.precision_bits).or_default() += 1;
             }
         }

@@ -1,5 +1,7 @@
-//! PreparedFamily: stages that follow the same points of a family to other targets are compiled once.
+//! PreparedFamily: stages that follow the same points of a family to other targets, and prove what was found there, are
+//! compiled once.
 
+use crate::certification::CertificationStage;
 use crate::prepared_work::PreparedWork;
 use crate::stage::{PrepareError, PreparedStage};
 use crate::start_points::{Digest, StoredPoints};
@@ -10,47 +12,88 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// What was compiled last, for threads that solve members of one family. What it makes of a stage is what
 /// [`PreparedWork::new`] makes, whatever came before.
 #[derive(Debug, Default)]
-pub struct PreparedFamily(Mutex<Option<Member>>);
-
-/// A stage of a system, compiled.
-#[derive(Debug)]
-struct Member {
-    system: System,
-    stage: Arc<PreparedStage>,
+pub struct PreparedFamily {
+    paths: Last<PreparedStage>,
+    proofs: Last<CertificationStage>,
 }
 
+/// The stage of one kind that was compiled last, with its system and seed.
+#[derive(Debug)]
+struct Last<S>(Mutex<Option<(System, u64, Arc<S>)>>);
+
+impl<S> Default for Last<S> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<S> Last<S> {
+    /// The stage, where it is of this system and seed.
+    fn of(&self, system: &System, seed: u64) -> Option<Arc<S>> {
+        let last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = last
+            .as_ref()
+            .filter(|last| (&last.0, last.1) == (system, seed));
+        same.map(|(_, _, stage)| Arc::clone(stage))
+    }
+
+    fn keep(&self, system: &System, seed: u64, stage: S) {
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        *last = Some((system.clone(), seed, Arc::new(stage)));
+    }
+}
+
+/// Finds stored points by their digest.
+type Objects<'a> = &'a dyn Fn(Digest) -> Option<Arc<StoredPoints>>;
+
 impl PreparedFamily {
-    /// As [`PreparedWork::new`]; compiles where more than the targets is different from the last stage of paths.
+    /// As [`PreparedWork::new`]; compiles where more than the targets and points is different from the last stage of
+    /// the same work.
     pub fn prepare(
         &self,
         system: &System,
         stage: &Stage,
-        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+        objects: Objects<'_>,
     ) -> Result<PreparedWork, PrepareError> {
-        if stage.work != Work::Track {
-            return PreparedWork::new(system, stage, objects);
+        match stage.work {
+            Work::Track => self.paths(system, stage, objects).map(PreparedWork::from),
+            Work::Certify => self.proofs(system, stage, objects).map(PreparedWork::from),
+            Work::LocalDimension | Work::Sharpen { .. } | Work::CountMixedCells | Work::Bend => {
+                PreparedWork::new(system, stage, objects)
+            }
         }
-        if let Some(last) = self.last(system)
-            && let Some(prepared) = last.with_targets(stage)
-        {
-            return Ok(prepared.into());
+    }
+
+    fn paths(
+        &self,
+        system: &System,
+        stage: &Stage,
+        objects: Objects<'_>,
+    ) -> Result<PreparedStage, PrepareError> {
+        let last = self.paths.of(system, stage.seed);
+        if let Some(prepared) = last.and_then(|last| last.with_targets(stage)) {
+            return Ok(prepared);
         }
         let prepared = PreparedStage::new(system, stage, objects)?;
         if let Some(same) = prepared.with_targets(stage) {
-            let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            *kept = Some(Member {
-                system: system.clone(),
-                stage: Arc::new(same),
-            });
+            self.paths.keep(system, stage.seed, same);
         }
-        Ok(prepared.into())
+        Ok(prepared)
     }
 
-    /// The stage that was compiled last, where it is of this system.
-    fn last(&self, system: &System) -> Option<Arc<PreparedStage>> {
-        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let last = kept.as_ref().filter(|last| last.system == *system);
-        last.map(|last| Arc::clone(&last.stage))
+    fn proofs(
+        &self,
+        system: &System,
+        stage: &Stage,
+        objects: Objects<'_>,
+    ) -> Result<CertificationStage, PrepareError> {
+        if let Some(last) = self.proofs.of(system, stage.seed) {
+            return last.with_stage(system, stage, objects);
+        }
+        let prepared = CertificationStage::new(system, stage, objects)?;
+        let same = prepared.with_stage(system, stage, objects)?;
+        self.proofs.keep(system, stage.seed, same);
+        Ok(prepared)
     }
 }
 
@@ -117,6 +160,13 @@ mod tests {
             for width in [1, 8] {
                 assert_eq!(alone.run(0..items, width), of_family.run(0..items, width));
             }
+            let proofs = Stage {
+                work: Work::Certify,
+                ..stage
+            };
+            let alone = PreparedWork::new(&system, &proofs, &find).unwrap();
+            let of_family = family.prepare(&system, &proofs, &find).unwrap();
+            assert_eq!(alone.run(0..items, 1), of_family.run(0..items, 1));
         }
     }
 

@@ -80,6 +80,12 @@ impl From<PreparedStage> for PreparedWork {
     }
 }
 
+impl From<CertificationStage> for PreparedWork {
+    fn from(stage: CertificationStage) -> Self {
+        Self(Box::new(stage))
+    }
+}
+
 /// Unknowns up to which sixteen lanes of program and matrix fit in about 64 KB: n (n + 2)
 /// complex numbers of 16 bytes for the matrix alone are 31 KB at n = 10.
 const SIXTEEN_LANES_UP_TO: usize = 10;

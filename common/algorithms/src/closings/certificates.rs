@@ -61,7 +61,7 @@ impl Certificates {
         let attempts = stage.facts();
         let targets = parameters_at_targets(stage.homotopy(), system);
         for ((target, set), parameters) in (0u64..).zip(sets).zip(&targets) {
-            let attempt = |path: u64| attempts.get(&(target, path)).map(|&found| found.clone());
+            let attempt = |path: u64| attempts.get(&(target, path)).copied();
             certify(set, system, parameters, &attempt, stage.seed());
         }
     }

@@ -8,8 +8,8 @@ use super::{
     AS_SMALL, BESIDE, Bend, CONVERGED, CORRECTIONS, Moving, Number, ROUNDING, ROUNDING_OF_DOUBLES,
     RefinedPoint, SlicedEquations, WELL_CONDITIONED,
 };
+use cognate_numeric::lanes::called::{DoubleDoubleLanes, WIDTH};
 use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSet, dispatch_set};
-use cognate_numeric::lanes::double_doubles::{DoubleDoubleLanes, WIDTH};
 use cognate_numeric::lanes::{LaneMask, Lanes};
 use cognate_numeric::linear_algebra::inverse::invert;
 use cognate_numeric::linear_algebra::matrix::Matrix;

@@ -9,7 +9,7 @@ use crate::prepared_items::PreparedItems;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StoredPoints};
 use crate::work::Stage;
-use cognate_numeric::lanes::double_doubles::WIDTH;
+use cognate_numeric::lanes::called::WIDTH;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::ops::Range;

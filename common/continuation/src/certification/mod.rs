@@ -1,14 +1,16 @@
 //! Certification: a proof that one box holds exactly one solution, or why there is none.
 //!
-//! [`Certificate`] is what is proved, [`Krawczyk`] proves it for one point after
-//! another, [`CertificationStage`] is that as the work of a stage. Nothing here
-//! compares two points: whether certified solutions are distinct or real is
-//! `solutions`' business.
+//! [`Certificate`] is what is proved, [`Krawczyk`] proves it for points near solutions,
+//! [`CertificationStage`] is that as the work of a stage. Nothing here compares two points: whether
+//! certified solutions are distinct or real is `solutions`' business.
 
 mod certificate;
+mod in_lanes;
 mod krawczyk;
+mod multiple_precision;
 mod stage;
 
 pub use certificate::{Certificate, Certification, Uncertified};
-pub use krawczyk::{Krawczyk, MOST_BITS};
+pub use krawczyk::{Candidate, Krawczyk};
+pub use multiple_precision::MOST_BITS;
 pub use stage::{CertificationStage, certified_system};

@@ -1,16 +1,17 @@
 //! CertificationStage: the points of a stage, each with the attempt to certify it.
 
-use super::{Certification, Krawczyk, Uncertified};
+use super::{Candidate, Certification, Krawczyk, Uncertified};
 use crate::item_result::{ItemResult, PointResult};
 use crate::points_at_targets::{Item, PointsAtTargets};
 use crate::prepared_items::PreparedItems;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StoredPoints};
 use crate::work::Stage;
-use cognate_systems::evaluation::Interpreter;
 use cognate_systems::polynomial::degrees;
 use cognate_systems::system::System;
 use cognate_systems::transform::randomize;
+use num_complex::Complex64;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -20,19 +21,18 @@ use std::sync::Arc;
 /// says at which parameters: those at its end, for the item's target.
 #[derive(Debug)]
 pub struct CertificationStage {
-    program: Interpreter,
-    homogeneous: Vec<Vec<usize>>,
+    test: Arc<Krawczyk>,
     points: PointsAtTargets,
 }
 
 /// The square system whose solutions are certified: the system itself, or the same combinations
 /// of its equations that a stage with this seed tracks; up to a factor of each equation.
-pub fn certified_system(system: &System, seed: u64) -> Result<System, PrepareError> {
+pub fn certified_system(system: &System, seed: u64) -> Result<Cow<'_, System>, PrepareError> {
     if system.equation_count() == system.dimension() {
-        return Ok(system.clone());
+        return Ok(Cow::Borrowed(system));
     }
     let combined = combined(&system.in_unknowns(), seed)?;
-    Ok(combined.in_variables(&system.scaling))
+    Ok(Cow::Owned(combined.in_variables(&system.scaling)))
 }
 
 /// The system, or combinations of its equations.
@@ -51,12 +51,23 @@ impl CertificationStage {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
+        // What is wrong with the stage is said before anything is compiled.
         let points = PointsAtTargets::new(system, stage, objects)?;
         let square = combined(&system.in_unknowns(), stage.seed)?;
+        let test = Arc::new(Krawczyk::new(&square));
+        Ok(Self { test, points })
+    }
+
+    /// Another stage of this system whose seed is the same, without compiling again.
+    pub fn with_stage(
+        &self,
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<Self, PrepareError> {
         Ok(Self {
-            program: Krawczyk::program(&square),
-            homogeneous: Krawczyk::homogeneous(&square),
-            points,
+            test: Arc::clone(&self.test),
+            points: PointsAtTargets::new(system, stage, objects)?,
         })
     }
 
@@ -71,38 +82,46 @@ impl CertificationStage {
     /// When `items` reaches beyond the stage.
     pub fn run(&self, items: Range<u64>) -> Vec<PointResult<Certification>> {
         assert!(items.end <= self.items(), "a chunk lies within its stage");
-        let mut test: Option<(usize, Krawczyk)> = None;
-        items
+        let scaling = self.points.scaling();
+        let points: Vec<(usize, Vec<Complex64>)> = items
+            .clone()
             .map(|item| {
                 let Item { target, point, .. } = self.points.item(item);
-                let known = test.take().filter(|(of, _)| *of == target);
-                let (_, krawczyk) = test.insert(known.unwrap_or_else(|| {
-                    let krawczyk = Krawczyk::with_program(
-                        self.program.clone(),
-                        self.homogeneous.clone(),
-                        self.points.parameters(target),
-                    );
-                    (target, krawczyk)
-                }));
-                let scaling = self.points.scaling();
-                let certification = match krawczyk.certify(&scaling.to_unknowns(point)) {
-                    Certification::Certified(found) => {
-                        match found.in_variables(scaling, &self.homogeneous) {
-                            Some(found) => Certification::Certified(Box::new(found)),
-                            None => Certification::Uncertified(Uncertified::NoEnclosure),
-                        }
-                    }
-                    refused => refused,
-                };
-                let bits = certification
-                    .certificate()
-                    .map(|found| found.precision_bits);
-                PointResult {
-                    precision_bits: bits.unwrap_or(super::MOST_BITS),
-                    ..self.points.result(item, Some(certification))
-                }
+                (target, scaling.to_unknowns(point))
             })
+            .collect();
+        let candidates: Vec<Candidate<'_>> = points
+            .iter()
+            .map(|(target, point)| Candidate {
+                parameters: self.points.parameters(*target),
+                point,
+            })
+            .collect();
+        let certifications = self.test.certify_all(&candidates).into_iter();
+        items
+            .zip(certifications)
+            .map(|(item, certification)| self.result(item, certification))
             .collect()
+    }
+
+    /// What was proved in the unknowns that are tracked, in the variables.
+    fn result(&self, item: u64, certification: Certification) -> PointResult<Certification> {
+        let certification = match certification {
+            Certification::Certified(found) => {
+                match found.in_variables(self.points.scaling(), self.test.homogeneous()) {
+                    Some(found) => Certification::Certified(Box::new(found)),
+                    None => Certification::Uncertified(Uncertified::NoEnclosure),
+                }
+            }
+            refused => refused,
+        };
+        let bits = certification
+            .certificate()
+            .map(|found| found.precision_bits);
+        PointResult {
+            precision_bits: bits.unwrap_or(super::MOST_BITS),
+            ..self.points.result(item, Some(certification))
+        }
     }
 }
 
@@ -125,7 +144,6 @@ mod tests {
     use crate::start_points::StartPoints;
     use crate::work::{StageId, Work};
     use cognate_systems::formats::read;
-    use num_complex::Complex64;
 
     fn real(values: &[f64]) -> Vec<Complex64> {
         values.iter().map(|&v| Complex64::new(v, 0.0)).collect()

@@ -12,10 +12,10 @@ use super::tracking_context::{Ended, HandedOffPath, Handoff, Queue, TrackingCont
 use crate::path_result::PathResult;
 use crate::stage::PreparedStage;
 use cognate_numeric::lanes::Lanes;
+use cognate_numeric::lanes::called::DoubleDoubleLanes;
 use cognate_numeric::lanes::dispatch::{
     CompiledSet, InstructionSet, Job, JobOfSet, dispatch_on, dispatch_set, dispatch_single,
 };
-use cognate_numeric::lanes::double_doubles::DoubleDoubleLanes;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, rungs};
 use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
 use std::collections::VecDeque;

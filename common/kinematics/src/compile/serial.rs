@@ -318,7 +318,7 @@ impl SixRevolute {
         // Joint 6 is what the first five leave of the pose.
         let mut first = arm.base;
         for ((c, s), joint) in turns.iter().zip(&arm.joints).take(5) {
-            first = first.turned(*c, *s).then(&joint.link());
+            first = joint.along_link(&first.turned(*c, *s));
         }
         let last = arm.joints[5].link().then(&arm.tool);
         let sixth = first.inverse().then(&pose).then(&last.inverse());

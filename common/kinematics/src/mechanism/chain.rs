@@ -101,10 +101,28 @@ impl ChainJoint {
         Pose { position, ..turn }
     }
 
+    /// The frame at the end of the link, from the one at its beginning.
+    pub fn along_link(&self, frame: &Pose) -> Pose {
+        let [c, s] = self.alpha.direction;
+        let mut position = frame.position;
+        for (p, [x, _, z]) in position.iter_mut().zip(&frame.rotation) {
+            *p += x * self.a + z * self.d;
+        }
+        let rotation = frame
+            .rotation
+            .map(|[x, y, z]| [x, y * c + z * s, z * c - y * s]);
+        Pose { rotation, position }
+    }
+
     /// What follows the joint in its row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
     pub fn after(&self) -> Pose {
+        self.along_row(&Pose::IDENTITY)
+    }
+
+    /// The frame at the end of the row, from the one after the joint.
+    pub fn along_row(&self, frame: &Pose) -> Pose {
         let [c, s] = self.theta.direction.map(Complex64::from);
-        Pose::about_z(c, s).then(&self.link())
+        self.along_link(&frame.turned(c, s))
     }
 }
 
@@ -114,7 +132,7 @@ impl Chain {
         let mut frames = Vec::with_capacity(values.len() + 1);
         let mut now = self.base;
         for (joint, value) in self.joints.iter().zip(values) {
-            now = value.moved(&now).then(&joint.after());
+            now = joint.along_row(&value.moved(&now));
             frames.push(now);
         }
         frames.push(now.then(&self.tool));
@@ -149,7 +167,7 @@ impl Chain {
                 direction: real(now.column(2)),
             });
             let value = JointValue::of_real(*value, joint.is_angle);
-            now = value.moved(&now).then(&joint.after());
+            now = joint.along_row(&value.moved(&now));
         }
         (axes, now.then(&self.tool))
     }
@@ -204,7 +222,7 @@ impl Chain {
                 d: rounded(dot(std::array::from_fn(|k| foot[k] - origin[k]), z)),
                 theta: tidy_angle(dot(x, normal), dot(z, cross(x, normal))),
             };
-            now = now.then(&joint.after());
+            now = joint.along_row(&now);
             joints.push(joint);
         }
         Some(Self {

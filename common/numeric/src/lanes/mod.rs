@@ -4,8 +4,8 @@
 //! `dispatch` a function that is not inlined is compiled without the
 //! instruction set and becomes an order of magnitude slower, silently.
 
+pub mod called;
 pub mod dispatch;
-pub mod double_doubles;
 
 use crate::rational::Rational;
 use crate::scalar::{Mask, Real};

@@ -1,6 +1,6 @@
 //! Directed rounding without switching the processor's mode: doubles by their rounding errors, MPFR by its own.
 
-use super::double::nearest_double;
+use super::double::{exact_double, nearest_double};
 use super::{MultiplePrecision, Real};
 use crate::rational::Rational;
 use rug::Float;
@@ -78,6 +78,9 @@ fn beyond(rounded: f64, toward: Toward) -> f64 {
 
 impl Directed for f64 {
     fn rounded(_: (), value: &Rational, toward: Toward) -> f64 {
+        if let Some(exact) = exact_double(value) {
+            return exact;
+        }
         let rounded = nearest_double(value);
         match Rational::from_f64(rounded) {
             None => beyond(rounded, toward),

@@ -34,8 +34,26 @@ impl Mask for bool {
     }
 }
 
+/// The double that this rational is, found without arithmetic of many digits; `None` where it is none, or too large or
+/// small to be found so.
+pub(crate) fn exact_double(value: &Rational) -> Option<f64> {
+    /// Powers of two that stay normal, also under 53 bits.
+    const MOST_DOWN: u32 = 960;
+    let (numerator, denominator) = (value.numer(), value.denom());
+    if numerator.significant_bits() > f64::MANTISSA_DIGITS || !denominator.is_power_of_two() {
+        return None;
+    }
+    let down = denominator.significant_bits() - 1;
+    let numerator = numerator.to_i64().filter(|_| down <= MOST_DOWN)?;
+    let unit = f64::from_bits(u64::from(1023 - down) << 52);
+    Some(numerator as f64 * unit)
+}
+
 /// The double nearest to a rational, ties to even.
 pub(crate) fn nearest_double(value: &Rational) -> f64 {
+    if let Some(exact) = exact_double(value) {
+        return exact;
+    }
     // Rational::to_f64 truncates; MPFR at 53 bits rounds to nearest.
     rug::Float::with_val(53, value).to_f64()
 }

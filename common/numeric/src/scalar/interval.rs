@@ -189,6 +189,17 @@ impl<R: Directed> Complex<Interval<R>> {
         self.re.is_valid() && self.im.is_valid()
     }
 
+    /// True for 1 alone.
+    pub fn is_one(&self) -> bool {
+        let only = |part: &Interval<R>, n: f64| {
+            let n = R::from_f64(part.context(), n);
+            [&part.lower, &part.upper]
+                .into_iter()
+                .all(|end| end.less_equal(&n) && n.less_equal(end))
+        };
+        only(&self.re, 1.0) && only(&self.im, 0.0)
+    }
+
     /// True when no number is in both boxes.
     pub fn is_disjoint(&self, other: &Self) -> bool {
         self.re.is_disjoint(&other.re) || self.im.is_disjoint(&other.im)
@@ -390,126 +401,29 @@ impl<R: Directed> Real for Interval<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Purpose, RandomStream};
     use crate::scalar::MultiplePrecision;
+    use crate::scalar::enclosure_conformance::{Enclosure, check};
 
-    /// A random rational, and an enclosure of it that is a point, tight, or wide.
-    fn leaf<R: Directed>(
-        context: R::Context,
-        random: &mut RandomStream,
-    ) -> (Rational, Interval<R>) {
-        let signed = |random: &mut RandomStream, below: u64| {
-            i64::try_from(random.below(2 * below)).unwrap() - i64::try_from(below).unwrap()
-        };
-        let numerator = signed(random, 1 << 20);
-        let denominator = 1 + random.below(1 << 12);
-        let mut value = Rational::from((numerator, denominator));
-        match random.below(6) {
-            // Sizes where doubles overflow, underflow, or lose everything in a sum.
-            0 => value <<= i32::try_from(signed(random, 1060)).unwrap(),
-            1 => value = Rational::from(signed(random, 3)),
-            2 => value = Rational::from((1u64 << 53) + random.below(64)),
-            _ => {}
+    impl<R: Directed> Enclosure for Interval<R> {
+        fn contains(&self, value: &Rational) -> bool {
+            self.contains(value)
         }
-        let mut enclosure = Interval::<R>::from_rational(context, &value);
-        if random.below(3) == 0 {
-            let width = Rational::from((random.below(1000), 1 + random.below(1 << 30)));
-            enclosure =
-                Interval::between(context, &(value.clone() - &width), &(value.clone() + width));
-        }
-        assert!(enclosure.contains(&value));
-        (value, enclosure)
-    }
-
-    /// Random expressions: what is exact lies in what was rounded, or nothing is claimed.
-    fn encloses<R: Directed>(context: R::Context, seed: u64) -> (u32, u32) {
-        let mut random = RandomStream::new(seed, Purpose::Test, 7);
-        let (mut valid, mut invalid) = (0, 0);
-        for _ in 0..2000 {
-            let (mut exact, mut value) = leaf::<R>(context, &mut random);
-            for _ in 0..8 {
-                let (other, enclosure) = leaf::<R>(context, &mut random);
-                let (third, another) = leaf::<R>(context, &mut random);
-                match random.below(10) {
-                    0 => {
-                        exact += &other;
-                        value.add(&enclosure);
-                    }
-                    1 => {
-                        exact -= &other;
-                        value.sub(&enclosure);
-                    }
-                    2 => {
-                        exact *= &other;
-                        value.mul(&enclosure);
-                    }
-                    3 if other != 0 => {
-                        exact /= &other;
-                        value.div(&enclosure);
-                    }
-                    4 => {
-                        exact += Rational::from(&other * &third);
-                        value.mul_add(&enclosure, &another);
-                    }
-                    5 => {
-                        exact -= Rational::from(&other * &third);
-                        value.mul_sub(&enclosure, &another);
-                    }
-                    6 => {
-                        exact = exact.abs();
-                        value.abs();
-                    }
-                    7 => {
-                        exact = -exact;
-                        value.neg();
-                    }
-                    8 => {
-                        // The square and its root are |x|.
-                        let mut square = value.clone();
-                        square.abs();
-                        let copy = square.clone();
-                        square.mul(&copy);
-                        square.sqrt();
-                        exact = exact.abs();
-                        value = square;
-                    }
-                    _ => {
-                        // Cancels: (x + y) - y.
-                        value.add(&enclosure);
-                        value.sub(&enclosure);
-                    }
-                }
-                if !value.is_valid() {
-                    break;
-                }
-                assert!(value.contains(&exact), "{exact} is not in {value:?}");
-                let magnitude = value.magnitude();
-                assert!(Rational::from_f64(magnitude).is_none_or(|m| exact.clone().abs() <= m));
-                // Numbers that would outgrow memory begin again.
-                if exact.denom().significant_bits() > 20_000 {
-                    break;
-                }
+        fn is_known(&self) -> bool {
+            if !self.is_valid() {
+                assert!(!self.is_inside(&Self::around_zero(self.context(), 1e300)));
+                assert!(self.may_be_zero());
             }
-            if value.is_valid() {
-                valid += 1;
-            } else {
-                invalid += 1;
-                assert!(!value.contains(&exact));
-                assert!(!value.is_inside(&Interval::around_zero(context, 1e300)));
-                assert!(value.may_be_zero() && value.magnitude().is_nan());
-            }
+            self.is_valid()
         }
-        (valid, invalid)
+        fn bound(&self) -> f64 {
+            self.magnitude()
+        }
     }
 
     #[test]
     fn exact_results_lie_in_rounded_ones() {
-        for seed in 0..5 {
-            let (valid, invalid) = encloses::<f64>((), seed);
-            assert!(valid > 1000 && invalid > 0, "{valid} and {invalid}");
-            let (valid, _) = encloses::<MultiplePrecision>(128, seed);
-            assert!(valid > 1000);
-        }
+        check::<Interval<f64>>(());
+        check::<Interval<MultiplePrecision>>(128);
     }
 
     #[test]

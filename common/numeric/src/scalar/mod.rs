@@ -5,17 +5,23 @@
 //! lanes. Comparisons return masks and control flow selects, so that one path
 //! and sixteen paths in lockstep are the same code and give the same bits.
 
+mod ball;
 pub mod conformance;
 pub mod directed;
 mod double;
 mod double_double;
+#[cfg(test)]
+mod enclosure_conformance;
 mod interval;
 pub mod jet;
+mod magnitude;
 mod multiple_precision;
 
+pub use ball::Ball;
 pub use double_double::DoubleDouble;
 pub use interval::Interval;
 pub use jet::Jet;
+pub use magnitude::Magnitude;
 pub use multiple_precision::MultiplePrecision;
 
 use crate::rational::{ComplexRational, Rational};

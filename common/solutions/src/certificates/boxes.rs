@@ -2,11 +2,12 @@
 
 use cognate_continuation::certification::Certificate;
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision};
+use cognate_numeric::scalar::directed::Directed;
+use cognate_numeric::scalar::{Complex, Interval, Real};
 use cognate_systems::system::System;
 
 /// A box, coordinate by coordinate.
-pub type Coordinates = Vec<Complex<Interval<MultiplePrecision>>>;
+pub type Coordinates<R> = Vec<Complex<Interval<R>>>;
 
 /// The homogeneous groups of a system, each with its variables.
 #[derive(Clone, Debug, Default)]
@@ -42,16 +43,17 @@ impl Groups {
 
     /// Divides each homogeneous group by its value at the variable that a certificate fixes, so
     /// that both are in one chart. Invalid where that value may be 0.
-    pub fn to_chart_of(&self, certificate: &Certificate, mut values: Coordinates) -> Coordinates {
+    pub fn to_chart_of<R: Directed>(
+        &self,
+        certificate: &Certificate,
+        mut values: Coordinates<R>,
+    ) -> Coordinates<R> {
         for group in &self.homogeneous {
             let Some(fixed) = Self::fixed(group, certificate) else {
                 continue;
             };
             let divisor = values[fixed].clone();
-            let exactly_one = [(&divisor.re, 1), (&divisor.im, 0)]
-                .into_iter()
-                .all(|(part, n)| part.lower().0 == n && part.upper().0 == n);
-            if !exactly_one {
+            if !divisor.is_one() {
                 for &v in group {
                     values[v].div(&divisor);
                 }
@@ -66,19 +68,15 @@ pub fn bits(certificate: &Certificate) -> u32 {
     certificate.precision_bits + 64
 }
 
-/// Every number of the interval is less than `radius` from the centre; exact.
-fn within(part: &Interval<MultiplePrecision>, centre: &Rational, radius: f64) -> bool {
-    let ends = (part.lower().0.to_rational(), part.upper().0.to_rational());
-    match (ends, Rational::from_f64(radius)) {
-        ((Some(lower), Some(upper)), Some(radius)) => {
-            lower > Rational::from(centre - &radius) && upper < Rational::from(centre + &radius)
-        }
-        _ => false,
-    }
+/// Every number of the interval is less than `radius` from the centre, by more than what is lost to rounding.
+fn within<R: Directed>(part: &Interval<R>, centre: &Rational, radius: f64) -> bool {
+    let mut difference = part.clone();
+    difference.sub(&Interval::from_rational(part.context(), centre));
+    difference.magnitude() < radius
 }
 
 /// True when these values, in the certificate's chart, lie in the interior of its box.
-pub fn inside(values: &Coordinates, certificate: &Certificate) -> bool {
+pub fn inside<R: Directed>(values: &Coordinates<R>, certificate: &Certificate) -> bool {
     let all = values.iter().zip(&certificate.centre);
     all.zip(&certificate.radius)
         .all(|((value, centre), &radius)| {
@@ -89,6 +87,6 @@ pub fn inside(values: &Coordinates, certificate: &Certificate) -> bool {
 }
 
 /// True when some coordinate has no value in common.
-pub fn disjoint(a: &Coordinates, b: &Coordinates) -> bool {
+pub fn disjoint<R: Directed>(a: &Coordinates<R>, b: &Coordinates<R>) -> bool {
     a.iter().zip(b).any(|(a, b)| a.is_disjoint(b))
 }

@@ -6,7 +6,7 @@
 use super::boxes::{self, Groups};
 use cognate_continuation::certification::Certificate;
 use cognate_numeric::random::{Purpose, RandomStream};
-use cognate_numeric::scalar::{Complex, Interval};
+use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision};
 
 /// What is known of one solution among all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +87,10 @@ fn keys(certificates: &[&Certificate], groups: &Groups, seed: u64) -> Vec<(f64, 
 
 fn compare(a: &Certificate, b: &Certificate, groups: &Groups) -> Distinctness {
     let bits = boxes::bits(a).max(boxes::bits(b));
-    let (in_a, in_b) = (a.lies_in(bits), b.lies_in(bits));
+    let (in_a, in_b) = (
+        a.lies_in::<MultiplePrecision>(bits),
+        b.lies_in::<MultiplePrecision>(bits),
+    );
     let b_in_chart_of_a = groups.to_chart_of(a, in_b.clone());
     if boxes::disjoint(&in_a, &b_in_chart_of_a) {
         Distinctness::Proved

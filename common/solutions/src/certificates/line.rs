@@ -2,7 +2,7 @@
 
 use super::distinct::Distinctness;
 use cognate_continuation::certification::{Certificate, Certification};
-use cognate_numeric::exact_text::exact_text;
+use cognate_numeric::exact_text::{exact_text, exact_text_of_double};
 use cognate_numeric::rational::Rational;
 use cognate_systems::formats;
 use cognate_systems::system::System;
@@ -71,12 +71,12 @@ fn dyadic(value: &Rational) -> String {
 }
 
 fn double(value: f64) -> String {
-    Rational::from_f64(value).map_or_else(|| "not finite".into(), |exact| dyadic(&exact))
+    exact_text_of_double(value).unwrap_or_else(|| "not finite".into())
 }
 
 impl SolutionCertificate {
     /// Of a solution without a proof.
-    pub(super) fn refused(singular: bool, attempt: &Option<Attempt>) -> Self {
+    pub(super) fn refused(singular: bool, attempt: Option<&Attempt>) -> Self {
         let reason = match attempt {
             _ if singular => "it is singular: a box can show only a regular solution",
             None => "no attempt was made",

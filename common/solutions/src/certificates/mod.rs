@@ -24,11 +24,11 @@ use num_complex::Complex64;
 ///
 /// `attempt` gives, for a path, what was found at its endpoint; outer `None` where nothing was
 /// asked. `parameters` are the system's at this target.
-pub fn certify(
+pub fn certify<'a>(
     set: &mut SolutionSet,
     system: &System,
     parameters: &[Complex64],
-    attempt: &dyn Fn(u64) -> Option<Attempt>,
+    attempt: &dyn Fn(u64) -> Option<&'a Attempt>,
     seed: u64,
 ) {
     // Combinations of invariant equations need not be invariant; what is proved is about them.
@@ -37,7 +37,7 @@ pub fn certify(
         .as_ref()
         .and_then(|square| Involution::of(square, parameters).ok());
     let groups = Groups::of(system);
-    let attempts: Vec<Option<Attempt>> = set
+    let attempts: Vec<Option<&Attempt>> = set
         .solutions
         .iter()
         .map(|solution| {
@@ -61,7 +61,7 @@ pub fn certify(
         .solutions
         .iter()
         .zip(&attempts)
-        .map(|(solution, attempt)| SolutionCertificate::refused(solution.singular, attempt))
+        .map(|(solution, attempt)| SolutionCertificate::refused(solution.singular, *attempt))
         .collect();
     for ((place, certificate), distinctness) in certificates.iter().zip(&distinct) {
         let real = involution
@@ -107,7 +107,7 @@ pub fn certify(
     }
     let invariant = involution.is_some();
     let combinations = square.filter(|_| system.equation_count() > system.dimension());
-    let of = CertifiedSystem::of(system, parameters, invariant, combinations.as_ref());
+    let of = CertifiedSystem::of(system, parameters, invariant, combinations.as_deref());
     set.certified_system = Some(of);
 }
 
@@ -158,22 +158,16 @@ mod tests {
             &Tolerances::default(),
             1,
         );
-        let mut krawczyk = Krawczyk::new(&system, &[]);
+        let krawczyk = Krawczyk::new(&system);
         let attempts: HashMap<u64, Attempt> = (0..)
             .zip(&points)
             .map(|(k, p)| {
                 let values: Vec<_> = p[1..].iter().map(|&(a, b)| Complex64::new(a, b)).collect();
-                let attempt = Some(krawczyk.certify(&values));
+                let attempt = Some(krawczyk.certify(&[], &values));
                 (k, if lost && k == 1 { None } else { attempt })
             })
             .collect();
-        certify(
-            &mut set,
-            &system,
-            &[],
-            &|path| attempts.get(&path).cloned(),
-            3,
-        );
+        certify(&mut set, &system, &[], &|path| attempts.get(&path), 3);
         set
     }
 
@@ -228,7 +222,7 @@ mod tests {
         );
         let refused = SolutionCertificate::refused(
             false,
-            &Some(Some(Certification::Uncertified(Uncertified::NewtonLeaves))),
+            Some(&Some(Certification::Uncertified(Uncertified::NewtonLeaves))),
         );
         assert_eq!(refused.reason.as_deref(), Some("Newton's method leaves it"));
     }

@@ -7,10 +7,25 @@
 use super::boxes::{self, Groups};
 use crate::involution::Involution;
 use cognate_continuation::certification::Certificate;
+use cognate_numeric::scalar::MultiplePrecision;
+use cognate_numeric::scalar::directed::Directed;
 
 /// `None` where neither is proved.
 pub fn judge(certificate: &Certificate, groups: &Groups, involution: &Involution) -> Option<bool> {
-    let values = certificate.lies_in(boxes::bits(certificate));
+    // Doubles prove it of most, and it is true in whatever numbers it is proved.
+    judge_in::<f64>((), certificate, groups, involution).or_else(|| {
+        let bits = boxes::bits(certificate);
+        judge_in::<MultiplePrecision>(bits, certificate, groups, involution)
+    })
+}
+
+fn judge_in<R: Directed>(
+    context: R::Context,
+    certificate: &Certificate,
+    groups: &Groups,
+    involution: &Involution,
+) -> Option<bool> {
+    let values = certificate.lies_in::<R>(context);
     let image = involution
         .partner
         .iter()

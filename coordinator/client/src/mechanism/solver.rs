@@ -143,10 +143,9 @@ impl<'m> Solver<'m> {
     /// Answers targets, on as many threads as there are batches; in their order.
     pub fn solve(&self, targets: &[Target]) -> Result<Vec<TargetAnswer>, MechanismError> {
         let batches: Vec<&[Target]> = targets.chunks(BATCH).collect();
-        parallel::map(batches.len(), self.threads, |k| self.batch(batches[k]))
-            .into_iter()
-            .collect::<Result<Vec<_>, _>>()
-            .map(|found| found.concat())
+        let answers = parallel::map(batches.len(), self.threads, |k| self.batch(batches[k]));
+        let answers: Vec<Vec<TargetAnswer>> = answers.into_iter().collect::<Result<_, _>>()?;
+        Ok(answers.into_iter().flatten().collect())
     }
 
     /// Answers targets side by side in this thread.

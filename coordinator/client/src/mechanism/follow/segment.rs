@@ -22,7 +22,9 @@ pub struct Equations {
 impl Equations {
     /// Compiles.
     pub fn new(path: &PathEquations<'_>) -> Result<Self, String> {
-        let square = certified_system(path.system, path.seed).map_err(|e| e.to_string())?;
+        let square = certified_system(path.system, path.seed)
+            .map_err(|e| e.to_string())?
+            .into_owned();
         let program = Interpreter::compile(
             &square.expressions,
             &square.equations,

@@ -1,49 +1,58 @@
-//! Lanes of double-doubles whose operations are functions of their own.
+//! Numbers in lanes whose operations are functions of their own.
 //!
-//! One multiply-add of eight double-doubles is hundreds of instructions before they become vectors.
-//! Inlined wherever it is used, it multiplies the time that a tracker takes to compile by ten; called, it
-//! costs a few nanoseconds more. Each operation is compiled once for each instruction set, which is a
-//! part of the type.
+//! One multiply-add of eight double-doubles is hundreds of instructions before they become vectors, and one of
+//! eight balls is dozens. Inlined wherever it is used, it multiplies the time that what uses it takes to compile,
+//! and its size, by ten; called, it costs a few nanoseconds more. Each operation is compiled once for each
+//! instruction set, which is a part of the type.
 
+use super::Lanes;
 use super::dispatch::{CompiledSet, Job};
-use super::{LaneMask, Lanes};
 use crate::rational::Rational;
-use crate::scalar::{Complex, DoubleDouble, Real};
+use crate::scalar::{Ball, Complex, DoubleDouble, Real};
 use std::marker::PhantomData;
 
 /// Numbers of so many paths.
 pub const WIDTH: usize = 8;
 
-type Single = DoubleDouble<f64>;
-type Eight = DoubleDouble<Lanes<WIDTH>>;
-
 /// A double-double in each of eight lanes, for the instruction set `S`.
+pub type DoubleDoubleLanes<S> = Called<S, DoubleDouble<Lanes<WIDTH>>>;
+/// A ball in each of eight lanes.
+pub type BallLanes<S> = Called<S, Ball<Lanes<WIDTH>>>;
+
+/// Numbers `N` in eight lanes, whose operations are functions for the instruction set `S`.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub struct DoubleDoubleLanes<S> {
-    number: Eight,
+pub struct Called<S, N> {
+    number: N,
     set: PhantomData<S>,
 }
 
-impl<S> From<Eight> for DoubleDoubleLanes<S> {
+impl<S, N> Called<S, N> {
+    /// This number, with operations that are called.
     #[inline(always)]
-    fn from(number: Eight) -> Self {
+    pub fn new(number: N) -> Self {
         Self {
             number,
             set: PhantomData,
         }
     }
+
+    /// The number as it is.
+    #[inline(always)]
+    pub fn number(&self) -> &N {
+        &self.number
+    }
 }
 
-/// Operations of [`Real`] that change a number in place, as work of their own.
+/// Operations of [`Real`] as work of their own.
 macro_rules! operations {
     ($($job:ident: $method:ident($($argument:ident: $type:ty),*);)*) => {$(
-        struct $job<'a> {
-            number: &'a mut Eight,
+        struct $job<'a, N: Real> {
+            number: &'a mut N,
             $($argument: &'a $type),*
         }
 
-        impl Job for $job<'_> {
+        impl<N: Real> Job for $job<'_, N> {
             type Output = ();
             #[inline(always)]
             fn run(self) {
@@ -54,23 +63,42 @@ macro_rules! operations {
 }
 
 operations! {
-    Add: add(other: Eight);
-    Sub: sub(other: Eight);
-    Mul: mul(other: Eight);
-    Div: div(other: Eight);
-    MulAdd: mul_add(a: Eight, b: Eight);
-    MulSub: mul_sub(a: Eight, b: Eight);
-    MulSingle: mul_single(c: Single);
-    MulAddSingle: mul_add_single(c: Single, a: Eight);
-    MulSubSingle: mul_sub_single(c: Single, a: Eight);
+    Add: add(other: N);
+    Sub: sub(other: N);
+    Mul: mul(other: N);
+    Div: div(other: N);
+    MulAdd: mul_add(a: N, b: N);
+    MulSub: mul_sub(a: N, b: N);
+    MulSingle: mul_single(c: N::Single);
+    MulAddSingle: mul_add_single(c: N::Single, a: N);
+    MulSubSingle: mul_sub_single(c: N::Single, a: N);
     Abs: abs();
     Sqrt: sqrt();
+}
+
+/// A comparison as work of its own.
+struct Less<'a, N> {
+    a: &'a N,
+    b: &'a N,
+    or_equal: bool,
+}
+
+impl<N: Real> Job for Less<'_, N> {
+    type Output = N::Mask;
+    #[inline(always)]
+    fn run(self) -> N::Mask {
+        if self.or_equal {
+            self.a.less_equal(self.b)
+        } else {
+            self.a.less(self.b)
+        }
+    }
 }
 
 impl<S: CompiledSet> Complex<DoubleDoubleLanes<S>> {
     /// The number in one lane, with all its digits.
     #[inline(always)]
-    pub fn single(&self, lane: usize) -> Complex<Single> {
+    pub fn single(&self, lane: usize) -> Complex<DoubleDouble<f64>> {
         Complex {
             re: self.re.number.single(lane),
             im: self.im.number.single(lane),
@@ -78,39 +106,35 @@ impl<S: CompiledSet> Complex<DoubleDoubleLanes<S>> {
     }
 }
 
-impl<S: CompiledSet> DoubleDoubleLanes<S> {
-    /// `self - other`.
-    #[inline(always)]
-    fn difference(&self, other: &Self) -> Lanes<WIDTH> {
-        let mut difference = *self;
-        difference.sub(other);
-        difference.control()
-    }
-}
-
-impl<S: CompiledSet> Real for DoubleDoubleLanes<S> {
-    type Context = ();
-    type Mask = LaneMask<WIDTH>;
-    type Control = Lanes<WIDTH>;
-    type Single = Single;
-    const WIDTH: usize = WIDTH;
+impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
+    type Context = N::Context;
+    type Mask = N::Mask;
+    type Control = N::Control;
+    type Single = N::Single;
+    const WIDTH: usize = N::WIDTH;
+    const ENCLOSES: bool = N::ENCLOSES;
 
     #[inline(always)]
-    fn from_f64(_: (), value: f64) -> Self {
-        Eight::from_f64((), value).into()
+    fn from_f64(context: N::Context, value: f64) -> Self {
+        Self::new(N::from_f64(context, value))
     }
-    fn from_rational(_: (), value: &Rational) -> Self {
-        Eight::from_rational((), value).into()
+    fn from_rational(context: N::Context, value: &Rational) -> Self {
+        Self::new(N::from_rational(context, value))
     }
-    #[inline(always)]
-    fn from_control(_: (), value: &Lanes<WIDTH>) -> Self {
-        Eight::from_control((), value).into()
-    }
-    fn bits(_: ()) -> u32 {
-        Eight::bits(())
+    fn between(context: N::Context, lower: &Rational, upper: &Rational) -> Self {
+        Self::new(N::between(context, lower, upper))
     }
     #[inline(always)]
-    fn context(&self) -> Self::Context {}
+    fn from_control(context: N::Context, value: &N::Control) -> Self {
+        Self::new(N::from_control(context, value))
+    }
+    fn bits(context: N::Context) -> u32 {
+        N::bits(context)
+    }
+    #[inline(always)]
+    fn context(&self) -> N::Context {
+        self.number.context()
+    }
     #[inline(always)]
     fn set(&mut self, other: &Self) {
         *self = *other;
@@ -168,14 +192,14 @@ impl<S: CompiledSet> Real for DoubleDoubleLanes<S> {
         });
     }
     #[inline(always)]
-    fn mul_single(&mut self, c: &Single) {
+    fn mul_single(&mut self, c: &N::Single) {
         S::call(MulSingle {
             number: &mut self.number,
             c,
         });
     }
     #[inline(always)]
-    fn mul_add_single(&mut self, c: &Single, a: &Self) {
+    fn mul_add_single(&mut self, c: &N::Single, a: &Self) {
         S::call(MulAddSingle {
             number: &mut self.number,
             c,
@@ -183,7 +207,7 @@ impl<S: CompiledSet> Real for DoubleDoubleLanes<S> {
         });
     }
     #[inline(always)]
-    fn mul_sub_single(&mut self, c: &Single, a: &Self) {
+    fn mul_sub_single(&mut self, c: &N::Single, a: &Self) {
         S::call(MulSubSingle {
             number: &mut self.number,
             c,
@@ -207,24 +231,40 @@ impl<S: CompiledSet> Real for DoubleDoubleLanes<S> {
         });
     }
     #[inline(always)]
-    fn less(&self, other: &Self) -> Self::Mask {
-        self.difference(other).less(&Lanes([0.0; WIDTH]))
+    fn less(&self, other: &Self) -> N::Mask {
+        S::call(Less {
+            a: &self.number,
+            b: &other.number,
+            or_equal: false,
+        })
     }
     #[inline(always)]
-    fn less_equal(&self, other: &Self) -> Self::Mask {
-        self.difference(other).less_equal(&Lanes([0.0; WIDTH]))
+    fn less_equal(&self, other: &Self) -> N::Mask {
+        S::call(Less {
+            a: &self.number,
+            b: &other.number,
+            or_equal: true,
+        })
     }
     #[inline(always)]
-    fn select(&mut self, mask: Self::Mask, other: &Self) {
+    fn select(&mut self, mask: N::Mask, other: &Self) {
         self.number.select(mask, &other.number);
     }
     #[inline(always)]
-    fn control(&self) -> Self::Control {
+    fn control(&self) -> N::Control {
         self.number.control()
     }
     #[inline(always)]
     fn swap_lane(&mut self, other: &mut Self, lane: usize) {
         self.number.swap_lane(&mut other.number, lane);
+    }
+    #[inline(always)]
+    fn max(&mut self, other: &Self) {
+        self.number.max(&other.number);
+    }
+    #[inline(always)]
+    fn min(&mut self, other: &Self) {
+        self.number.min(&other.number);
     }
 }
 
@@ -236,8 +276,6 @@ mod tests {
     use crate::scalar::Mask;
 
     /// Some operations of each kind on numbers of a stream.
-    struct Formula;
-
     fn value<R: Real<Context = ()>>() -> Vec<f64> {
         let mut stream = RandomStream::new(5, Purpose::Test, 0);
         let mut number = || {
@@ -267,19 +305,28 @@ mod tests {
         lanes.flat_map(|k| [r.lane(k), low.lane(k)]).collect()
     }
 
-    impl JobOfSet for Formula {
+    /// The formula in called operations of some numbers.
+    struct Formula<N>(PhantomData<N>);
+
+    impl<N: Real<Context = ()> + Copy> JobOfSet for Formula<N> {
         type Output = Vec<f64>;
         #[inline(always)]
         fn run<S: CompiledSet>(self) -> Vec<f64> {
-            value::<DoubleDoubleLanes<S>>()
+            value::<Called<S, N>>()
+        }
+    }
+
+    fn check<N: Real<Context = ()> + Copy>() {
+        let expected = value::<N>();
+        for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
+            let formula = Formula(PhantomData::<N>);
+            assert_eq!(dispatch_set(set, formula), expected, "{}", set.name());
         }
     }
 
     #[test]
     fn functions_give_the_bits_of_what_they_are_made_of() {
-        let expected = value::<Eight>();
-        for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
-            assert_eq!(dispatch_set(set, Formula), expected, "{}", set.name());
-        }
+        check::<DoubleDouble<Lanes<WIDTH>>>();
+        check::<Ball<Lanes<WIDTH>>>();
     }
 }
