@@ -67,6 +67,23 @@ impl JointValue {
         }
     }
 
+    /// A number that grows with [`Self::real`] and takes no arc tangent: positions are put in order by it.
+    pub fn rank(&self) -> f64 {
+        match self {
+            Self::Turn(c, s) => {
+                let height = s.re / (c.re.abs() + s.re.abs());
+                if c.re >= 0.0 {
+                    height
+                } else if s.re >= 0.0 {
+                    2.0 - height
+                } else {
+                    -2.0 - height
+                }
+            }
+            Self::Shift(z) => z.re,
+        }
+    }
+
     /// The largest imaginary part.
     pub fn imaginary(&self) -> f64 {
         match self {
@@ -294,6 +311,29 @@ fn tidy_angle(c: f64, s: f64) -> Angle {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_rank_of_a_turn_grows_with_its_angle() {
+        let turns: Vec<JointValue> = (-179..=180)
+            .map(|degrees| JointValue::of_real(f64::from(degrees).to_radians(), true))
+            .collect();
+        for pair in turns.windows(2) {
+            assert!(pair[0].real() < pair[1].real() && pair[0].rank() < pair[1].rank());
+        }
+        let shift = JointValue::of_real(-0.25, false);
+        assert_eq!(shift.rank(), shift.real());
+    }
+
+    #[test]
+    fn a_frame_goes_along_a_row_as_the_product_says() {
+        let chain = chain();
+        for joint in &chain.joints {
+            let along = joint.along_row(&chain.tool);
+            let [c, s] = joint.theta.direction.map(Complex64::from);
+            let product = chain.tool.then(&Pose::about_z(c, s)).then(&joint.link());
+            assert!(along.distance(&product, 1.0) < 1e-15);
+        }
+    }
 
     fn chain() -> Chain {
         let joint = |name: &str, is_angle, a, alpha, d| ChainJoint {

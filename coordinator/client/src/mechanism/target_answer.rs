@@ -250,7 +250,7 @@ pub fn of_set(
 /// Real positions first, regular ones before singular ones, then in the order of their joint values.
 fn sort(positions: &mut Vec<Position>) {
     let key = |p: Position| {
-        let values = p.configuration.values.iter().map(|(_, v)| v.real());
+        let values = p.configuration.values.iter().map(|(_, v)| v.rank());
         ((!p.is_real, p.is_singular), values.collect::<Vec<f64>>(), p)
     };
     let mut keyed: Vec<_> = positions.drain(..).map(key).collect();
