@@ -2,9 +2,9 @@
 //!
 //! No lane sees its neighbours: what is proved of a point, and how, depends on it alone.
 
-use super::krawczyk::{
-    Candidate, FARTHEST, INFLATION, MOST_STEPS, Proved, SMALLEST_RADIUS, STRONG, TRIES,
-};
+use super::candidate::Candidate;
+use super::limits::{FARTHEST, INFLATION, MOST_STEPS, SMALLEST_RADIUS, STRONG, TRIES};
+use super::proved::Proved;
 use cognate_numeric::lanes::called::{BallLanes, WIDTH};
 use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSet, dispatch_set};
 use cognate_numeric::lanes::{LaneMask, Lanes};

@@ -7,31 +7,17 @@
 //! (Krawczyk 1969; Rump 1983; arXiv 2011.05000 section 3). All of it is evaluated
 //! in numbers that enclose the exact system, so the proof is about the input.
 
+use super::candidate::Candidate;
 use super::certificate::{Certificate, Certification, Uncertified};
+use super::chart::Chart;
 use super::in_lanes::{TestInLanes, test_in_lanes};
 use super::multiple_precision;
+use super::proved::Proved;
 use cognate_numeric::lanes::called::WIDTH;
-use cognate_numeric::rational::ComplexRational;
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
-
-/// ||1 - C J|| below this makes a certificate strong; less than 1/sqrt(2).
-pub(super) const STRONG: f64 = 0.7;
-/// A box begins at so many times the first correction: room for the involution's image of a
-/// solution, whose point is off by as much.
-pub(super) const INFLATION: f64 = 256.0;
-/// How far Newton's method may move a point, relative to its largest coordinate: it is refined,
-/// and a path's endpoint of double precision is good to much more.
-pub(super) const FARTHEST: f64 = 1e-4;
-/// Most of Newton's steps: each doubles the digits of a regular solution, and 1024 bits cannot start
-/// from fewer than a handful, so that is more than enough.
-pub(super) const MOST_STEPS: usize = 24;
-/// Sizes of boxes that are tried.
-pub(super) const TRIES: usize = 6;
-/// No box is smaller.
-pub(super) const SMALLEST_RADIUS: f64 = 1e-280;
 
 /// The test for points of one system.
 #[derive(Debug)]
@@ -39,39 +25,6 @@ pub struct Krawczyk {
     program: Interpreter,
     /// The homogeneous groups, each with its variables.
     homogeneous: Vec<Vec<usize>>,
-}
-
-/// What is to be proved to be near exactly one solution.
-#[derive(Clone, Copy, Debug)]
-pub struct Candidate<'a> {
-    /// Values of all parameters.
-    pub parameters: &'a [Complex64],
-    /// Values of all variables; in homogeneous groups up to a factor.
-    pub point: &'a [Complex64],
-}
-
-/// A point with the largest variable of each homogeneous group at 1.
-#[derive(Clone, Debug)]
-pub(super) struct Chart {
-    /// Values of all variables.
-    pub point: Vec<Complex64>,
-    /// The variables that are not fixed so.
-    pub free: Vec<usize>,
-}
-
-/// What was proved in a chart, for its free variables.
-#[derive(Clone, Debug)]
-pub(super) struct Proved {
-    /// Exact values of all variables in the box's centre.
-    pub centre: Vec<ComplexRational>,
-    /// Half of the box's sides.
-    pub radius: Vec<f64>,
-    /// How far from the centre the operator leads.
-    pub needed: Vec<f64>,
-    /// A bound of ||1 - C J||.
-    pub contraction: f64,
-    /// Bits of the arithmetic.
-    pub precision_bits: u32,
 }
 
 impl Krawczyk {
@@ -118,7 +71,7 @@ impl Krawczyk {
         );
         let charts: Vec<Option<Chart>> = candidates
             .iter()
-            .map(|candidate| self.in_chart(candidate.point))
+            .map(|candidate| Chart::of(candidate.point, shape.variables, &self.homogeneous))
             .collect();
         let mut proved = self.in_doubles(candidates, &charts);
         let mut certify = |place: usize| -> Result<Certificate, Uncertified> {
@@ -174,62 +127,12 @@ impl Krawczyk {
         }
         proved
     }
-
-    /// The point in its chart; `None` where it is damaged.
-    fn in_chart(&self, point: &[Complex64]) -> Option<Chart> {
-        let variables = Evaluate::<f64>::shape(&self.program).variables;
-        let finite = |z: &Complex64| z.re.is_finite() && z.im.is_finite();
-        if point.len() != variables || !point.iter().all(finite) {
-            return None;
-        }
-        let mut point = point.to_vec();
-        let mut fixed = Vec::new();
-        for group in &self.homogeneous {
-            let size = |v: usize| point[v].norm_sqr();
-            let largest = group
-                .iter()
-                .copied()
-                .reduce(|a, b| if size(b) > size(a) { b } else { a })?;
-            let scale = point[largest];
-            if scale.norm_sqr() == 0.0 {
-                return None;
-            }
-            for &v in group {
-                point[v] /= scale;
-            }
-            point[largest] = Complex64::new(1.0, 0.0);
-            fixed.push(largest);
-        }
-        let free = (0..point.len()).filter(|v| !fixed.contains(v)).collect();
-        Some(Chart { point, free })
-    }
-}
-
-impl Proved {
-    /// The certificate for all variables.
-    fn certificate(self, free: &[usize]) -> Certificate {
-        let variables = self.centre.len();
-        let mut certificate = Certificate {
-            centre: self.centre,
-            radius: vec![0.0; variables],
-            error: vec![0.0; variables],
-            contraction: self.contraction,
-            precision_bits: self.precision_bits,
-        };
-        for ((&v, &radius), &needed) in free.iter().zip(&self.radius).zip(&self.needed) {
-            certificate.radius[v] = radius;
-            // More than what was found, so that who checks it in another arithmetic finds less.
-            let more = f64::min(2.0 * needed, 0.5 * (needed + radius));
-            certificate.error[v] = if more < radius { more } else { needed };
-        }
-        certificate
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate_numeric::rational::Rational;
+    use cognate_numeric::rational::{ComplexRational, Rational};
     use cognate_numeric::scalar::MultiplePrecision;
     use cognate_systems::formats::read;
     use cognate_systems::named::{griewank_osborne, katsura};

@@ -1,9 +1,10 @@
 //! Krawczyk's test of one point in intervals of MPFR's numbers, where doubles do not decide.
 
+use super::candidate::Candidate;
 use super::certificate::Uncertified;
-use super::krawczyk::{
-    Candidate, Chart, FARTHEST, INFLATION, MOST_STEPS, Proved, SMALLEST_RADIUS, STRONG, TRIES,
-};
+use super::chart::Chart;
+use super::limits::{FARTHEST, INFLATION, MOST_STEPS, SMALLEST_RADIUS, STRONG, TRIES};
+use super::proved::Proved;
 use cognate_numeric::linear_algebra::inverse::inverse;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
