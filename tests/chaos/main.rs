@@ -1,9 +1,13 @@
 //! Chaos: jobs on real processes while workers, coordinators and the database are killed or stand
-//! still at random. Every answer must be the undisturbed one, bit for bit; a report says what it cost.
+//! still at random, results are damaged or lost, and workers do evil. Every answer must be the undisturbed
+//! one, bit for bit, and every worker that does evil must be named; a report says what it cost.
 //!
 //! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]
-//! [--coordinators 1] [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000] [--jobs N]`: jobs
-//! in turn for so long, or so many, the last to its end.
+//! [--coordinators 1] [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000] [--jobs N]
+//! [--storage-faults yes] [--evil-workers yes]`: jobs in turn for so long, or so many, the last to its end.
+
+mod evil_worker;
+mod spoilt_results;
 
 use cognate_protocol::v1::Precision;
 use cognate_protocol::v1::precision::Kind;
@@ -14,6 +18,8 @@ use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::database::Database;
 use cognate_tests::dice::Dice;
 use cognate_tests::processes::{Process, until};
+use evil_worker::Evil;
+use spoilt_results::spoil;
 use std::cell::Cell;
 use std::fmt;
 use std::process::ExitCode;
@@ -41,15 +47,17 @@ enum Fault {
     KillCoordinator,
     FreezeCoordinator,
     KillDatabase,
+    SpoilResults,
 }
 
 impl Fault {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
         Self::KillWorker,
         Self::FreezeWorker,
         Self::KillCoordinator,
         Self::FreezeCoordinator,
         Self::KillDatabase,
+        Self::SpoilResults,
     ];
 }
 
@@ -61,6 +69,7 @@ impl fmt::Display for Fault {
             Self::KillCoordinator => "a coordinator killed (-9)",
             Self::FreezeCoordinator => "a coordinator stopped for a while",
             Self::KillDatabase => "the database server killed (-9)",
+            Self::SpoilResults => "the results of a chunk damaged or lost",
         })
     }
 }
@@ -82,6 +91,10 @@ struct Wanted {
     pause_ms: (u64, u64),
     /// How long a lease lasts.
     lease: Duration,
+    /// Results are damaged and lost.
+    storage_faults: bool,
+    /// One worker of each kind that does evil is there, too.
+    evil_workers: bool,
 }
 
 fn wanted() -> Result<Wanted, String> {
@@ -95,6 +108,8 @@ fn wanted() -> Result<Wanted, String> {
         bits: None,
         pause_ms: (500, 2000),
         lease: Duration::from_secs(2),
+        storage_faults: false,
+        evil_workers: false,
     };
     for (word, value) in arguments()? {
         match word.as_str() {
@@ -108,11 +123,13 @@ fn wanted() -> Result<Wanted, String> {
             "--bits" => wanted.bits = Some(number(&word, &value)?),
             "--lease-ms" => wanted.lease = Duration::from_millis(number(&word, &value)?),
             "--pause-ms" => wanted.pause_ms = range(&value)?,
+            "--storage-faults" => wanted.storage_faults = yes(&word, &value)?,
+            "--evil-workers" => wanted.evil_workers = yes(&word, &value)?,
             _ => {
                 return Err(format!(
                     "{word} {value}: expected --seconds N, --seed N, --ledger sqlite|postgres, \
-                     --coordinators N, --jobs N, --katsura N, --bits N, --pause-ms LEAST-GREATEST or \
-                     --lease-ms N"
+                     --coordinators N, --jobs N, --katsura N, --bits N, --pause-ms LEAST-GREATEST, \
+                     --lease-ms N, --storage-faults yes|no or --evil-workers yes|no"
                 ));
             }
         }
@@ -121,6 +138,14 @@ fn wanted() -> Result<Wanted, String> {
         (1, _) | (2, true) => Ok(wanted),
         (2, false) => Err("--coordinators 2: two of them need --ledger postgres".to_owned()),
         _ => Err("--coordinators: expected 1 or 2".to_owned()),
+    }
+}
+
+fn yes(word: &str, value: &str) -> Result<bool, String> {
+    match value {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err(format!("{word} {value}: expected yes or no")),
     }
 }
 
@@ -158,6 +183,7 @@ fn options(wanted: &Wanted, ledger: Option<String>) -> CoordinatorOptions {
     CoordinatorOptions {
         lease: Some(wanted.lease),
         chunk_paths: Some(CHUNK),
+        audit_percent: u32::from(wanted.evil_workers),
         ledger,
         ..CoordinatorOptions::default()
     }
@@ -168,6 +194,8 @@ struct Scene {
     cluster: Cluster,
     second: Option<(Process, String)>,
     lease: Duration,
+    /// Workers that do evil, of which one of each kind is there.
+    evil: Vec<(Evil, Process)>,
     /// Logs of workers that are gone.
     logs: Vec<String>,
 }
@@ -180,6 +208,7 @@ impl Scene {
             cluster,
             second,
             lease: wanted.lease,
+            evil: Vec::new(),
             logs: Vec::new(),
         };
         for _ in 0..WORKERS {
@@ -194,6 +223,53 @@ impl Scene {
             second: self.second.as_ref().map(|(_, address)| address.clone()),
             ..WorkerOptions::default()
         });
+    }
+
+    /// Where the coordinators listen.
+    fn addresses(&self) -> String {
+        let first = self.cluster.address();
+        match &self.second {
+            Some((_, second)) => format!("{first},{second}"),
+            None => first,
+        }
+    }
+
+    /// Starts a worker of each kind that does evil, where none is there or it gets no more work.
+    fn add_evil_workers(&mut self) {
+        for kind in Evil::ALL {
+            let there =
+                |(other, process): &mut (Evil, Process)| *other == kind && process.is_alive();
+            if !self.evil.iter_mut().any(there) {
+                let number = self.evil.len();
+                let words = ["evil-worker".to_owned(), kind.to_string(), self.addresses()];
+                let log = format!("evil-{number}");
+                let process = Process::start_again(self.cluster.folder(), &log, &words);
+                self.evil.push((kind, process));
+            }
+        }
+    }
+
+    /// What the coordinators have said.
+    fn said(&self) -> String {
+        let second = self.second.as_ref().map(|(process, _)| process.log());
+        self.cluster.coordinator.log() + &second.unwrap_or_default()
+    }
+
+    /// Workers that do evil, have had chunks, and are named nowhere; and those whose forged calls were believed.
+    fn unnamed(&self) -> Vec<String> {
+        let said = self.said();
+        let warnings: Vec<&str> = said.lines().filter(|line| line.contains("WARN")).collect();
+        let mut wrong = Vec::new();
+        for (kind, process) in &self.evil {
+            let (name, log) = (evil_worker::name(*kind, process.id()), process.log());
+            if log.contains("leased ") && !warnings.iter().any(|line| line.contains(&name)) {
+                wrong.push(format!("{name} is not named"));
+            }
+            if log.contains(Evil::BELIEVED) {
+                wrong.push(format!("{name}: {}", Evil::BELIEVED));
+            }
+        }
+        wrong
     }
 
     /// A client of the first coordinator (0) or of the second.
@@ -280,6 +356,11 @@ impl Scene {
                     since = Instant::now();
                 }
             }
+            Fault::SpoilResults => {
+                let results = self.cluster.folder().join("results");
+                println!("  {}", spoil(&results, job, dice));
+                return Duration::ZERO;
+            }
         }
         self.goes_on(0, job, before, since)
     }
@@ -340,6 +421,10 @@ impl Scene {
 }
 
 fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(("evil-worker", words)) = words.split_first().map(|(w, rest)| (w.as_str(), rest)) {
+        return evil_worker::execute(words);
+    }
     let wanted = or_exit(wanted());
     let database = match wanted.postgres.then(Database::start) {
         Some(None) => return ExitCode::SUCCESS,
@@ -361,6 +446,9 @@ fn main() -> ExitCode {
     let begin = Instant::now();
     let (least, greatest) = wanted.pause_ms;
     while begin.elapsed() < Duration::from_secs(wanted.seconds) && jobs < wanted.jobs {
+        if wanted.evil_workers {
+            scene.add_evil_workers();
+        }
         // Another request each time, or it would be the same job.
         let job = scene.client(0).submit(&problem(&wanted));
         let job_began = Instant::now();
@@ -377,8 +465,13 @@ fn main() -> ExitCode {
                 break;
             }
             let fault = loop {
-                let fault = Fault::ALL[dice.below(5) as usize];
-                if fault != Fault::KillDatabase || database.is_some() {
+                let fault = Fault::ALL[dice.below(6) as usize];
+                let possible = match fault {
+                    Fault::KillDatabase => database.is_some(),
+                    Fault::SpoilResults => wanted.storage_faults,
+                    _ => true,
+                };
+                if possible {
                     break fault;
                 }
             };
@@ -402,8 +495,34 @@ fn main() -> ExitCode {
             job_began.elapsed().as_secs_f64()
         );
     }
+    let evil = scene.evil.len();
+    let unnamed = scene.unnamed();
     let logs = scene.stop();
-    report(&wanted, begin.elapsed(), jobs, paths, &faults, &logs)
+    let found = Found {
+        took: begin.elapsed(),
+        jobs,
+        paths,
+        faults,
+        logs,
+        evil,
+        unnamed,
+    };
+    report(&wanted, &found)
+}
+
+/// What a run has seen.
+struct Found {
+    took: Duration,
+    jobs: u64,
+    paths: u64,
+    /// Each with the time until work went on.
+    faults: Vec<(Fault, Duration)>,
+    /// Logs of the honest workers.
+    logs: Vec<String>,
+    /// How many workers did evil.
+    evil: usize,
+    /// What was wrong with how they were treated.
+    unnamed: Vec<String>,
 }
 
 /// How many paths the workers began, by their logs.
@@ -418,14 +537,17 @@ fn begun(logs: &[String]) -> u64 {
     lines.filter_map(range).sum()
 }
 
-fn report(
-    wanted: &Wanted,
-    took: Duration,
-    jobs: u64,
-    paths: u64,
-    faults: &[(Fault, Duration)],
-    logs: &[String],
-) -> ExitCode {
+fn report(wanted: &Wanted, found: &Found) -> ExitCode {
+    let Found {
+        took,
+        jobs,
+        paths,
+        faults,
+        logs,
+        evil,
+        unnamed,
+    } = found;
+    let paths = *paths;
     let ledger = if wanted.postgres {
         "PostgreSQL"
     } else {
@@ -467,7 +589,13 @@ fn report(
     );
     let limit = wanted.lease + GOES_ON;
     let late = faults.iter().filter(|(_, time)| *time > limit).count();
-    let mut broken = Vec::new();
+    if *evil > 0 {
+        println!(
+            "  {evil} workers that did evil; {} not named",
+            unnamed.len()
+        );
+    }
+    let mut broken = unnamed.clone();
     if late > 0 {
         broken.push(format!("{late} faults took longer than {limit:?}"));
     }
@@ -477,10 +605,12 @@ fn report(
             faults.len()
         ));
     }
-    if again > bound {
+    // What evil workers and damaged results cost is not theirs.
+    let counts = !wanted.evil_workers && !wanted.storage_faults;
+    if counts && again > bound {
         broken.push(format!("{again} paths were tracked again"));
     }
-    if begun < paths {
+    if counts && begun < paths {
         broken.push(format!(
             "the logs show {begun} paths that were begun, of {paths}"
         ));

@@ -24,6 +24,8 @@ pub struct CoordinatorOptions {
     pub within: Vec<String>,
     /// So many MiB must be free in /dev/shm for workers to use it.
     pub least_free_mib: Option<u64>,
+    /// Of a hundred chunks so many are tracked by two workers, which tests that count do not expect: none.
+    pub audit_percent: u32,
     /// Planning counts mixed cells in so many operations at most.
     pub counting_operations: Option<u64>,
     /// So long objects stay in the trash, and so long it is between two looks at everything.
@@ -36,8 +38,7 @@ impl CoordinatorOptions {
         // Tests run where little is free, too.
         let mib = self.least_free_mib.unwrap_or(16);
         let mut text = format!("shared_memory_least_free_mib = {mib}\n");
-        // Of a chunk that is audited two workers are accepted, which tests that count do not expect.
-        text += "[rules]\naudit_percent = 0\n";
+        text += &format!("[rules]\naudit_percent = {}\n", self.audit_percent);
         if let Some(lease) = self.lease {
             let seconds = lease.as_secs_f64();
             text += &format!("lease_seconds = {seconds:?}\nexpiry_interval_seconds = 0.1\n");

@@ -88,18 +88,36 @@ impl Process {
         name: &str,
         arguments: &[String],
     ) -> Self {
-        let log = folder.join(format!("{name}.log"));
-        let append = || {
-            let file = File::options().create(true).append(true).open(&log);
-            Stdio::from(file.expect("the test's folder is writable"))
-        };
-        let mut command = match within {
+        let command = match within {
             [] => Command::new(cognate()),
             [first, words @ ..] => {
                 let mut command = Command::new(first);
                 command.args(words).arg(cognate());
                 command
             }
+        };
+        Self::start_command(command, folder, name, arguments)
+    }
+
+    /// The running program itself with other arguments.
+    ///
+    /// # Panics
+    /// When it cannot be started.
+    pub fn start_again(folder: &Path, name: &str, arguments: &[String]) -> Self {
+        let program = std::env::current_exe().expect("a program knows itself");
+        Self::start_command(Command::new(program), folder, name, arguments)
+    }
+
+    fn start_command(
+        mut command: Command,
+        folder: &Path,
+        name: &str,
+        arguments: &[String],
+    ) -> Self {
+        let log = folder.join(format!("{name}.log"));
+        let append = || {
+            let file = File::options().create(true).append(true).open(&log);
+            Stdio::from(file.expect("the test's folder is writable"))
         };
         let child = command
             .args(arguments)
@@ -110,7 +128,7 @@ impl Process {
             .stdout(append())
             .stderr(append())
             .spawn()
-            .expect("cognate can be started");
+            .expect("the program can be started");
         Self {
             name: name.to_owned(),
             child,
@@ -122,6 +140,11 @@ impl Process {
     /// What the test calls it.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Its number.
+    pub fn id(&self) -> u32 {
+        self.child.id()
     }
 
     /// What it has said so far.
