@@ -196,6 +196,8 @@ struct Scene {
     lease: Duration,
     /// Workers that do evil, of which one of each kind is there.
     evil: Vec<(Evil, Process)>,
+    /// Results that were damaged or lost: job and file.
+    spoilt: Vec<String>,
     /// Logs of workers that are gone.
     logs: Vec<String>,
 }
@@ -209,6 +211,7 @@ impl Scene {
             second,
             lease: wanted.lease,
             evil: Vec::new(),
+            spoilt: Vec::new(),
             logs: Vec::new(),
         };
         for _ in 0..WORKERS {
@@ -358,7 +361,9 @@ impl Scene {
             }
             Fault::SpoilResults => {
                 let results = self.cluster.folder().join("results");
-                println!("  {}", spoil(&results, job, dice));
+                let (said, name) = spoil(&results, job, dice);
+                println!("  {said}");
+                self.spoilt.extend(name.map(|name| format!("{job}/{name}")));
                 return Duration::ZERO;
             }
         }
@@ -441,7 +446,7 @@ fn main() -> ExitCode {
     );
     let mut scene = Scene::start(&wanted, database);
     let mut dice = Dice(wanted.seed);
-    let (mut jobs, mut paths) = (0, 0);
+    let (mut jobs, mut paths, mut without_paths) = (0, 0, 0);
     let mut faults: Vec<(Fault, Duration)> = Vec::new();
     let begin = Instant::now();
     let (least, greatest) = wanted.pause_ms;
@@ -481,8 +486,21 @@ fn main() -> ExitCode {
         }
         let client = scene.client(0);
         client.wait_until_solved(&job);
+        let mut solutions = Vec::new();
+        client.each_solution(&job, |solution| solutions.push(solution));
+        let mut same = solutions == quiet.solutions && client.counts(&job) == quiet.counts;
+        match client.paths(&job) {
+            Ok(paths) => same &= paths == quiet.paths,
+            // What is damaged after its stage has ended cannot be done again: it is named.
+            Err(status) => {
+                let named = |spoilt: &String| status.message().contains(spoilt.as_str());
+                assert!(scene.spoilt.iter().any(named), "no paths: {status}");
+                println!("  its paths: {}", status.message());
+                without_paths += 1;
+            }
+        }
         assert!(
-            client.answer(&job) == quiet,
+            same,
             "job {job} has another answer than without faults (seed {})",
             wanted.seed
         );
@@ -497,6 +515,7 @@ fn main() -> ExitCode {
     }
     let evil = scene.evil.len();
     let unnamed = scene.unnamed();
+    let spoilt = scene.spoilt.len();
     let logs = scene.stop();
     let found = Found {
         took: begin.elapsed(),
@@ -506,6 +525,8 @@ fn main() -> ExitCode {
         logs,
         evil,
         unnamed,
+        spoilt,
+        without_paths,
     };
     report(&wanted, &found)
 }
@@ -523,6 +544,10 @@ struct Found {
     evil: usize,
     /// What was wrong with how they were treated.
     unnamed: Vec<String>,
+    /// How many results were damaged or lost.
+    spoilt: usize,
+    /// How many jobs have no list of paths because of it, and say so.
+    without_paths: usize,
 }
 
 /// How many paths the workers began, by their logs.
@@ -546,6 +571,8 @@ fn report(wanted: &Wanted, found: &Found) -> ExitCode {
         logs,
         evil,
         unnamed,
+        spoilt,
+        without_paths,
     } = found;
     let paths = *paths;
     let ledger = if wanted.postgres {
@@ -593,6 +620,11 @@ fn report(wanted: &Wanted, found: &Found) -> ExitCode {
         println!(
             "  {evil} workers that did evil; {} not named",
             unnamed.len()
+        );
+    }
+    if *spoilt > 0 {
+        println!(
+            "  {spoilt} results damaged or lost; of {without_paths} jobs the paths cannot be listed, which is said"
         );
     }
     let mut broken = unnamed.clone();

@@ -3,8 +3,9 @@
 use cognate_tests::dice::Dice;
 use std::path::{Path, PathBuf};
 
-/// Damages or removes the results of one chunk of the job below this folder; says what it did.
-pub fn spoil(results: &Path, job: &str, dice: &mut Dice) -> String {
+/// Damages or removes the results of one chunk of the job below this folder. Says what it did; the name of the
+/// file where something was done.
+pub fn spoil(results: &Path, job: &str, dice: &mut Dice) -> (String, Option<String>) {
     let mut files: Vec<PathBuf> = std::fs::read_dir(results.join("jobs").join(job))
         .into_iter()
         .flatten()
@@ -13,10 +14,11 @@ pub fn spoil(results: &Path, job: &str, dice: &mut Dice) -> String {
         .collect();
     files.sort();
     if files.is_empty() {
-        return "nothing is stored yet".to_owned();
+        return ("nothing is stored yet".to_owned(), None);
     }
     let file = &files[dice.below(files.len() as u64) as usize];
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let name = file.file_name().unwrap_or_default();
+    let name = name.to_string_lossy().into_owned();
     let lost = dice.below(2) == 0;
     // It may have gone meanwhile, with its job.
     let done = if lost {
@@ -31,8 +33,8 @@ pub fn spoil(results: &Path, job: &str, dice: &mut Dice) -> String {
         })
     };
     match done {
-        Ok(()) if lost => format!("{name} is lost"),
-        Ok(()) => format!("{name} has another bit"),
-        Err(error) => format!("{name}: {error}"),
+        Ok(()) if lost => (format!("{name} is lost"), Some(name)),
+        Ok(()) => (format!("{name} has another bit"), Some(name)),
+        Err(error) => (format!("{name}: {error}"), None),
     }
 }

@@ -243,31 +243,30 @@ impl Client {
     ///
     /// # Panics
     /// When it does not say it.
-    pub fn answer(&self, id: &str) -> Answer {
-        let job = id.to_owned();
+    pub fn answer(&self, job: &str) -> Answer {
+        let mut solutions = Vec::new();
+        self.each_solution(job, |solution| solutions.push(solution));
+        let paths = self.paths(job);
+        Answer {
+            solutions,
+            paths: paths.unwrap_or_else(|status| panic!("no answer: {status}")),
+            counts: self.counts(job),
+        }
+    }
+
+    /// Every path of a solved job, or why its results cannot be read.
+    pub fn paths(&self, job: &str) -> Result<Vec<v1::ClassifiedPath>, tonic::Status> {
+        let job = job.to_owned();
         let call = |mut client: ClientApiClient<Channel>| async move {
-            let request = v1::StreamSolutionsRequest { job: job.clone() };
-            let mut stream = client.stream_solutions(request).await?.into_inner();
-            let mut solutions = Vec::new();
-            while let Some(solution) = stream.message().await? {
-                solutions.push(solution);
-            }
             let request = v1::StreamPathsRequest { job };
             let mut stream = client.stream_paths(request).await?.into_inner();
             let mut paths = Vec::new();
             while let Some(path) = stream.message().await? {
                 paths.push(path);
             }
-            Ok((solutions, paths))
+            Ok(paths)
         };
-        match self.call(call) {
-            Ok((solutions, paths)) => Answer {
-                solutions,
-                paths,
-                counts: self.counts(id),
-            },
-            Err(status) => panic!("no answer: {status}"),
-        }
+        self.call(call)
     }
 
     /// Every solution of a solved job, one at a time.
