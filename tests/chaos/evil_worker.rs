@@ -67,15 +67,15 @@ struct EvilCalls {
 }
 
 impl EvilCalls {
-    /// Chunks beside its own, and its own as they may be leased later: those that are not its own.
-    fn of_others(&self, lease: &LeaseId) -> Vec<LeaseId> {
+    /// Chunks beside its own, of as many items, and its own as they may be leased later: those that are not its own.
+    fn of_others(&self, lease: &LeaseId, items: u64) -> Vec<LeaseId> {
         let own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
         let ahead = (1..4).map(|k| LeaseId {
             epoch: lease.epoch + k,
             ..lease.clone()
         });
-        let beside = (0..8).map(|k| LeaseId {
-            chunk: (lease.chunk + k).saturating_sub(4),
+        let beside = (0..16).map(|k| LeaseId {
+            chunk: (lease.chunk + k * items).saturating_sub(8 * items),
             ..lease.clone()
         });
         let others = ahead.chain(beside);
@@ -83,7 +83,7 @@ impl EvilCalls {
     }
 
     async fn squat(&self, lease: &LeaseId, chunk: &TrackedChunk) -> Result<(), TransportError> {
-        let others = self.of_others(lease);
+        let others = self.of_others(lease, chunk.results.len() as u64);
         let mut believed = 0;
         let renewals = self.honest.renew(&others).await?;
         believed += renewals.iter().filter(|r| **r != Renewal::Lost).count();
