@@ -6,6 +6,7 @@
 
 mod certify;
 mod check;
+mod levels;
 mod locus;
 mod member;
 mod mobility;

@@ -8,6 +8,7 @@
 mod assembled;
 mod traced;
 
+use super::levels::{Change, levels, range_of};
 use super::{Context, Operand};
 use crate::decomposition::deflated::equal_ones_merged;
 use crate::decomposition::job::{Job, StageSystem};
@@ -35,10 +36,10 @@ const REAL_SINGULAR: f64 = 1e-5;
 const CLEAR: f64 = 1e2;
 /// Ends of paths at singular points nearer than this, relative to their size, are one point.
 const SAME_SINGULAR: f64 = 1e-5;
-/// Values of the form nearer than this part of their range are one.
-const SAME_VALUE: f64 = 1e-7;
-/// ... and farther than this are two.
-const OTHER_VALUE: f64 = 1e-5;
+/// A value of the form is that of a level that is given within this part of their range.
+const AT_LEVEL: f64 = 1e-7;
+/// Curves on a surface are also asked for their points near levels: so much nearer than the last sample.
+pub(super) const NEAR_LEVELS: [f64; 2] = [1.0 / 30.0, 1.0 / 900.0];
 
 /// What is being done with the current component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -337,30 +338,25 @@ impl RealCurves {
     fn slabs(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
         let now = &mut self.now;
         now.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let values: Vec<f64> = now.critical.iter().map(|c| c.value).collect();
-        let range = match (values.first(), values.last()) {
-            (Some(first), Some(last)) => (last - first).max(1e-3 * first.abs().max(1.0)),
-            _ => 1.0,
+        let changes = now.critical.iter().map(|critical| Change {
+            value: critical.value,
+            exact: critical.regular,
+        });
+        let Some(own) = levels(changes.collect()) else {
+            return self.doubt("two critical points have nearly the same value");
         };
-        for value in values {
-            match now.levels.last() {
-                Some(last) if value - last <= SAME_VALUE * range => {}
-                Some(last) if value - last <= OTHER_VALUE * range => {
-                    return self.doubt("two critical points have nearly the same value");
+        match self.given.as_ref().filter(|g| !g.levels.is_empty()) {
+            None => now.levels = own,
+            Some(given) => {
+                let range = range_of(own.iter().copied());
+                let same = |a: f64| {
+                    let near = |b: &f64| (a - b).abs() <= AT_LEVEL * range;
+                    given.levels.iter().any(near)
+                };
+                now.levels = given.levels.clone();
+                if !own.into_iter().all(same) {
+                    return self.doubt("a critical point is at none of the levels");
                 }
-                _ => now.levels.push(value),
-            }
-        }
-        if let Some(given) = self.given.as_ref().filter(|g| !g.levels.is_empty()) {
-            let own = std::mem::replace(&mut now.levels, given.levels.clone());
-            let same = |a: f64| {
-                given
-                    .levels
-                    .iter()
-                    .any(|b| (a - b).abs() <= SAME_VALUE * range)
-            };
-            if !own.into_iter().all(same) {
-                return self.doubt("a critical point is at none of the levels");
             }
         }
         let size = self
@@ -423,10 +419,11 @@ impl RealCurves {
         let last = now.levels.len();
         // Where there is no level.
         let reach = self.given.as_ref().map_or(1.0, |given| 0.5 * given.size);
+        let near = self.given.as_ref().is_some_and(|given| !given.levels.is_empty());
         for slab in 0..now.middles.len() {
             let middle = now.middles[slab];
             let sides = [slab.checked_sub(1), (slab < last).then_some(slab)];
-            let values = values_beside(&now.levels, middle, (slab, reach), self.samples);
+            let values = values_beside(&now.levels, middle, (slab, reach), (self.samples, near));
             for (values, level) in values.into_iter().zip(sides) {
                 now.tasks.extend(level.map(|level| Task {
                     slab,
@@ -496,12 +493,13 @@ fn middles(levels: &[f64], size: f64) -> Vec<f64> {
     before.chain(between).chain([last + margin]).collect()
 }
 
-/// Values of samples on either side of the middle of a slab; `reach`: how far they go where there is no level at all.
+/// Values of samples on either side of the middle of a slab, with those near levels where they are wanted; `reach`: how
+/// far they go where there is no level at all.
 fn values_beside(
     levels: &[f64],
     middle: f64,
     (slab, reach): (usize, f64),
-    samples: u32,
+    (samples, near_wanted): (u32, bool),
 ) -> [Vec<f64>; 2] {
     let sides = [slab.checked_sub(1), (slab < levels.len()).then_some(slab)];
     let other = sides.into_iter().flatten().next();
@@ -510,19 +508,23 @@ fn values_beside(
     let parts = (1..=samples).map(|k| f64::from(k) / count);
     // Denser near the end, where arcs may turn.
     let parts: Vec<f64> = parts.map(|part| part * (2.0 - part)).collect();
-    let side = |level: Option<usize>, sign: f64| {
+    let side = |level: Option<usize>, sign: f64| -> Vec<f64> {
         let end = level.map_or(middle + sign * reach, |level| levels[level]);
-        let parts = parts.iter();
-        parts.map(|part| middle + part * (end - middle)).collect()
+        let left = 1.0 - parts.last().copied().unwrap_or(0.0);
+        let near = NEAR_LEVELS.map(|part| end - part * left * (end - middle));
+        let near = near.into_iter().filter(|_| near_wanted && level.is_some());
+        let values = parts.iter().map(|part| middle + part * (end - middle));
+        values.chain(near).collect()
     };
     [side(sides[0], -1.0), side(sides[1], 1.0)]
 }
 
-/// Values of the middles and of all samples of each slab, ascending, of curves along a form of this size that is given.
+/// Values of the middles and of all samples of each slab, with those near levels, ascending, of curves along a form of this
+/// size that is given.
 pub(super) fn sections(levels: &[f64], size: f64, samples: u32) -> Vec<Vec<f64>> {
     let middles = middles(levels, size).into_iter().enumerate();
     let values = middles.map(|(slab, middle)| {
-        let [below, above] = values_beside(levels, middle, (slab, 0.5 * size), samples);
+        let [below, above] = values_beside(levels, middle, (slab, 0.5 * size), (samples, true));
         let mut values: Vec<f64> = below.into_iter().chain([middle]).chain(above).collect();
         values.sort_by(f64::total_cmp);
         values

@@ -1,9 +1,12 @@
 //! The triangles between sections of a surface: arcs of neighbouring sections with the same ends belong together, and at
 //! a level, where sections change, each arc has a chain of arcs of the level's section as its limit.
 
-use super::section::{Place, Section};
+use super::section::{Mark, Place, Section, Strip};
 use cognate_solutions::witness::real_surface::Mesh;
 use std::collections::BTreeMap;
+
+/// Parts of a strip of a level at which sections beside it are compared.
+const LOOKS: [f64; 5] = [0.5, 0.25, 0.75, 0.1, 0.9];
 
 /// A vertex of the mesh by where it is made: section, then a mark, or a strip, a fibre and a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -209,28 +212,30 @@ impl Builder {
     }
 }
 
-/// The arc of a section that comes to each sheet of each strip of a level beside it. `looks`: for each strip some values of
-/// v, and how many real points the section has over each.
+/// The arc of a section that comes to each sheet of each strip of a level beside it. Where no value of v divides the marks of
+/// both alike, one of the sections that are still nearer to the level, and have the same arcs, tells.
 pub(super) fn links(
     level: &Section,
     beside: &Section,
-    looks: &[Vec<(f64, usize)>],
+    near: &[Section],
+    limits: &BTreeMap<usize, usize>,
 ) -> Result<Vec<Vec<usize>>, String> {
+    let own: Vec<usize> = (0..beside.arcs.len()).collect();
+    let mut others = vec![(beside, own)];
+    let keys = beside.keys();
+    for other in near {
+        let same = |key| keys.iter().position(|own| own == key);
+        let arcs: Option<Vec<usize>> = other.keys().iter().map(same).collect();
+        let arcs = arcs.filter(|arcs| arcs.len() == keys.len());
+        others.extend(arcs.map(|arcs| (other, arcs)));
+    }
     let mut links = Vec::with_capacity(level.strips.len());
-    for (strip, looks) in looks.iter().enumerate() {
-        let sheets = level.sheets(strip);
-        let found = looks.iter().find_map(|&(v, count)| {
-            let other = beside.strip_at(v)?;
-            if beside.sheets(other) != sheets || count != sheets {
-                return None;
-            }
-            let arc_of = |sheet: usize| {
-                let of = beside.arcs.iter();
-                let mut of = of.enumerate();
-                let found = of.find(|(_, arc)| arc.chain.contains(&[other, sheet]));
-                found.map(|(k, _)| k)
-            };
-            (0..sheets).map(arc_of).collect::<Option<Vec<usize>>>()
+    for strip in 0..level.strips.len() {
+        let found = others.iter().find_map(|(other, names)| {
+            let arcs = LOOKS
+                .into_iter()
+                .find_map(|part| linked(level, strip, part, other, limits))?;
+            Some(arcs.into_iter().map(|arc| names[arc]).collect())
         });
         links.push(found.ok_or_else(|| {
             format!(
@@ -240,4 +245,32 @@ pub(super) fn links(
         })?);
     }
     Ok(links)
+}
+
+/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where a critical point
+/// lies on one side of it there and comes to the other, or there are not as many sheets.
+fn linked(
+    level: &Section,
+    strip: usize,
+    part: f64,
+    other: &Section,
+    limits: &BTreeMap<usize, usize>,
+) -> Option<Vec<usize>> {
+    let Strip { from, to, .. } = level.strips[strip];
+    let v = from + part * (to - from);
+    let marks = other.marks.iter().zip(&other.on);
+    let stays = |(mark, on): (&Mark, &bool)| match limits.get(&mark.name) {
+        Some(&limit) => (level.marks[limit].place[1] < v) == (mark.place[1] < v),
+        None => !on,
+    };
+    let over = other.strip_at(v)?;
+    let sheets = level.sheets(strip);
+    if other.sheets(over) != sheets || !marks.into_iter().all(stays) {
+        return None;
+    }
+    let arc_of = |sheet: usize| {
+        let mut arcs = other.arcs.iter();
+        arcs.position(|arc| arc.chain.contains(&[over, sheet]))
+    };
+    (0..sheets).map(arc_of).collect()
 }

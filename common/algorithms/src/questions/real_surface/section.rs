@@ -13,10 +13,15 @@ pub(super) type Place = [f64; 3];
 const BESIDE: f64 = 2e-5;
 /// ... beside one where the surface is singular, since there sheets come as near to one another,
 const BESIDE_SINGULAR: f64 = 2e-3;
+/// ... beside one where u is critical, for the same reason,
+const BESIDE_CRITICAL: f64 = 2e-4;
 /// ... and how much nearer the second look is.
 const NEARER: f64 = 1.0 / 16.0;
 /// No look is nearer than this part of the size of v: marks are known to about 1e-15.
 const NEAREST: f64 = 1e-11;
+/// ... and beside a mark where u is critical none is nearer than this part: what is looked at is the section over a u that
+/// is rounded to 1e-16, which turns beside the mark by the square root of that.
+const NEAREST_CRITICAL: f64 = 3e-6;
 /// A sheet whose distance to the mark shrinks at least to this part comes to it: at a fold it shrinks to a quarter, at a
 /// cusp of the projection to 0.4,
 const COMES: f64 = 0.45;
@@ -25,14 +30,25 @@ const STAYS: f64 = 0.55;
 /// Values nearer than this part of the range of v are one.
 const SAME: f64 = 1e-7;
 
+/// How sheets come to a mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Approach {
+    /// They turn there: by the root of the distance in v.
+    Fold,
+    /// u is critical: at a node or an isolated point of the section in proportion to the distance, at a cusp of the
+    /// outline by its third root.
+    Critical,
+    /// The surface is singular.
+    Singular,
+}
+
 /// A point of the section where v is critical or the surface singular.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mark {
     pub place: Place,
     /// The arc of critical points that it is on, or its vertex.
     pub name: usize,
-    /// Whether the surface is singular there.
-    pub singular: bool,
+    pub approach: Approach,
 }
 
 /// The fibre over a value of v.
@@ -119,12 +135,17 @@ impl Section {
         borders.push(window[1]);
         // How far from a group of marks its sheets are looked at.
         let beside = |j: usize| {
-            let part = match groups[j].iter().any(|&m| marks[m].singular) {
-                true => BESIDE_SINGULAR,
-                false => BESIDE,
-            };
+            let approach = groups[j].iter().map(|&m| marks[m].approach).max();
             let nearest = (borders[j + 1] - borders[j]).min(borders[j + 2] - borders[j + 1]);
-            (part * nearest).max(NEAREST * borders[j + 1].abs())
+            let size = borders[j + 1].abs();
+            match approach {
+                Some(Approach::Singular) => (BESIDE_SINGULAR * nearest).max(NEAREST * size),
+                Some(Approach::Critical) => {
+                    let size = size.max(window[1] - window[0]);
+                    (BESIDE_CRITICAL * nearest).max((NEAREST_CRITICAL * size).min(0.1 * nearest))
+                }
+                Some(Approach::Fold) | None => (BESIDE * nearest).max(NEAREST * size),
+            }
         };
         let mut strips = Vec::new();
         for j in 0..=groups.len() {
@@ -163,6 +184,22 @@ impl Section {
     /// The strip that holds a value of v.
     pub fn strip_at(&self, v: f64) -> Option<usize> {
         self.strips.iter().position(|s| s.from < v && v < s.to)
+    }
+
+    /// Takes its fibres from the next of these; what is not clear of one of them. All are taken in any case.
+    pub fn fill(
+        &mut self,
+        fibres: &mut impl Iterator<Item = Result<Fibre, String>>,
+    ) -> Result<(), String> {
+        let mut clear = Ok(());
+        for place in self.strips.iter_mut().flat_map(|s| &mut s.fibres) {
+            match fibres.next().expect("a fibre for each place") {
+                Ok(fibre) => *place = fibre,
+                Err(doubt) if clear.is_ok() => clear = Err(doubt),
+                Err(_) => {}
+            }
+        }
+        clear
     }
 
     /// Puts the arcs together; what does not fit.
