@@ -180,7 +180,10 @@ fn main() -> ExitCode {
         if !wanted.only.is_empty() && !wanted.only.contains(&known.name) {
             continue;
         }
-        let input = format!("variable_group x, y, z; function f; f = {};", known.equation);
+        let input = format!(
+            "variable_group x, y, z; function f; f = {};",
+            known.equation
+        );
         let system = written(&input);
         let mut tally = Tally::default();
         for seed in wanted.first..wanted.first + wanted.seeds {

@@ -419,7 +419,10 @@ impl RealCurves {
         let last = now.levels.len();
         // Where there is no level.
         let reach = self.given.as_ref().map_or(1.0, |given| 0.5 * given.size);
-        let near = self.given.as_ref().is_some_and(|given| !given.levels.is_empty());
+        let near = self
+            .given
+            .as_ref()
+            .is_some_and(|given| !given.levels.is_empty());
         for slab in 0..now.middles.len() {
             let middle = now.middles[slab];
             let sides = [slab.checked_sub(1), (slab < last).then_some(slab)];

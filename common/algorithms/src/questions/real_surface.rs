@@ -174,7 +174,9 @@ impl RealSurfaces {
             if job.is_some() || self.child.is_some() {
                 return job;
             }
-            if std::env::var_os("SD").is_some() { eprintln!("SD form {}: {:?}", self.number, self.now.doubts); }
+            if std::env::var_os("SD").is_some() {
+                eprintln!("SD form {}: {:?}", self.number, self.now.doubts);
+            }
             if !self.now.doubts.is_empty() && self.number + 1 < MOST_FORMS && self.begun() {
                 self.number += 1;
                 self.now = Viewing::default();
@@ -327,7 +329,8 @@ impl RealSurfaces {
                 let own = |curves: &Curves| -> Vec<Change> {
                     let vertices = curves.found.iter().flat_map(|curve| &curve.vertices);
                     let vertices = vertices.filter(|v| v.kind != VertexKind::Regular);
-                    let exact = |v: &CurveVertex| !curves.singular && v.kind == VertexKind::Critical;
+                    let exact =
+                        |v: &CurveVertex| !curves.singular && v.kind == VertexKind::Critical;
                     let change = |v: &CurveVertex| Change {
                         value: v.value,
                         exact: exact(v),
