@@ -432,14 +432,16 @@ impl RealCurves {
                     slab,
                     to: now.levels[level],
                     level: Some(level),
+                    needed: true,
                 }));
                 if now.fibres[slab].iter().any(|p| p.real) {
-                    let sample = |to: f64| Task {
+                    let sample = |(place, to): (usize, f64)| Task {
                         slab,
                         to,
                         level: None,
+                        needed: place < self.samples as usize,
                     };
-                    now.tasks.extend(values.into_iter().map(sample));
+                    now.tasks.extend(values.into_iter().enumerate().map(sample));
                 }
             }
         }

@@ -39,6 +39,8 @@ use std::sync::Arc;
 
 /// Forms that are tried until one leaves no doubt.
 const MOST_FORMS: u32 = 6;
+/// An end that looks singular is a regular point this near to it, relative to its size.
+const MOVED_SINGULAR: f64 = 1e-6;
 /// Points of fibres, which are known to 32 digits, are real below this imaginary part,
 const REAL: f64 = 1e-15;
 /// ... and not real above this.
@@ -476,7 +478,9 @@ impl RealSurfaces {
         ends: &[(&PathResult, Decision, Vec<Complex64>)],
     ) -> Result<Fibre, String> {
         let (u, v) = (-rows[0][0].re, -rows[1][0].re);
-        if ends.iter().any(|(_, d, _)| d.verdict != Verdict::Finite) {
+        // Beside a mark points lie near one another, and look singular to a path: whether they are, all digits tell.
+        let lost = |d: &Decision| matches!(d.verdict, Verdict::Failed | Verdict::AtInfinity);
+        if ends.iter().any(|(_, d, _)| lost(d)) {
             return Err(format!("points of the fibre at ({u:.6}, {v:.6}) were lost"));
         }
         let points: Vec<Vec<Complex64>> = ends.iter().map(|(_, _, v)| v.clone()).collect();
@@ -487,11 +491,15 @@ impl RealSurfaces {
             v,
             ..Fibre::default()
         };
-        let Some(refined) = refined.into_iter().collect::<Option<Vec<_>>>() else {
+        let ends = refined.into_iter().zip(ends);
+        let clear = ends.map(|(refined, (_, decision, _))| {
+            refined.filter(|r| decision.verdict == Verdict::Finite || r.moved < MOVED_SINGULAR)
+        });
+        let Some(refined) = clear.collect::<Option<Vec<_>>>() else {
             return Err(format!("the fibre at ({u:.6}, {v:.6}) is not regular"));
         };
         let apart = refined.iter().map(|p| (p.clone(), 1)).collect();
-        if equal_ones_merged(apart).len() < ends.len() {
+        if equal_ones_merged(apart).len() < points.len() {
             return Err(format!("two paths met in the fibre at ({u:.6}, {v:.6})"));
         }
         let third = row_of(&self.now.forms[2], 0.0);

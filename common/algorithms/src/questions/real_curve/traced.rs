@@ -30,6 +30,8 @@ pub(super) struct Task {
     pub to: f64,
     /// The level at the end of the slab, by place; `None` for samples.
     pub level: Option<usize>,
+    /// Whether a path that is lost leaves a doubt: samples near levels may be missing.
+    pub needed: bool,
 }
 
 /// A point of a fibre in the middle of a slab.

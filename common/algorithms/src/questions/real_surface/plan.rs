@@ -8,13 +8,14 @@ use super::section::{Approach, Mark, Place, Section};
 use cognate_solutions::witness::real_curve::{RealCurve, VertexKind};
 use num_complex::Complex64;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Marks of a level nearer than this, relative to their size, are one.
 const SAME_MARK: f64 = 1e-5;
 /// A vertex is at a level within this part of the range.
 const AT_LEVEL: f64 = 1e-6;
-/// Values of u nearer than this part of the range are those of one section.
-const SAME_SECTION: f64 = 1e-6;
+/// A point of a curve is one of a section within this part of the distance to the nearest other section.
+const SAME_SECTION: f64 = 1e-2;
 
 /// All sections of a component, with what comes to the levels.
 pub(super) struct Plan {
@@ -41,8 +42,10 @@ pub(super) struct Collected {
     samples: u32,
     /// By slab: values of u, ascending, those near levels with them.
     values: Vec<Vec<f64>>,
-    /// By slab and section.
-    marks: Vec<Vec<Vec<Mark>>>,
+    /// By slab and section: how far it is to the next one.
+    nearest: Vec<Vec<f64>>,
+    /// By slab and section; `None` near a level where some are missing.
+    marks: Vec<Vec<Option<Vec<Mark>>>>,
     at_levels: Vec<Vec<Mark>>,
     /// For each level the mark to which each arc of critical points comes from below and from above.
     limits: Vec<[BTreeMap<usize, usize>; 2]>,
@@ -63,7 +66,11 @@ impl Collected {
             range,
             size: sizes[1],
             samples,
-            marks: values.iter().map(|v| vec![Vec::new(); v.len()]).collect(),
+            nearest: values.iter().map(|v| gaps(v)).collect(),
+            marks: values
+                .iter()
+                .map(|v| vec![Some(Vec::new()); v.len()])
+                .collect(),
             values,
             at_levels: vec![Vec::new(); levels.len()],
             limits: vec![[BTreeMap::new(), BTreeMap::new()]; levels.len()],
@@ -99,22 +106,32 @@ impl Collected {
             let places: Vec<Place> = edge.samples.iter().map(|p| place(p)).collect();
             let middle = places[places.len() / 2][0];
             let slab = self.levels.partition_point(|&level| level < middle);
-            if places.len() != self.values[slab].len() {
-                return Err(middle);
-            }
-            let sections = self.values[slab].iter().zip(&mut self.marks[slab]);
-            for ((&value, marks), &place) in sections.zip(&places) {
-                if (value - place[0]).abs() > SAME_SECTION * self.range.max(value.abs()) {
-                    return Err(value);
+            let mut places = places.into_iter().peekable();
+            let needed = self.needed(slab);
+            for (k, &value) in self.values[slab].iter().enumerate() {
+                let near = |place: &Place| {
+                    (value - place[0]).abs() <= SAME_SECTION * self.nearest[slab][k]
+                };
+                let Some(place) = places.next_if(near) else {
+                    match needed.contains(&k) {
+                        true => return Err(value),
+                        false => self.marks[slab][k] = None,
+                    }
+                    continue;
+                };
+                if let Some(marks) = &mut self.marks[slab][k] {
+                    marks.push(Mark {
+                        place,
+                        name,
+                        approach: match singular {
+                            true => Approach::Singular,
+                            false => Approach::Fold,
+                        },
+                    });
                 }
-                marks.push(Mark {
-                    place,
-                    name,
-                    approach: match singular {
-                        true => Approach::Singular,
-                        false => Approach::Fold,
-                    },
-                });
+            }
+            if let Some(place) = places.next() {
+                return Err(place[0]);
             }
             for (side, end) in edge.ends.iter().enumerate() {
                 if let Some((level, mark)) = end.and_then(|end| marks[end]) {
@@ -124,6 +141,12 @@ impl Collected {
             }
         }
         Ok(())
+    }
+
+    /// The sections of a slab that are not only near levels.
+    fn needed(&self, slab: usize) -> Range<usize> {
+        let near = |level: bool| if level { NEAR_LEVELS.len() } else { 0 };
+        near(slab > 0)..self.values[slab].len() - near(slab < self.levels.len())
     }
 
     /// The level nearest to a value, where it is that one.
@@ -151,7 +174,8 @@ impl Collected {
 
     /// A range of v with all marks well inside.
     fn window(&self) -> [f64; 2] {
-        let all = self.marks.iter().flatten().chain(&self.at_levels).flatten();
+        let of_slabs = self.marks.iter().flatten().flatten();
+        let all = of_slabs.chain(&self.at_levels).flatten();
         let limits = (f64::INFINITY, f64::NEG_INFINITY);
         let values = all.map(|mark| mark.place[1]);
         let (low, high) = values.fold(limits, |(low, high), v| (low.min(v), high.max(v)));
@@ -168,6 +192,7 @@ impl Collected {
     /// All sections with their marks.
     pub fn plan(mut self, levels: &[f64]) -> Plan {
         let window = self.window();
+        let needed: Vec<Range<usize>> = (0..self.values.len()).map(|k| self.needed(k)).collect();
         let mut plan = Plan {
             sections: Vec::new(),
             levels: Vec::new(),
@@ -177,24 +202,19 @@ impl Collected {
         };
         let last = levels.len();
         for (slab, (marks, values)) in self.marks.into_iter().zip(&self.values).enumerate() {
-            let first = if slab > 0 { NEAR_LEVELS.len() } else { 0 };
-            let after = if slab < last { NEAR_LEVELS.len() } else { 0 };
-            let after = values.len() - after;
+            let needed = &needed[slab];
             for (k, (marks, &u)) in marks.into_iter().zip(values).enumerate() {
-                match k {
-                    _ if k < first => {
-                        let section = Section::new(u, marks, window, 0);
-                        plan.near[slab - 1][1].insert(0, section);
-                    }
-                    _ if k >= after => {
-                        let section = Section::new(u, marks, window, 0);
-                        plan.near[slab][0].push(section);
-                    }
-                    _ => {
-                        let section = Section::new(u, marks, window, self.samples);
-                        plan.sections.push(section);
-                        plan.levels.push(None);
-                    }
+                let Some(marks) = marks else { continue };
+                if needed.contains(&k) {
+                    let section = Section::new(u, marks, window, self.samples);
+                    plan.sections.push(section);
+                    plan.levels.push(None);
+                    continue;
+                }
+                let section = Section::new(u, marks, window, 0);
+                match k < needed.start {
+                    true => plan.near[slab - 1][1].insert(0, section),
+                    false => plan.near[slab][0].push(section),
                 }
             }
             if slab < last {
@@ -255,6 +275,25 @@ impl Plan {
         compact &= empty(&self.sections[0]) && empty(&self.sections[last]);
         (euler, compact)
     }
+}
+
+/// How far it is from each of these ascending values to the next one.
+fn gaps(values: &[f64]) -> Vec<f64> {
+    let gap = |k: usize| {
+        let before = k.checked_sub(1).map(|before| values[k] - values[before]);
+        let after = values.get(k + 1).map(|after| after - values[k]);
+        let least = before
+            .into_iter()
+            .chain(after)
+            .fold(f64::INFINITY, f64::min);
+        // Alone, any distance is near.
+        if least.is_finite() {
+            least
+        } else {
+            values[k].abs().max(1.0)
+        }
+    };
+    (0..values.len()).map(gap).collect()
 }
 
 fn near(a: &Place, b: &Place) -> bool {

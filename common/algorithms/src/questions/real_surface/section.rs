@@ -27,8 +27,12 @@ const NEAREST_CRITICAL: f64 = 3e-6;
 const COMES: f64 = 0.45;
 /// ... and one whose distance stays above this part does not.
 const STAYS: f64 = 0.55;
-/// Values nearer than this part of the range of v are one.
-const SAME: f64 = 1e-7;
+/// Values of v nearer than this part of the size of their points are one: they are known to about 1e-15,
+const SAME: f64 = 1e-12;
+/// ... and where the surface is singular to half as many digits.
+const SAME_SINGULAR: f64 = 1e-7;
+/// Sheets are looked at from no more than this part of the distance to the nearest other mark.
+const FARTHEST: f64 = 0.1;
 
 /// How sheets come to a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -121,11 +125,22 @@ impl Section {
     /// The strips between these marks, in a window of v that holds all of them; fibres have no points yet.
     pub fn new(u: f64, mut marks: Vec<Mark>, window: [f64; 2], samples: u32) -> Self {
         marks.sort_by(|a, b| a.place[1].total_cmp(&b.place[1]));
-        let same = SAME * (window[1] - window[0]);
+        let size = |mark: &Mark| {
+            mark.place
+                .iter()
+                .fold(0.0, |size: f64, x| size.max(x.abs()))
+        };
+        let same = |a: &Mark, b: &Mark| {
+            let part = match a.approach.max(b.approach) {
+                Approach::Singular => SAME_SINGULAR,
+                Approach::Fold | Approach::Critical => SAME,
+            };
+            (a.place[1] - b.place[1]).abs() <= part * size(a).max(size(b))
+        };
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (k, mark) in marks.iter().enumerate() {
             match groups.last_mut() {
-                Some(group) if mark.place[1] - marks[group[0]].place[1] <= same => group.push(k),
+                Some(group) if same(&marks[group[0]], mark) => group.push(k),
                 _ => groups.push(vec![k]),
             }
         }
@@ -137,15 +152,16 @@ impl Section {
         let beside = |j: usize| {
             let approach = groups[j].iter().map(|&m| marks[m].approach).max();
             let nearest = (borders[j + 1] - borders[j]).min(borders[j + 2] - borders[j + 1]);
-            let size = borders[j + 1].abs();
-            match approach {
-                Some(Approach::Singular) => (BESIDE_SINGULAR * nearest).max(NEAREST * size),
-                Some(Approach::Critical) => {
-                    let size = size.max(window[1] - window[0]);
-                    (BESIDE_CRITICAL * nearest).max((NEAREST_CRITICAL * size).min(0.1 * nearest))
-                }
-                Some(Approach::Fold) | None => (BESIDE * nearest).max(NEAREST * size),
-            }
+            let size = groups[j]
+                .iter()
+                .map(|&m| size(&marks[m]))
+                .fold(0.0, f64::max);
+            let (part, least) = match approach {
+                Some(Approach::Singular) => (BESIDE_SINGULAR, NEAREST),
+                Some(Approach::Critical) => (BESIDE_CRITICAL, NEAREST_CRITICAL),
+                Some(Approach::Fold) | None => (BESIDE, NEAREST),
+            };
+            (part * nearest).max((least * size).min(FARTHEST * nearest))
         };
         let mut strips = Vec::new();
         for j in 0..=groups.len() {
