@@ -1,8 +1,8 @@
 //! Surfaces: real surfaces whose topology is known, each asked with several seeds and compared.
 //!
-//! `cargo run --release -p cognate-tests --bin surfaces -- [--seeds 3] [--first 1] [--samples 2] [--limit 100] [--only NAME,NAME]`
+//! `cargo run --release -p cognate-tests --bin surfaces -- [--seeds 3] [--first 1] [--samples 2] [--limit 100] [--only NAME,NAME] [--known FILE]`
 //!
-//! `known.json` has their equations, and Euler characteristic with compact support, whether they are bounded, and how many
+//! `known.json`, or another file, has their equations, and Euler characteristic with compact support, whether they are bounded, and how many
 //! connected parts they have, by their `source`. Prints a line of a table for each surface. After `--limit` CPU seconds no
 //! further stage is begun. A wrong answer that is called settled makes the exit code 1.
 
@@ -25,6 +25,7 @@ struct Wanted {
     samples: u32,
     limit: f64,
     only: Vec<String>,
+    known: Vec<Known>,
 }
 
 fn wanted() -> Result<Wanted, String> {
@@ -34,6 +35,7 @@ fn wanted() -> Result<Wanted, String> {
         samples: 2,
         limit: 100.0,
         only: Vec::new(),
+        known: read(include_str!("known.json"))?,
     };
     for (word, value) in options()? {
         match word.as_str() {
@@ -41,10 +43,14 @@ fn wanted() -> Result<Wanted, String> {
             "--first" => wanted.first = number(&word, &value)?,
             "--samples" => wanted.samples = number(&word, &value)?,
             "--limit" => wanted.limit = number(&word, &value)?,
+            "--known" => {
+                let text = std::fs::read_to_string(&value).map_err(|e| format!("{value}: {e}"))?;
+                wanted.known = read(&text)?;
+            }
             "--only" => wanted.only = value.split(',').map(str::to_owned).collect(),
             _ => {
                 return Err(format!(
-                    "{word}: expected --seeds N, --first N, --samples N, --limit SECONDS or --only NAMES"
+                    "{word}: expected --seeds N, --first N, --samples N, --limit SECONDS, --only NAMES or --known FILE"
                 ));
             }
         }
@@ -60,6 +66,10 @@ struct Known {
     euler: i64,
     compact: Option<bool>,
     parts: Option<u64>,
+}
+
+fn read(text: &str) -> Result<Vec<Known>, String> {
+    serde_json::from_str(text).map_err(|e| format!("known surfaces: {e}"))
 }
 
 /// What is said of a surface.
@@ -170,13 +180,10 @@ impl Tally {
 
 fn main() -> ExitCode {
     let wanted = or_exit(wanted());
-    let known: Vec<Known> = or_exit(
-        serde_json::from_str(include_str!("known.json")).map_err(|e| format!("known.json: {e}")),
-    );
     println!("| surface | right | unsettled | wrong | not done | least CPU s | median | most |");
     println!("|---|---|---|---|---|---|---|---|");
     let mut wrong = 0;
-    for known in &known {
+    for known in &wanted.known {
         if !wanted.only.is_empty() && !wanted.only.contains(&known.name) {
             continue;
         }

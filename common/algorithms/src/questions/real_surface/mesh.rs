@@ -247,8 +247,8 @@ pub(super) fn links(
     Ok(links)
 }
 
-/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where a critical point
-/// lies on one side of it there and comes to the other, or there are not as many sheets.
+/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where the marks do not
+/// lie on the same sides of it, or there are not as many sheets.
 fn linked(
     level: &Section,
     strip: usize,
@@ -256,16 +256,10 @@ fn linked(
     other: &Section,
     limits: &BTreeMap<usize, usize>,
 ) -> Option<Vec<usize>> {
-    let Strip { from, to, .. } = level.strips[strip];
-    let v = from + part * (to - from);
-    let marks = other.marks.iter().zip(&other.on);
-    let stays = |(mark, on): (&Mark, &bool)| match limits.get(&mark.name) {
-        Some(&limit) => (level.marks[limit].place[1] < v) == (mark.place[1] < v),
-        None => !on,
-    };
+    let v = divided(level, strip, part, other, limits)?;
     let over = other.strip_at(v)?;
     let sheets = level.sheets(strip);
-    if other.sheets(over) != sheets || !marks.into_iter().all(stays) {
+    if other.sheets(over) != sheets {
         return None;
     }
     let arc_of = |sheet: usize| {
@@ -273,4 +267,46 @@ fn linked(
         arcs.position(|arc| arc.chain.contains(&[over, sheet]))
     };
     (0..sheets).map(arc_of).collect()
+}
+
+/// The value of v that divides a strip of a level in these parts, where it divides the marks of a section beside the level
+/// as it divides those of the level to which they come.
+fn divided(
+    level: &Section,
+    strip: usize,
+    part: f64,
+    other: &Section,
+    limits: &BTreeMap<usize, usize>,
+) -> Option<f64> {
+    let Strip { from, to, .. } = level.strips[strip];
+    let v = from + part * (to - from);
+    let stays = |(mark, on): (&Mark, &bool)| match limits.get(&mark.name) {
+        Some(&limit) => (level.marks[limit].place[1] < v) == (mark.place[1] < v),
+        None => !on,
+    };
+    let mut marks = other.marks.iter().zip(&other.on);
+    marks.all(stays).then_some(v)
+}
+
+/// Of sections near a level, nearest last, those that divide a strip of the level as neither the section beside it nor one
+/// before them does.
+pub(super) fn helpful(
+    level: &Section,
+    beside: &Section,
+    near: Vec<Section>,
+    limits: &BTreeMap<usize, usize>,
+) -> Vec<Section> {
+    let clear = |strip: usize, other: &Section| {
+        let mut values = LOOKS.into_iter();
+        values.any(|part| divided(level, strip, part, other, limits).is_some())
+    };
+    let mut left: Vec<usize> = (0..level.strips.len()).collect();
+    left.retain(|&strip| !clear(strip, beside));
+    let mut helpful = near;
+    helpful.retain(|other| {
+        let before = left.len();
+        left.retain(|&strip| !clear(strip, other));
+        left.len() < before
+    });
+    helpful
 }

@@ -4,6 +4,7 @@
 //! fibres they need.
 
 use super::super::real_curve::{NEAR_LEVELS, sections, value};
+use super::mesh::helpful;
 use super::section::{Approach, Mark, Place, Section};
 use cognate_solutions::witness::real_curve::{RealCurve, VertexKind};
 use num_complex::Complex64;
@@ -233,11 +234,24 @@ impl Collected {
             }
         }
         plan.limits = self.limits;
+        plan.keep_helpful();
         plan
     }
 }
 
 impl Plan {
+    /// Keeps of the sections near levels only those that tell something.
+    fn keep_helpful(&mut self) {
+        for (k, level) in self.levels.iter().enumerate() {
+            let Some(level) = *level else { continue };
+            for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
+                let near = std::mem::take(&mut self.near[level][side]);
+                let (own, beside) = (&self.sections[k], &self.sections[beside]);
+                self.near[level][side] = helpful(own, beside, near, &self.limits[level][side]);
+            }
+        }
+    }
+
     /// Calls with u and v of each fibre, of the sections, then of those near levels.
     pub fn each_fibre(&self, take: &mut dyn FnMut(f64, f64)) {
         let near = self.near.iter().flatten().flatten();
