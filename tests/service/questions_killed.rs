@@ -1,5 +1,5 @@
-//! A worker and a coordinator are killed in the middle of an intersection, a singular locus and a search for real
-//! points: the same answer, byte for byte.
+//! A worker and a coordinator are killed in the middle of an intersection, a singular locus, a search for real points, a
+//! real curve and a real surface: the same answer, byte for byte.
 
 use crate::worker_lost::{nervous, slow_worker};
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
@@ -175,4 +175,27 @@ fn kills_leave_no_trace_in_real_points() {
     // Of 66 items.
     let summary = check(&submission, [8, 36], &["samples.csv"]);
     assert_eq!(summary["components"][0]["has_real_points"], true);
+}
+
+/// Viviani's curve crosses itself in (2, 0, 0).
+#[test]
+fn kills_leave_no_trace_in_a_real_curve() {
+    let text = input("function f, g; f = x^2 + y^2 + z^2 - 4; g = (x - 1)^2 + y^2 - 1;");
+    let curve = components(&text);
+    let question = Question::RealCurve {
+        samples: 3,
+        projection: None,
+    };
+    let submission = asked(text, curve, question);
+    let summary = check(&submission, [20, 90], &["curve.json", "samples.csv"]);
+    assert_eq!(summary["components"][0]["singular_points"], 1);
+}
+
+#[test]
+fn kills_leave_no_trace_in_a_real_surface() {
+    let text = input("function f; f = x^2 + 2*y^2 + 3*z^2 - 1;");
+    let ellipsoid = components(&text);
+    let submission = asked(text, ellipsoid, Question::RealSurface { samples: 1 });
+    let summary = check(&submission, [40, 200], &["surface.json", "surface.obj"]);
+    assert_eq!(summary["components"][0]["euler"], 2);
 }

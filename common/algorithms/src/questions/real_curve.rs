@@ -72,6 +72,8 @@ struct Given {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RealCurves {
     given: Option<Given>,
+    /// The variable along which all are followed, by place.
+    projection: Option<usize>,
     /// Samples of each arc, besides its ends and its middle.
     samples: u32,
     found: Vec<RealCurve>,
@@ -81,9 +83,11 @@ pub(super) struct RealCurves {
 }
 
 impl RealCurves {
-    pub fn new(samples: u32) -> Self {
+    /// Along a variable, where that is wanted, or along random forms.
+    pub fn onto(samples: u32, projection: Option<usize>) -> Self {
         Self {
             given: None,
+            projection,
             samples,
             found: Vec::new(),
             phase: Phase::Begin,
@@ -96,7 +100,7 @@ impl RealCurves {
     pub fn along(samples: u32, form: Vec<[i32; 2]>, levels: Vec<f64>, size: f64) -> Self {
         Self {
             given: Some(Given { form, levels, size }),
-            ..Self::new(samples)
+            ..Self::onto(samples, None)
         }
     }
 
@@ -134,7 +138,8 @@ impl RealCurves {
         if begun && now.doubts.is_empty() {
             curve.check();
         }
-        let others = self.given.is_none() && self.number + 1 < MOST_FORMS;
+        let random = self.given.is_none() && self.projection.is_none();
+        let others = random && self.number + 1 < MOST_FORMS;
         if begun && !curve.doubts.is_empty() && others {
             self.number += 1;
             return;
@@ -164,9 +169,14 @@ impl RealCurves {
         let Some(involution) = &with.problem.involution else {
             return self.doubt("complex conjugation does not map solutions to solutions");
         };
-        self.now.form = match &self.given {
-            Some(given) => given.form.clone(),
-            None => form(with, self.number),
+        self.now.form = match (&self.given, self.projection) {
+            (Some(given), _) => given.form.clone(),
+            (None, Some(variable)) => {
+                let of = [variable, involution.partner[variable]];
+                let coefficient = |v: usize| [i32::from(of.contains(&v)), 0];
+                (0..n).map(coefficient).collect()
+            }
+            (None, None) => form(with, self.number),
         };
         self.phase = Phase::Mirror;
         let row = &operand.slices[0];
@@ -375,6 +385,12 @@ impl RealCurves {
         let ends = job.ends();
         for (slab, ends) in ends.chunks(operand.degree()).enumerate() {
             let middle = self.now.middles[slab];
+            let is = |wanted: Verdict| ends.iter().any(|(_, d, _)| d.verdict == wanted);
+            if self.projection.is_some() && is(Verdict::AtInfinity) {
+                return self.doubt(format!(
+                    "points of the fibre at {middle:.6} are at infinity, since the projection is not general"
+                ));
+            }
             if ends.iter().any(|(_, d, _)| d.verdict != Verdict::Finite) {
                 return self.doubt(format!("points of the fibre at {middle:.6} were lost"));
             }

@@ -310,3 +310,69 @@ pub(super) fn helpful(
     });
     helpful
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::section::{Approach, Fibre};
+    use super::*;
+
+    /// A circle in the section over u, between two values of v.
+    fn circle(u: f64, ends: [f64; 2]) -> Section {
+        let mark = |(name, v): (usize, f64)| Mark {
+            place: [u, v, 0.0],
+            name,
+            approach: Approach::Fold,
+        };
+        let marks = ends.into_iter().enumerate().map(mark).collect();
+        let mut section = Section::new(u, marks, [-10.0, 10.0], 1);
+        let fibre = |v: f64| {
+            let square = (v - ends[0]) * (ends[1] - v);
+            let root = square.abs().sqrt();
+            let real = |third: f64| [u, v, third];
+            Ok(match square > 0.0 {
+                true => Fibre {
+                    v,
+                    real: vec![real(-root), real(root)],
+                    third: vec![[-root, 0.0], [root, 0.0]],
+                    lost: None,
+                },
+                false => Fibre {
+                    v,
+                    third: vec![[0.0, -root], [0.0, root]],
+                    ..Fibre::default()
+                },
+            })
+        };
+        let strips = section.strips.iter();
+        let values: Vec<f64> = strips.flat_map(|s| &s.fibres).map(|f| f.v).collect();
+        let filled = section.fill(&mut values.into_iter().map(fibre));
+        filled.and_then(|()| section.connect()).expect("a circle");
+        section
+    }
+
+    #[test]
+    fn a_section_near_a_level_tells_where_the_others_lie_over_other_values() {
+        let level = circle(0.0, [0.0, 1.0]);
+        let limits = BTreeMap::from([(0, 0), (1, 1)]);
+        let sheets = vec![vec![], vec![0, 1], vec![]];
+        let beside = circle(1.0, [0.2, 1.1]);
+        assert_eq!(links(&level, &beside, &[], &limits), Ok(sheets.clone()));
+        assert!(helpful(&level, &beside, vec![circle(0.1, [0.1, 1.0])], &limits).is_empty());
+
+        let far = circle(1.0, [1.5, 2.5]);
+        assert!(links(&level, &far, &[], &limits).is_err());
+        let near = circle(0.01, [0.1, 1.1]);
+        let near = helpful(&level, &far, vec![near.clone(), near], &limits);
+        assert_eq!(near.len(), 1);
+        assert_eq!(links(&level, &far, &near, &limits), Ok(sheets));
+    }
+
+    /// The numbers of sheets are the same, the sheets are not.
+    #[test]
+    fn marks_on_the_other_side_are_no_link() {
+        let level = circle(0.0, [0.0, 1.0]);
+        let limits = BTreeMap::from([(0, 1), (1, 0)]);
+        let crossed = circle(1.0, [0.0, 1.0]);
+        assert!(links(&level, &crossed, &[], &limits).is_err());
+    }
+}
