@@ -10,14 +10,18 @@ mod traced;
 
 use super::levels::{Change, levels, range_of};
 use super::{Context, Operand};
-use crate::decomposition::deflated::equal_ones_merged;
-use crate::decomposition::job::{Job, StageSystem};
+use crate::decomposition::DecompositionOptions;
+use crate::decomposition::deflated::{Deflations, equal_ones_merged};
+use crate::decomposition::job::{Job, StageSystem, Tracking};
+use crate::decomposition::problem::Problem;
+use crate::decomposition::superset::SingularEnd;
 use assembled::assemble;
 use cognate_continuation::bend::{SlicedEquations, doubles_of, exactly};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::real_curve::RealCurve;
+use cognate_systems::system::System;
 use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -28,12 +32,14 @@ pub(super) use traced::{row_of, value};
 const MOST_STAGES: usize = 20_000;
 /// Forms that are tried until one leaves no doubt.
 const MOST_FORMS: u32 = 3;
-/// A point is real within this, relative to its size: regular ones, whose digits are known,
+/// A point is real within this, relative to its size: one whose digits are known,
 const REAL: f64 = 1e-11;
-/// ... and singular ones.
+/// ... and a singular one of which they are not.
 const REAL_SINGULAR: f64 = 1e-5;
 /// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most this factor.
 const CLEAR: f64 = 1e2;
+/// The error of a singular end that has no estimate.
+const UNKNOWN_ACCURACY: f64 = 1e-6;
 /// Ends of paths at singular points nearer than this, relative to their size, are one point.
 const SAME_SINGULAR: f64 = 1e-5;
 /// A value of the form is that of a level that is given within this part of their range.
@@ -291,8 +297,15 @@ impl RealCurves {
         let equations = SlicedEquations::new(&system, Vec::new());
         let involution = with.problem.involution.as_ref()?;
         let mut lost = 0;
-        let mut found: Vec<(Vec<Complex64>, bool)> = Vec::new();
-        for (_, decision, values) in job.ends() {
+        let mut found: Vec<Critical> = Vec::new();
+        let mut singular = Vec::new();
+        let critical = |point: Vec<Complex64>, regular: bool, exact: bool| Critical {
+            point,
+            value: 0.0,
+            regular,
+            exact,
+        };
+        for (result, decision, values) in job.ends() {
             match decision.verdict {
                 Verdict::AtInfinity => continue,
                 Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => {
@@ -305,37 +318,46 @@ impl RealCurves {
             let refined = equations.refine(&start).filter(|refined| {
                 refined.condition < 1e10 && refined.correction < 1e-20 && refined.moved < 1e-4
             });
-            found.push(match refined {
-                Some(refined) => (doubles_of(&refined.point), true),
-                None => (values, false),
-            });
+            match refined {
+                Some(refined) => found.push(critical(doubles_of(&refined.point), true, true)),
+                None => singular.push((values, result.accuracy)),
+            }
         }
         if lost > 0 {
             return self.doubt(format!("{lost} paths to critical points failed"));
         }
-        for (point, regular) in found {
-            let image = involution.image(&point);
-            let apart = distance(&point, &image);
-            let within = if regular { REAL } else { REAL_SINGULAR };
+        // Many paths end at one singular point, which deflated equations know to all digits.
+        let mut places = (!singular.is_empty())
+            .then(|| SingularPlaces::new(&system, &with.problem.tracking))
+            .flatten();
+        for (values, accuracy) in singular {
+            let known = |c: &Critical| distance(&c.point, &values) < SAME_SINGULAR;
+            if found.iter().any(known) {
+                continue;
+            }
+            let place = places
+                .as_mut()
+                .and_then(|places| places.at(&values, accuracy));
+            let exact = place.is_some();
+            found.push(critical(place.unwrap_or(values), false, exact));
+        }
+        for mut point in found {
+            let image = involution.image(&point.point);
+            let apart = distance(&point.point, &image);
+            let within = if point.exact { REAL } else { REAL_SINGULAR };
             if apart > within * CLEAR {
                 continue;
             }
             if apart > within {
                 return self.doubt("a critical point is neither clearly real nor clearly not");
             }
-            let point: Vec<Complex64> = point
-                .iter()
-                .zip(&image)
-                .map(|(a, b)| 0.5 * (a + b))
-                .collect();
-            let value = value(&self.now.form, &point);
-            let same = |known: &Critical| distance(&known.point, &point) < SAME_SINGULAR;
+            for (own, image) in point.point.iter_mut().zip(&image) {
+                *own = 0.5 * (*own + image);
+            }
+            point.value = value(&self.now.form, &point.point);
+            let same = |known: &Critical| distance(&known.point, &point.point) < SAME_SINGULAR;
             if !self.now.critical.iter().any(same) {
-                self.now.critical.push(Critical {
-                    point,
-                    value,
-                    regular,
-                });
+                self.now.critical.push(point);
             }
         }
         if self.now.apart {
@@ -350,7 +372,7 @@ impl RealCurves {
         now.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
         let changes = now.critical.iter().map(|critical| Change {
             value: critical.value,
-            exact: critical.regular,
+            exact: critical.exact,
         });
         let Some(own) = levels(changes.collect()) else {
             return self.doubt("two critical points have nearly the same value");
@@ -538,6 +560,41 @@ fn values_beside(
         values.chain(near).collect()
     };
     [side(sides[0], -1.0), side(sides[1], 1.0)]
+}
+
+/// Where singular critical points are, by deflations of the equations that they solve.
+struct SingularPlaces {
+    problem: Problem,
+    deflations: Deflations,
+}
+
+impl SingularPlaces {
+    fn new(critical: &System, tracking: &Tracking) -> Option<Self> {
+        let options = DecompositionOptions {
+            seed: tracking.seed,
+            own_units: false,
+            ..DecompositionOptions::default()
+        };
+        Some(Self {
+            problem: Problem::of_options(critical, &options).ok()?,
+            deflations: Deflations::default(),
+        })
+    }
+
+    /// The isolated singular point near the end of a path, to all digits of a double.
+    fn at(&mut self, values: &[Complex64], accuracy: f64) -> Option<Vec<Complex64>> {
+        let end = SingularEnd {
+            values: values.to_vec(),
+            accuracy: if accuracy.is_finite() {
+                accuracy
+            } else {
+                UNKNOWN_ACCURACY
+            },
+            paths: 1,
+        };
+        let found = self.deflations.regular_point(&self.problem, 0, &end)?;
+        Some(doubles_of(&found.refined.point[..values.len()]))
+    }
 }
 
 /// Values of the middles and of all samples of each slab, with those near levels, ascending, of curves along a form of this

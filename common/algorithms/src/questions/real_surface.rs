@@ -176,9 +176,6 @@ impl RealSurfaces {
             if job.is_some() || self.child.is_some() {
                 return job;
             }
-            if std::env::var_os("SD").is_some() {
-                eprintln!("SD form {}: {:?}", self.number, self.now.doubts);
-            }
             if !self.now.doubts.is_empty() && self.number + 1 < MOST_FORMS && self.begun() {
                 self.number += 1;
                 self.now = Viewing::default();

@@ -20,6 +20,8 @@ pub(super) struct Critical {
     pub value: f64,
     /// Whether the form is critical there in a regular way.
     pub regular: bool,
+    /// Whether it is known to all digits of a double.
+    pub exact: bool,
 }
 
 /// What a stage between fibres is for.
