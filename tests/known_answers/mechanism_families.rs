@@ -87,7 +87,6 @@ impl Family {
                 count: Some(count),
                 ..LoopLimits::default()
             },
-            ..MonodromyOptions::default()
         });
         let sets = self.solve(method, Vec::new(), seed);
         let values = sets[0].solutions.iter().flat_map(|s| s.variables.values());

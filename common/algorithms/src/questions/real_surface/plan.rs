@@ -11,8 +11,11 @@ use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Marks of a level nearer than this, relative to their size, are one.
-const SAME_MARK: f64 = 1e-5;
+/// Marks of a level nearer than this, relative to their size, are one: at a level near another one folds come near each
+/// other that are two, and between which sheets pass;
+const SAME_MARK: f64 = 1e-9;
+/// ... and where the surface is singular, of which fewer digits are known.
+const SAME_SINGULAR_MARK: f64 = 1e-5;
 /// A vertex is at a level within this part of the range.
 const AT_LEVEL: f64 = 1e-6;
 /// A point of a curve is one of a section within this part of the distance to the nearest other section.
@@ -160,7 +163,14 @@ impl Collected {
     /// The mark of a level at this place, by name.
     fn at_level(&mut self, level: usize, place: Place, approach: Approach) -> usize {
         let marks = &mut self.at_levels[level];
-        if let Some(known) = marks.iter_mut().find(|m| near(&m.place, &place)) {
+        let same = |m: &&mut Mark| {
+            let within = match m.approach.max(approach) {
+                Approach::Singular => SAME_SINGULAR_MARK,
+                Approach::Fold | Approach::Critical => SAME_MARK,
+            };
+            apart(&m.place, &place) <= within
+        };
+        if let Some(known) = marks.iter_mut().find(same) {
             known.approach = known.approach.max(approach);
             return known.name;
         }
@@ -310,12 +320,9 @@ fn gaps(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(gap).collect()
 }
 
-fn near(a: &Place, b: &Place) -> bool {
-    let apart = a
-        .iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max);
-    let size = a.iter().map(|x| x.abs()).fold(1.0, f64::max);
-    apart <= SAME_MARK * size
+/// The largest difference relative to the size of the first.
+fn apart(a: &Place, b: &Place) -> f64 {
+    let pairs = a.iter().zip(b);
+    let apart = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+    apart / a.iter().map(|x| x.abs()).fold(1.0, f64::max)
 }

@@ -432,3 +432,52 @@ impl Section {
         self.on.iter().filter(|on| **on).count() as i64 - self.arcs.len() as i64
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Else a sample would be taken for a look, from which sheets that come to a mark do not seem to come nearer.
+    #[test]
+    fn samples_come_no_nearer_to_a_mark_than_what_looks_at_it() {
+        let looks = [1e-4, 2e-3, 3e-2];
+        for samples in [1, 4, 20, 50] {
+            let parts = parts(samples, [&looks, &[]]);
+            assert_eq!(parts[..3], looks, "{samples}");
+            assert!(parts[3] > 2.0 * looks[2], "{samples}");
+            assert_eq!(parts.last(), Some(&1.0));
+        }
+    }
+
+    /// Two lines that cross in a node of the section, of which the nearest fibre is not known.
+    #[test]
+    fn a_fibre_that_is_lost_beside_a_mark_leaves_the_others() {
+        let node = |approach| Mark {
+            place: [0.0, 0.0, 0.0],
+            name: 0,
+            approach,
+        };
+        for (approach, clear) in [(Approach::Critical, true), (Approach::Fold, false)] {
+            let mut section = Section::new(0.0, vec![node(approach)], [-1.0, 1.0], 2);
+            let strips = section.strips.iter();
+            let values: Vec<f64> = strips.flat_map(|s| &s.fibres).map(|f| f.v).collect();
+            let nearest = values.iter().map(|v| v.abs()).fold(f64::INFINITY, f64::min);
+            let fibre = |v: f64| match v.abs() > nearest {
+                true => Ok(Fibre {
+                    v,
+                    real: vec![[0.0, v, -v.abs()], [0.0, v, v.abs()]],
+                    third: vec![[-v, 0.0], [v, 0.0]],
+                    lost: None,
+                }),
+                false => Err("lost".into()),
+            };
+            let filled = section.fill(&mut values.iter().map(|&v| fibre(v)));
+            assert_eq!(filled, Ok(()));
+            assert_eq!(section.connect().is_ok(), clear);
+            if clear {
+                // One point, four rays.
+                assert_eq!(section.euler(), 1 - 4);
+            }
+        }
+    }
+}
