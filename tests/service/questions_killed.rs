@@ -177,18 +177,20 @@ fn kills_leave_no_trace_in_real_points() {
     assert_eq!(summary["components"][0]["has_real_points"], true);
 }
 
-/// Viviani's curve crosses itself in (2, 0, 0).
+/// A cubic with an oval and an arc.
 #[test]
 fn kills_leave_no_trace_in_a_real_curve() {
-    let text = input("function f, g; f = x^2 + y^2 + z^2 - 4; g = (x - 1)^2 + y^2 - 1;");
+    let text = input("function f, g; f = y^2 - x*(x - 1)*(x + 1); g = z - x;");
     let curve = components(&text);
     let question = Question::RealCurve {
-        samples: 3,
+        samples: 1,
         projection: None,
     };
     let submission = asked(text, curve, question);
-    let summary = check(&submission, [20, 90], &["curve.json", "samples.csv"]);
-    assert_eq!(summary["components"][0]["singular_points"], 1);
+    let summary = check(&submission, [8, 30], &["curve.json", "samples.csv"]);
+    let counts = &summary["components"][0];
+    assert_eq!(counts["closed_loops"], 1);
+    assert_eq!(counts["unbounded_arcs"], 1);
 }
 
 #[test]
