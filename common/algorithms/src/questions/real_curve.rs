@@ -38,6 +38,8 @@ const REAL: f64 = 1e-11;
 const REAL_SINGULAR: f64 = 1e-5;
 /// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most this factor.
 const CLEAR: f64 = 1e2;
+/// How far beyond the outermost levels fibres are counted once more, in ranges of the levels.
+const FAR: [f64; 2] = [2.0, 30.0];
 /// The error of a singular end that has no estimate.
 const UNKNOWN_ACCURACY: f64 = 1e-6;
 /// Ends of paths at singular points nearer than this, relative to their size, are one point.
@@ -397,7 +399,9 @@ impl RealCurves {
             .map_or_else(|| size_of(operand, &now.form), |g| g.size);
         now.middles = middles(&now.levels, size);
         let row = |value: &f64| vec![row_of(&now.form, *value)];
-        let targets = now.middles.iter().map(row).collect();
+        let far = far_values(&now.levels, size);
+        let targets = now.middles.iter().chain(&far).map(row).collect();
+        now.far = far;
         self.phase = Phase::Fibres;
         Some(operand.moved_to(with.problem, with.deflations, targets))
     }
@@ -406,7 +410,11 @@ impl RealCurves {
         let involution = with.problem.involution.as_ref()?;
         let ends = job.ends();
         for (slab, ends) in ends.chunks(operand.degree()).enumerate() {
-            let middle = self.now.middles[slab];
+            let slabs = self.now.middles.len();
+            let middle = match slab.checked_sub(slabs) {
+                None => self.now.middles[slab],
+                Some(far) => self.now.far[far],
+            };
             let is = |wanted: Verdict| ends.iter().any(|(_, d, _)| d.verdict == wanted);
             if self.projection.is_some() && is(Verdict::AtInfinity) {
                 return self.doubt(format!(
@@ -439,7 +447,23 @@ impl RealCurves {
                 let real = apart <= limit;
                 fibre.push(FibrePoint { point, real });
             }
-            self.now.fibres.push(fibre);
+            if slab < slabs {
+                self.now.fibres.push(fibre);
+                continue;
+            }
+            // Nothing happens beyond the outermost levels: else one is missing.
+            let nearest = if middle < self.now.middles[0] {
+                0
+            } else {
+                slabs - 1
+            };
+            let real = |fibre: &[FibrePoint]| fibre.iter().filter(|p| p.real).count();
+            let [far, near] = [real(&fibre), real(&self.now.fibres[nearest])];
+            if far != near {
+                return self.doubt(format!(
+                    "{far} real points over {middle:.6}, and {near} nearer: a critical point is missing"
+                ));
+            }
         }
         self.plan_tasks();
         let stages = self.now.tasks.len();
@@ -534,6 +558,17 @@ fn middles(levels: &[f64], size: f64) -> Vec<f64> {
     let between = levels.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
     let before = std::iter::once(first - margin);
     before.chain(between).chain([last + margin]).collect()
+}
+
+/// Values beyond all levels, where a fibre must have as many real points as in the outermost slabs.
+fn far_values(levels: &[f64], size: f64) -> Vec<f64> {
+    let (first, last) = match (levels.first(), levels.last()) {
+        (Some(&first), Some(&last)) => (first, last),
+        _ => (0.0, 0.0),
+    };
+    let range = (last - first).max(0.5 * size);
+    let beyond = FAR.map(|part| [first - part * range, last + part * range]);
+    beyond.concat()
 }
 
 /// Values of samples on either side of the middle of a slab, with those near levels where they are wanted; `reach`: how

@@ -56,6 +56,8 @@ pub(super) struct Tracing {
     pub levels: Vec<f64>,
     /// Values in the middle of the slabs: before the first level, between, after the last.
     pub middles: Vec<f64>,
+    /// Values beyond all levels, below and above in turn.
+    pub far: Vec<f64>,
     pub fibres: Vec<Vec<FibrePoint>>,
     pub tasks: Vec<Task>,
     /// Where the points of each task's slab came, in the order of the points.
