@@ -8,20 +8,17 @@
 //! decomposition is begun. A wrong answer that is called settled makes the exit code 1.
 
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
-use cognate_algorithms::run_locally::drive;
 use cognate_algorithms::solve::Root;
-use cognate_continuation::prepared_work::PreparedWork;
-use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_solutions::witness::{Decomposition, Method};
 use cognate_systems::formats;
 use cognate_systems::system::System;
 use cognate_tests::arguments::{number, options, or_exit};
+use cognate_tests::limited::run_within;
 use cognate_tests::measures::cpu_seconds;
 use serde_json::Value;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
 /// What is asked for.
 struct Wanted {
@@ -155,41 +152,8 @@ fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decom
     };
     let solve = DecompositionSolve::new(system, &options).map_err(|e| e.to_string())?;
     let mut root = Root::new(solve);
-    let began = cpu_seconds().map_err(|e| e.to_string())?;
-    let verbose = std::env::var_os("STAGES").is_some();
-    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-    let driven: Result<(), Option<String>> = drive(&mut root, &mut |opening| {
-        let now = cpu_seconds().map_err(|e| Some(e.to_string()))?;
-        if now - began > wanted.limit {
-            return Err(None);
-        }
-        let made = opening.objects.iter();
-        objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
-        let find = |digest: Digest| objects.get(&digest).cloned();
-        let system = opening.system.as_deref().unwrap_or(system);
-        let prepared = PreparedWork::new(system, &opening.stage, &find);
-        let prepared = prepared.map_err(|e| Some(e.to_string()))?;
-        let results = prepared.run(0..prepared.items(), 8);
-        if verbose {
-            let kind = format!("{:?}", opening.stage.homotopy);
-            let after = cpu_seconds().map_err(|e| Some(e.to_string()))?;
-            eprintln!(
-                "    {:.2} s: {:?} {}, attempt {}, {} items, {:.3} s",
-                now - began,
-                opening.stage.work,
-                kind.split([' ', '(']).next().unwrap_or_default(),
-                opening.stage.attempt,
-                prepared.items(),
-                after - now
-            );
-        }
-        Ok(results)
-    });
-    match driven {
-        Ok(()) => Ok(root.solve.decomposition().cloned()),
-        Err(None) => Ok(None),
-        Err(Some(error)) => Err(error),
-    }
+    let whole = run_within(wanted.limit, system, &mut root)?;
+    Ok(whole.then(|| root.solve.decomposition().cloned()).flatten())
 }
 
 /// What all seeds of one system came to.

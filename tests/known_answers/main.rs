@@ -12,6 +12,7 @@ mod hard_paths;
 mod ill_conditioned;
 mod isolated_or_not;
 mod loops;
+mod mechanism_families;
 mod mechanisms;
 mod nine_point;
 mod overdetermined;

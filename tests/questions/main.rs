@@ -174,7 +174,15 @@ fn multidegree_of_conic_p1p2() {
 /// Closed loops, unbounded arcs, isolated points, singular points, connected components.
 fn check_real(name: &str, system: &System, expected: [u64; 5]) {
     for seed in seeds() {
-        let answer = ask(name, system, seed, &Question::RealCurve { samples: 2 });
+        let answer = ask(
+            name,
+            system,
+            seed,
+            &Question::RealCurve {
+                samples: 2,
+                projection: None,
+            },
+        );
         let Answer::RealCurve(curves) = answer else {
             panic!("{answer:?}");
         };
@@ -230,7 +238,15 @@ fn circuits_of_four_bars() {
 
 /// The singular points of a real curve: the point, and how many branches come to it.
 fn singular_points(name: &str, system: &System, seed: u64) -> Vec<(Vec<f64>, usize)> {
-    let answer = ask(name, system, seed, &Question::RealCurve { samples: 2 });
+    let answer = ask(
+        name,
+        system,
+        seed,
+        &Question::RealCurve {
+            samples: 2,
+            projection: None,
+        },
+    );
     let Answer::RealCurve(curves) = answer else {
         panic!("{answer:?}");
     };
@@ -473,7 +489,9 @@ macro_rules! real_surfaces {
 
 // Euler characteristics by hand: a sphere has 2, a torus 0, a plane 1, a cylinder 0; at a cone's apex two planes meet. The
 // cubic of Cayley is a ball with four cones at its nodes, 2 + 4 * 0. That of Clebsch, with 27 real lines, has -5 with its
-// points at infinity, which are three lines, 3 - 6.
+// points at infinity, which are three lines, 3 - 6. The tangle is a sphere with five handles,
+// which by its symmetries has critical values near each other. Cartan's umbrella is a graph over the plane without the origin, 0,
+// and a line, -1.
 real_surfaces! {
     surface_sphere: "x^2 + y^2 + z^2 - 1", (2, true, 1);
     surface_ellipsoid: "x^2 + 4*y^2 + 9*z^2 - 2*x - 5", (2, true, 1);
@@ -486,6 +504,9 @@ real_surfaces! {
     surface_empty: "x^2 + y^2 + z^2 + 1", (0, true, 0);
     surface_point: "x^2 + 2*y^2 + 3*z^2", (1, true, 1);
     surface_quartic_ball: "x^4 + y^4 + z^4 - 1", (2, true, 1);
+    surface_tangle: "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 59/5", (-8, true, 1);
+    surface_three_handles: "x^4 - 5*x^2 + x + y^4 - 4*y^2 - y/2 + z^4 - 3*z^2 + z/3 + 11/2", (-4, true, 1);
+    surface_cartan: "x^3 - z*(x^2 + y^2)", (-1, false, 1);
     surface_cayley: "x^2 + y^2 + z^2 - 2*x*y*z - 1", (2, false, 1);
     surface_clebsch: "x^3 + y^3 + z^3 + 1 - (x + y + z + 1)^3", (-2, false, 1);
 }
@@ -516,16 +537,25 @@ fn whitneys_umbrella_has_its_handle() {
     }
 }
 
-/// A sphere with five handles has 2 - 2 * 5. By its symmetries critical values come near each other: seed 3 is in doubt.
+/// Surfaces with double lines, and a quartic with 16 nodes: right, or now and then a doubt; why they have these Euler
+/// characteristics stands in `tests/surfaces/known.json`.
 #[test]
-fn a_surface_with_handles_is_right_or_in_doubt() {
-    let equation = "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 59/5";
-    for seed in 1..=3 {
-        let said = surface_without_doubt("tangle", equation, seed);
-        assert!(
-            said.is_none_or(|said| said == (-8, true)),
-            "{seed}: {said:?}"
-        );
-        assert!(said.is_some() || seed == 3, "{seed}");
+fn surfaces_with_double_lines_and_nodes_are_right_or_in_doubt() {
+    let known = [
+        ("kolibri", "x^3 + x^2*z^2 - y^2", 3),
+        ("steiner", "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z", -1),
+        (
+            "kummer",
+            "7*(x^4 + y^4 + z^4 + 1) + 396*x*y*z - 19*(x^2 + y^2*z^2) - 91*(y^2 + x^2*z^2) - 91*(z^2 + x^2*y^2)",
+            0,
+        ),
+    ];
+    for (name, equation, euler) in known {
+        for seed in seeds().step_by(3) {
+            let said = surface_without_doubt(name, equation, seed);
+            let wrong = said.is_some_and(|said| said != (euler, false));
+            assert!(!wrong, "{name}, seed {seed}: {said:?}");
+            assert!(said.is_some() || seed > 1, "{name}, seed {seed}");
+        }
     }
 }

@@ -1,5 +1,5 @@
-//! A worker and a coordinator are killed in the middle of an intersection, a singular locus and a search for real
-//! points: the same answer, byte for byte.
+//! A worker and a coordinator are killed in the middle of an intersection, a singular locus, a search for real points, a
+//! real curve and a real surface: the same answer, byte for byte.
 
 use crate::worker_lost::{nervous, slow_worker};
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
@@ -175,4 +175,29 @@ fn kills_leave_no_trace_in_real_points() {
     // Of 66 items.
     let summary = check(&submission, [8, 36], &["samples.csv"]);
     assert_eq!(summary["components"][0]["has_real_points"], true);
+}
+
+/// A cubic with an oval and an arc.
+#[test]
+fn kills_leave_no_trace_in_a_real_curve() {
+    let text = input("function f, g; f = y^2 - x*(x - 1)*(x + 1); g = z - x;");
+    let curve = components(&text);
+    let question = Question::RealCurve {
+        samples: 1,
+        projection: None,
+    };
+    let submission = asked(text, curve, question);
+    let summary = check(&submission, [8, 30], &["curve.json", "samples.csv"]);
+    let counts = &summary["components"][0];
+    assert_eq!(counts["closed_loops"], 1);
+    assert_eq!(counts["unbounded_arcs"], 1);
+}
+
+#[test]
+fn kills_leave_no_trace_in_a_real_surface() {
+    let text = input("function f; f = x^2 + 2*y^2 + 3*z^2 - 1;");
+    let ellipsoid = components(&text);
+    let submission = asked(text, ellipsoid, Question::RealSurface { samples: 1 });
+    let summary = check(&submission, [40, 200], &["surface.json", "surface.obj"]);
+    assert_eq!(summary["components"][0]["euler"], 2);
 }

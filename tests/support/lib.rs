@@ -9,6 +9,7 @@ pub mod cluster;
 pub mod database;
 pub mod dice;
 pub mod families;
+pub mod limited;
 pub mod measures;
 pub mod namespaces;
 pub mod planted;

@@ -199,6 +199,10 @@ fn questions_about_loci_come_back() {
     for question in [
         Question::SingularLocus,
         Question::RealPoints,
+        Question::RealCurve {
+            samples: 3,
+            projection: Some(1),
+        },
         Question::RealSurface { samples: 4 },
         Question::Intersect(second(Vec::new())),
         Question::Intersect(second(vec![component(1, 4), component(0, 1)])),

@@ -53,7 +53,10 @@ async fn question() -> NewProblem {
     asked.options.decompose = None;
     asked.options.question = Some(Asked {
         components,
-        question: Question::RealCurve { samples: 1 },
+        question: Question::RealCurve {
+            samples: 1,
+            projection: None,
+        },
     });
     asked
 }

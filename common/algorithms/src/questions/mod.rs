@@ -6,6 +6,7 @@
 
 mod certify;
 mod check;
+mod levels;
 mod locus;
 mod member;
 mod mobility;
@@ -255,9 +256,21 @@ impl QuestionSolve {
             Question::Mobility { points, depth } => {
                 Asking::Mobility(Mobility::new(system, points, *depth)?)
             }
-            Question::RealCurve { samples } => {
+            Question::RealCurve {
+                samples,
+                projection,
+            } => {
                 within("samples", *samples, MOST_ARC_SAMPLES)?;
-                Asking::RealCurve(Box::new(RealCurves::new(*samples)))
+                let count = system.variables.len();
+                let place = projection.map(|variable| variable as usize);
+                if let Some(found) = place.filter(|&place| place >= count) {
+                    return Err(QuestionError::Wish {
+                        field: "projection",
+                        found: found.to_string(),
+                        expected: format!("the place of one of {count} variables"),
+                    });
+                }
+                Asking::RealCurve(Box::new(RealCurves::onto(*samples, place)))
             }
             Question::Intersect(with) => {
                 let all = system.equations.len();

@@ -8,15 +8,20 @@
 mod assembled;
 mod traced;
 
+use super::levels::{Change, levels, range_of};
 use super::{Context, Operand};
-use crate::decomposition::deflated::equal_ones_merged;
-use crate::decomposition::job::{Job, StageSystem};
+use crate::decomposition::DecompositionOptions;
+use crate::decomposition::deflated::{Deflations, equal_ones_merged};
+use crate::decomposition::job::{Job, StageSystem, Tracking};
+use crate::decomposition::problem::Problem;
+use crate::decomposition::superset::SingularEnd;
 use assembled::assemble;
 use cognate_continuation::bend::{SlicedEquations, doubles_of, exactly};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::real_curve::RealCurve;
+use cognate_systems::system::System;
 use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -27,18 +32,22 @@ pub(super) use traced::{row_of, value};
 const MOST_STAGES: usize = 20_000;
 /// Forms that are tried until one leaves no doubt.
 const MOST_FORMS: u32 = 3;
-/// A point is real within this, relative to its size: regular ones, whose digits are known,
+/// A point is real within this, relative to its size: one whose digits are known,
 const REAL: f64 = 1e-11;
-/// ... and singular ones.
+/// ... and a singular one of which they are not.
 const REAL_SINGULAR: f64 = 1e-5;
 /// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most this factor.
 const CLEAR: f64 = 1e2;
+/// How far beyond the outermost levels fibres are counted once more, in ranges of the levels.
+const FAR: [f64; 2] = [2.0, 30.0];
+/// The error of a singular end that has no estimate.
+const UNKNOWN_ACCURACY: f64 = 1e-6;
 /// Ends of paths at singular points nearer than this, relative to their size, are one point.
 const SAME_SINGULAR: f64 = 1e-5;
-/// Values of the form nearer than this part of their range are one.
-const SAME_VALUE: f64 = 1e-7;
-/// ... and farther than this are two.
-const OTHER_VALUE: f64 = 1e-5;
+/// A value of the form is that of a level that is given within this part of their range.
+const AT_LEVEL: f64 = 1e-7;
+/// Curves on a surface are also asked for their points near levels: so much nearer than the last sample.
+pub(super) const NEAR_LEVELS: [f64; 2] = [1.0 / 30.0, 1.0 / 900.0];
 
 /// What is being done with the current component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,6 +80,8 @@ struct Given {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RealCurves {
     given: Option<Given>,
+    /// The variable along which all are followed, by place.
+    projection: Option<usize>,
     /// Samples of each arc, besides its ends and its middle.
     samples: u32,
     found: Vec<RealCurve>,
@@ -80,9 +91,11 @@ pub(super) struct RealCurves {
 }
 
 impl RealCurves {
-    pub fn new(samples: u32) -> Self {
+    /// Along a variable, where that is wanted, or along random forms.
+    pub fn onto(samples: u32, projection: Option<usize>) -> Self {
         Self {
             given: None,
+            projection,
             samples,
             found: Vec::new(),
             phase: Phase::Begin,
@@ -95,7 +108,7 @@ impl RealCurves {
     pub fn along(samples: u32, form: Vec<[i32; 2]>, levels: Vec<f64>, size: f64) -> Self {
         Self {
             given: Some(Given { form, levels, size }),
-            ..Self::new(samples)
+            ..Self::onto(samples, None)
         }
     }
 
@@ -133,7 +146,8 @@ impl RealCurves {
         if begun && now.doubts.is_empty() {
             curve.check();
         }
-        let others = self.given.is_none() && self.number + 1 < MOST_FORMS;
+        let random = self.given.is_none() && self.projection.is_none();
+        let others = random && self.number + 1 < MOST_FORMS;
         if begun && !curve.doubts.is_empty() && others {
             self.number += 1;
             return;
@@ -163,9 +177,14 @@ impl RealCurves {
         let Some(involution) = &with.problem.involution else {
             return self.doubt("complex conjugation does not map solutions to solutions");
         };
-        self.now.form = match &self.given {
-            Some(given) => given.form.clone(),
-            None => form(with, self.number),
+        self.now.form = match (&self.given, self.projection) {
+            (Some(given), _) => given.form.clone(),
+            (None, Some(variable)) => {
+                let of = [variable, involution.partner[variable]];
+                let coefficient = |v: usize| [i32::from(of.contains(&v)), 0];
+                (0..n).map(coefficient).collect()
+            }
+            (None, None) => form(with, self.number),
         };
         self.phase = Phase::Mirror;
         let row = &operand.slices[0];
@@ -280,8 +299,15 @@ impl RealCurves {
         let equations = SlicedEquations::new(&system, Vec::new());
         let involution = with.problem.involution.as_ref()?;
         let mut lost = 0;
-        let mut found: Vec<(Vec<Complex64>, bool)> = Vec::new();
-        for (_, decision, values) in job.ends() {
+        let mut found: Vec<Critical> = Vec::new();
+        let mut singular = Vec::new();
+        let critical = |point: Vec<Complex64>, regular: bool, exact: bool| Critical {
+            point,
+            value: 0.0,
+            regular,
+            exact,
+        };
+        for (result, decision, values) in job.ends() {
             match decision.verdict {
                 Verdict::AtInfinity => continue,
                 Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => {
@@ -294,37 +320,46 @@ impl RealCurves {
             let refined = equations.refine(&start).filter(|refined| {
                 refined.condition < 1e10 && refined.correction < 1e-20 && refined.moved < 1e-4
             });
-            found.push(match refined {
-                Some(refined) => (doubles_of(&refined.point), true),
-                None => (values, false),
-            });
+            match refined {
+                Some(refined) => found.push(critical(doubles_of(&refined.point), true, true)),
+                None => singular.push((values, result.accuracy)),
+            }
         }
         if lost > 0 {
             return self.doubt(format!("{lost} paths to critical points failed"));
         }
-        for (point, regular) in found {
-            let image = involution.image(&point);
-            let apart = distance(&point, &image);
-            let within = if regular { REAL } else { REAL_SINGULAR };
+        // Many paths end at one singular point, which deflated equations know to all digits.
+        let mut places = (!singular.is_empty())
+            .then(|| SingularPlaces::new(&system, &with.problem.tracking))
+            .flatten();
+        for (values, accuracy) in singular {
+            let known = |c: &Critical| distance(&c.point, &values) < SAME_SINGULAR;
+            if found.iter().any(known) {
+                continue;
+            }
+            let place = places
+                .as_mut()
+                .and_then(|places| places.at(&values, accuracy));
+            let exact = place.is_some();
+            found.push(critical(place.unwrap_or(values), false, exact));
+        }
+        for mut point in found {
+            let image = involution.image(&point.point);
+            let apart = distance(&point.point, &image);
+            let within = if point.exact { REAL } else { REAL_SINGULAR };
             if apart > within * CLEAR {
                 continue;
             }
             if apart > within {
                 return self.doubt("a critical point is neither clearly real nor clearly not");
             }
-            let point: Vec<Complex64> = point
-                .iter()
-                .zip(&image)
-                .map(|(a, b)| 0.5 * (a + b))
-                .collect();
-            let value = value(&self.now.form, &point);
-            let same = |known: &Critical| distance(&known.point, &point) < SAME_SINGULAR;
+            for (own, image) in point.point.iter_mut().zip(&image) {
+                *own = 0.5 * (*own + image);
+            }
+            point.value = value(&self.now.form, &point.point);
+            let same = |known: &Critical| distance(&known.point, &point.point) < SAME_SINGULAR;
             if !self.now.critical.iter().any(same) {
-                self.now.critical.push(Critical {
-                    point,
-                    value,
-                    regular,
-                });
+                self.now.critical.push(point);
             }
         }
         if self.now.apart {
@@ -337,30 +372,25 @@ impl RealCurves {
     fn slabs(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
         let now = &mut self.now;
         now.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let values: Vec<f64> = now.critical.iter().map(|c| c.value).collect();
-        let range = match (values.first(), values.last()) {
-            (Some(first), Some(last)) => (last - first).max(1e-3 * first.abs().max(1.0)),
-            _ => 1.0,
+        let changes = now.critical.iter().map(|critical| Change {
+            value: critical.value,
+            exact: critical.exact,
+        });
+        let Some(own) = levels(changes.collect()) else {
+            return self.doubt("two critical points have nearly the same value");
         };
-        for value in values {
-            match now.levels.last() {
-                Some(last) if value - last <= SAME_VALUE * range => {}
-                Some(last) if value - last <= OTHER_VALUE * range => {
-                    return self.doubt("two critical points have nearly the same value");
+        match self.given.as_ref().filter(|g| !g.levels.is_empty()) {
+            None => now.levels = own,
+            Some(given) => {
+                let range = range_of(own.iter().copied());
+                let same = |a: f64| {
+                    let near = |b: &f64| (a - b).abs() <= AT_LEVEL * range;
+                    given.levels.iter().any(near)
+                };
+                now.levels = given.levels.clone();
+                if !own.into_iter().all(same) {
+                    return self.doubt("a critical point is at none of the levels");
                 }
-                _ => now.levels.push(value),
-            }
-        }
-        if let Some(given) = self.given.as_ref().filter(|g| !g.levels.is_empty()) {
-            let own = std::mem::replace(&mut now.levels, given.levels.clone());
-            let same = |a: f64| {
-                given
-                    .levels
-                    .iter()
-                    .any(|b| (a - b).abs() <= SAME_VALUE * range)
-            };
-            if !own.into_iter().all(same) {
-                return self.doubt("a critical point is at none of the levels");
             }
         }
         let size = self
@@ -369,7 +399,9 @@ impl RealCurves {
             .map_or_else(|| size_of(operand, &now.form), |g| g.size);
         now.middles = middles(&now.levels, size);
         let row = |value: &f64| vec![row_of(&now.form, *value)];
-        let targets = now.middles.iter().map(row).collect();
+        let far = far_values(&now.levels, size);
+        let targets = now.middles.iter().chain(&far).map(row).collect();
+        now.far = far;
         self.phase = Phase::Fibres;
         Some(operand.moved_to(with.problem, with.deflations, targets))
     }
@@ -378,7 +410,17 @@ impl RealCurves {
         let involution = with.problem.involution.as_ref()?;
         let ends = job.ends();
         for (slab, ends) in ends.chunks(operand.degree()).enumerate() {
-            let middle = self.now.middles[slab];
+            let slabs = self.now.middles.len();
+            let middle = match slab.checked_sub(slabs) {
+                None => self.now.middles[slab],
+                Some(far) => self.now.far[far],
+            };
+            let is = |wanted: Verdict| ends.iter().any(|(_, d, _)| d.verdict == wanted);
+            if self.projection.is_some() && is(Verdict::AtInfinity) {
+                return self.doubt(format!(
+                    "points of the fibre at {middle:.6} are at infinity, since the projection is not general"
+                ));
+            }
             if ends.iter().any(|(_, d, _)| d.verdict != Verdict::Finite) {
                 return self.doubt(format!("points of the fibre at {middle:.6} were lost"));
             }
@@ -405,7 +447,23 @@ impl RealCurves {
                 let real = apart <= limit;
                 fibre.push(FibrePoint { point, real });
             }
-            self.now.fibres.push(fibre);
+            if slab < slabs {
+                self.now.fibres.push(fibre);
+                continue;
+            }
+            // Nothing happens beyond the outermost levels: else one is missing.
+            let nearest = if middle < self.now.middles[0] {
+                0
+            } else {
+                slabs - 1
+            };
+            let real = |fibre: &[FibrePoint]| fibre.iter().filter(|p| p.real).count();
+            let [far, near] = [real(&fibre), real(&self.now.fibres[nearest])];
+            if far != near {
+                return self.doubt(format!(
+                    "{far} real points over {middle:.6}, and {near} nearer: a critical point is missing"
+                ));
+            }
         }
         self.plan_tasks();
         let stages = self.now.tasks.len();
@@ -423,23 +481,29 @@ impl RealCurves {
         let last = now.levels.len();
         // Where there is no level.
         let reach = self.given.as_ref().map_or(1.0, |given| 0.5 * given.size);
+        let near = self
+            .given
+            .as_ref()
+            .is_some_and(|given| !given.levels.is_empty());
         for slab in 0..now.middles.len() {
             let middle = now.middles[slab];
             let sides = [slab.checked_sub(1), (slab < last).then_some(slab)];
-            let values = values_beside(&now.levels, middle, (slab, reach), self.samples);
+            let values = values_beside(&now.levels, middle, (slab, reach), (self.samples, near));
             for (values, level) in values.into_iter().zip(sides) {
                 now.tasks.extend(level.map(|level| Task {
                     slab,
                     to: now.levels[level],
                     level: Some(level),
+                    needed: true,
                 }));
                 if now.fibres[slab].iter().any(|p| p.real) {
-                    let sample = |to: f64| Task {
+                    let sample = |(place, to): (usize, f64)| Task {
                         slab,
                         to,
                         level: None,
+                        needed: place < self.samples as usize,
                     };
-                    now.tasks.extend(values.into_iter().map(sample));
+                    now.tasks.extend(values.into_iter().enumerate().map(sample));
                 }
             }
         }
@@ -496,12 +560,24 @@ fn middles(levels: &[f64], size: f64) -> Vec<f64> {
     before.chain(between).chain([last + margin]).collect()
 }
 
-/// Values of samples on either side of the middle of a slab; `reach`: how far they go where there is no level at all.
+/// Values beyond all levels, where a fibre must have as many real points as in the outermost slabs.
+fn far_values(levels: &[f64], size: f64) -> Vec<f64> {
+    let (first, last) = match (levels.first(), levels.last()) {
+        (Some(&first), Some(&last)) => (first, last),
+        _ => (0.0, 0.0),
+    };
+    let range = (last - first).max(0.5 * size);
+    let beyond = FAR.map(|part| [first - part * range, last + part * range]);
+    beyond.concat()
+}
+
+/// Values of samples on either side of the middle of a slab, with those near levels where they are wanted; `reach`: how
+/// far they go where there is no level at all.
 fn values_beside(
     levels: &[f64],
     middle: f64,
     (slab, reach): (usize, f64),
-    samples: u32,
+    (samples, near_wanted): (u32, bool),
 ) -> [Vec<f64>; 2] {
     let sides = [slab.checked_sub(1), (slab < levels.len()).then_some(slab)];
     let other = sides.into_iter().flatten().next();
@@ -510,19 +586,58 @@ fn values_beside(
     let parts = (1..=samples).map(|k| f64::from(k) / count);
     // Denser near the end, where arcs may turn.
     let parts: Vec<f64> = parts.map(|part| part * (2.0 - part)).collect();
-    let side = |level: Option<usize>, sign: f64| {
+    let side = |level: Option<usize>, sign: f64| -> Vec<f64> {
         let end = level.map_or(middle + sign * reach, |level| levels[level]);
-        let parts = parts.iter();
-        parts.map(|part| middle + part * (end - middle)).collect()
+        let left = 1.0 - parts.last().copied().unwrap_or(0.0);
+        let near = NEAR_LEVELS.map(|part| end - part * left * (end - middle));
+        let near = near.into_iter().filter(|_| near_wanted && level.is_some());
+        let values = parts.iter().map(|part| middle + part * (end - middle));
+        values.chain(near).collect()
     };
     [side(sides[0], -1.0), side(sides[1], 1.0)]
 }
 
-/// Values of the middles and of all samples of each slab, ascending, of curves along a form of this size that is given.
+/// Where singular critical points are, by deflations of the equations that they solve.
+struct SingularPlaces {
+    problem: Problem,
+    deflations: Deflations,
+}
+
+impl SingularPlaces {
+    fn new(critical: &System, tracking: &Tracking) -> Option<Self> {
+        let options = DecompositionOptions {
+            seed: tracking.seed,
+            own_units: false,
+            ..DecompositionOptions::default()
+        };
+        Some(Self {
+            problem: Problem::of_options(critical, &options).ok()?,
+            deflations: Deflations::default(),
+        })
+    }
+
+    /// The isolated singular point near the end of a path, to all digits of a double.
+    fn at(&mut self, values: &[Complex64], accuracy: f64) -> Option<Vec<Complex64>> {
+        let end = SingularEnd {
+            values: values.to_vec(),
+            accuracy: if accuracy.is_finite() {
+                accuracy
+            } else {
+                UNKNOWN_ACCURACY
+            },
+            paths: 1,
+        };
+        let found = self.deflations.regular_point(&self.problem, 0, &end)?;
+        Some(doubles_of(&found.refined.point[..values.len()]))
+    }
+}
+
+/// Values of the middles and of all samples of each slab, with those near levels, ascending, of curves along a form of this
+/// size that is given.
 pub(super) fn sections(levels: &[f64], size: f64, samples: u32) -> Vec<Vec<f64>> {
     let middles = middles(levels, size).into_iter().enumerate();
     let values = middles.map(|(slab, middle)| {
-        let [below, above] = values_beside(levels, middle, (slab, 0.5 * size), samples);
+        let [below, above] = values_beside(levels, middle, (slab, 0.5 * size), (samples, true));
         let mut values: Vec<f64> = below.into_iter().chain([middle]).chain(above).collect();
         values.sort_by(f64::total_cmp);
         values

@@ -9,9 +9,11 @@
 
 mod equations;
 mod mesh;
+mod plan;
 mod section;
 
-use super::real_curve::{RealCurves, row_of, sections, size_of, value};
+use super::levels::{Change, levels};
+use super::real_curve::{RealCurves, row_of, size_of};
 use super::{Context, Operand, QuestionSolve};
 use crate::decomposition::deflated::equal_ones_merged;
 use crate::decomposition::job::Job;
@@ -20,33 +22,25 @@ use crate::progress::StageProgress;
 use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::bend::doubles_of;
 use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
 use cognate_numeric::random::{Purpose, RandomStream};
-use cognate_solutions::classification::Verdict;
+use cognate_solutions::classification::{Decision, Verdict};
 use cognate_solutions::witness::real_curve::{CurveVertex, RealCurve, VertexKind};
 use cognate_solutions::witness::real_surface::{Mesh, RealSurface};
 use cognate_solutions::witness::{Answer, TrackedPaths, WitnessSet};
 use cognate_systems::system::System;
 use mesh::{Builder, links};
 use num_complex::Complex64;
-use section::{Fibre, Mark, Place, Section};
+use plan::{Collected, Plan};
+use section::Fibre;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Forms that are tried until one leaves no doubt.
 const MOST_FORMS: u32 = 6;
-/// Levels nearer than this part of their range are one.
-const SAME_LEVEL: f64 = 1e-7;
-/// Marks of a level nearer than this, relative to their size, are one.
-const SAME_MARK: f64 = 1e-5;
-/// Values of u nearer than this part of the range are those of one section.
-const SAME_SECTION: f64 = 1e-6;
-/// Levels that are no nearer than this part of their range are two.
-const OTHER_LEVEL: f64 = 1e-5;
-/// Parts of a strip of a level at which sections beside it are compared.
-const LOOKS: [f64; 5] = [0.5, 0.25, 0.75, 0.1, 0.9];
-
+/// An end that looks singular is a regular point this near to it, relative to its size.
+const MOVED_SINGULAR: f64 = 1e-6;
 /// Points of fibres, which are known to 32 digits, are real below this imaginary part,
 const REAL: f64 = 1e-15;
 /// ... and not real above this.
@@ -108,74 +102,6 @@ pub(super) struct RealSurfaces {
     child: Option<Child>,
     /// Paths of all children that are done.
     paths: TrackedPaths,
-}
-
-/// All sections of a component, with what comes to the levels.
-struct Plan {
-    /// Sections by growing u; of levels and of slabs.
-    sections: Vec<Section>,
-    /// For each section the level that it is of.
-    levels: Vec<Option<usize>>,
-    /// For each level the mark to which each arc of critical points comes from below and from above.
-    limits: Vec<[BTreeMap<usize, usize>; 2]>,
-    /// For each level and side, for each strip: values of v at which the section beside it is looked at.
-    looks: Vec<[Vec<Vec<Fibre>>; 2]>,
-    /// Whether points are singular, by name of their arc.
-    singular: Vec<bool>,
-}
-
-/// The marks of all sections.
-struct Collected {
-    /// By slab and section.
-    marks: Vec<Vec<Vec<Mark>>>,
-    at_levels: Vec<Vec<Mark>>,
-    /// For each level the mark to which each arc of critical points comes from below and from above.
-    limits: Vec<[BTreeMap<usize, usize>; 2]>,
-    /// Whether points are singular, by name of their arc.
-    singular: Vec<bool>,
-}
-
-impl Collected {
-    fn new(values: &[Vec<f64>], levels: usize) -> Self {
-        Self {
-            marks: values.iter().map(|v| vec![Vec::new(); v.len()]).collect(),
-            at_levels: vec![Vec::new(); levels],
-            limits: vec![[BTreeMap::new(), BTreeMap::new()]; levels],
-            singular: Vec::new(),
-        }
-    }
-
-    /// The mark of a level at this place, by name.
-    fn at_level(&mut self, level: usize, place: Place, singular: bool) -> usize {
-        let marks = &mut self.at_levels[level];
-        if let Some(known) = marks.iter_mut().find(|m| near(&m.place, &place)) {
-            known.singular |= singular;
-            return known.name;
-        }
-        let name = marks.len();
-        marks.push(Mark {
-            place,
-            name,
-            singular,
-        });
-        name
-    }
-
-    /// A range of v with all marks well inside; `size`: the order of magnitude of v where there are none.
-    fn window(&self, size: f64) -> [f64; 2] {
-        let all = self.marks.iter().flatten().chain(&self.at_levels).flatten();
-        let limits = (f64::INFINITY, f64::NEG_INFINITY);
-        let values = all.map(|mark| mark.place[1]);
-        let (low, high) = values.fold(limits, |(low, high), v| (low.min(v), high.max(v)));
-        let margin = match high > low {
-            true => 0.4 * (high - low),
-            false => size,
-        };
-        match low <= high {
-            true => [low - margin, high + margin],
-            false => [-margin, margin],
-        }
-    }
 }
 
 impl RealSurfaces {
@@ -399,23 +325,20 @@ impl RealSurfaces {
                 self.curves(with, k, 1, Vec::new())
             }
             None => {
-                let values = |curve: &RealCurve| -> Vec<f64> {
-                    let own = curve.vertices.iter();
-                    let own = own.filter(|v| v.kind != VertexKind::Regular);
-                    own.map(|v| v.value).collect()
+                let own = |curves: &Curves| -> Vec<Change> {
+                    let vertices = curves.found.iter().flat_map(|curve| &curve.vertices);
+                    let vertices = vertices.filter(|v| v.kind != VertexKind::Regular);
+                    let exact =
+                        |v: &CurveVertex| !curves.singular && v.kind == VertexKind::Critical;
+                    let change = |v: &CurveVertex| Change {
+                        value: v.value,
+                        exact: exact(v),
+                    };
+                    vertices.map(change).collect()
                 };
-                let all = self.now.curves.iter().flat_map(|curves| &curves.found);
-                self.now.levels = merged(all.flat_map(values).collect());
-                let levels = &self.now.levels;
-                let range = levels
-                    .last()
-                    .zip(levels.first())
-                    .map_or(0.0, |(b, a)| b - a);
-                if levels
-                    .windows(2)
-                    .any(|pair| pair[1] - pair[0] <= OTHER_LEVEL * range)
-                {
-                    return self.doubt("two levels are nearly the same");
+                match levels(self.now.curves.iter().flat_map(own).collect()) {
+                    Some(levels) => self.now.levels = levels,
+                    None => return self.doubt("two levels are nearly the same"),
                 }
                 self.next_arcs(with, 0)
             }
@@ -489,118 +412,31 @@ impl RealSurfaces {
         self.next_arcs(with, number + 1)
     }
 
-    fn place(&self, point: &[Complex64]) -> Place {
-        [0, 1, 2].map(|k| value(&self.now.forms[k], point))
-    }
-
-    /// The marks of all sections and levels; a value of u over which some are missing. `values`: of the sections of each
-    /// slab.
-    fn collect(&self, values: &[Vec<f64>], range: f64) -> Result<Collected, f64> {
-        let levels = &self.now.levels;
-        let mut found = Collected::new(values, levels.len());
-        for curves in &self.now.curves {
-            for curve in &curves.found {
-                let vertex = |vertex: &CurveVertex| {
-                    let same = |l: &f64| (l - vertex.value).abs() <= SAME_SECTION * range;
-                    let level = levels.iter().position(same)?;
-                    Some((level, self.place(&vertex.point)))
-                };
-                let marks: Vec<Option<(usize, usize)>> = curve
-                    .vertices
-                    .iter()
-                    .map(|own| {
-                        let (level, place) = vertex(own)?;
-                        // Where the outline is singular, sheets come as near as beside a double curve.
-                        let singular = curves.singular || own.is_singular();
-                        Some((level, found.at_level(level, place, singular)))
-                    })
-                    .collect();
-                for edge in &curve.edges {
-                    let name = found.singular.len();
-                    found.singular.push(curves.singular);
-                    let places: Vec<Place> = edge.samples.iter().map(|p| self.place(p)).collect();
-                    let middle = places[places.len() / 2][0];
-                    let slab = levels.partition_point(|&level| level < middle);
-                    if places.len() != values[slab].len() {
-                        return Err(middle);
-                    }
-                    for (k, (&value, &place)) in values[slab].iter().zip(&places).enumerate() {
-                        if (value - place[0]).abs() > SAME_SECTION * range.max(value.abs()) {
-                            return Err(value);
-                        }
-                        found.marks[slab][k].push(Mark {
-                            place,
-                            name,
-                            singular: curves.singular,
-                        });
-                    }
-                    for (side, end) in edge.ends.iter().enumerate() {
-                        if let Some((level, mark)) = end.and_then(|end| marks[end]) {
-                            // The lower end of an arc is at a level that the arc reaches from above.
-                            found.limits[level][1 - side].insert(name, mark);
-                        }
-                    }
-                }
-            }
-        }
-        Ok(found)
-    }
-
     /// All sections with their marks.
     fn plan(&mut self, operand: &Operand) -> Option<Plan> {
-        let levels = self.now.levels.clone();
-        let size = size_of(operand, &self.now.forms[0]);
-        let range = match (levels.first(), levels.last()) {
-            (Some(first), Some(last)) if last > first => last - first,
-            _ => size,
-        };
-        let values = sections(&levels, size, self.samples);
-        let mut found = match self.collect(&values, range) {
-            Ok(found) => found,
-            Err(u) => {
-                return self.doubt(format!("points of a curve on it over {u:.6} are missing"));
-            }
-        };
-        let window = found.window(size_of(operand, &self.now.forms[1]));
-        let (mut sections, mut of_level) = (Vec::new(), Vec::new());
-        for (slab, (marks, values)) in found.marks.into_iter().zip(&values).enumerate() {
-            for (marks, &u) in marks.into_iter().zip(values) {
-                sections.push(Section::new(u, marks, window, self.samples));
-                of_level.push(None);
-            }
-            if slab < levels.len() {
-                let own = std::mem::take(&mut found.at_levels[slab]);
-                let section = Section::new(levels[slab], own, window, self.samples);
-                // Names become places in order of v.
-                for side in &mut found.limits[slab] {
-                    for mark in side.values_mut() {
-                        let is = |m: &Mark| m.name == *mark;
-                        let place = section.marks.iter().position(is);
-                        *mark = place.expect("it is one of them");
-                    }
+        let now = &self.now;
+        let sizes = [0, 1].map(|k| size_of(operand, &now.forms[k]));
+        let mut found = Collected::new(&now.levels, sizes, self.samples);
+        for curves in &now.curves {
+            for curve in &curves.found {
+                if let Err(u) = found.add(curve, curves.singular, &now.forms) {
+                    return self.doubt(format!("points of a curve on it over {u:.6} are missing"));
                 }
-                sections.push(section);
-                of_level.push(Some(slab));
             }
         }
-        Some(Plan {
-            looks: looks(&sections, &of_level),
-            sections,
-            levels: of_level,
-            limits: found.limits,
-            singular: found.singular,
-        })
+        Some(found.plan(&now.levels))
     }
 
     /// The slices of all fibres, in the order of [`Self::fill`].
     fn targets(&self, plan: &Plan) -> Vec<Vec<Vec<Complex64>>> {
         let row = |form: usize, value: f64| row_of(&self.now.forms[form], value);
         let mut targets = Vec::new();
-        each_fibre(plan, &mut |u, v| targets.push(vec![row(0, u), row(1, v)]));
+        plan.each_fibre(&mut |u, v| targets.push(vec![row(0, u), row(1, v)]));
         targets
     }
 
-    /// Puts the real points of all fibres into the plan; `None` where some are not clear.
+    /// Puts the real points of all fibres into the plan, and the arcs of sections together; `None` where some are not
+    /// clear.
     fn fill(
         &mut self,
         with: &mut Context<'_>,
@@ -612,65 +448,79 @@ impl RealSurfaces {
         let ends = job.ends();
         let mut fibres = Vec::with_capacity(targets.len());
         for (rows, ends) in targets.iter().zip(ends.chunks(operand.degree())) {
-            let (u, v) = (-rows[0][0].re, -rows[1][0].re);
-            if ends.iter().any(|(_, d, _)| d.verdict != Verdict::Finite) {
-                return self.doubt(format!("points of the fibre at ({u:.6}, {v:.6}) were lost"));
-            }
-            let points: Vec<Vec<Complex64>> = ends.iter().map(|(_, _, v)| v.clone()).collect();
-            let refined = with
-                .deflations
-                .points_on(with.problem, (rows, &[]), &points);
-            let mut fibre = Fibre {
-                v,
-                ..Fibre::default()
-            };
-            let Some(refined) = refined.into_iter().collect::<Option<Vec<_>>>() else {
-                return self.doubt(format!("the fibre at ({u:.6}, {v:.6}) is not regular"));
-            };
-            let apart = refined.iter().map(|p| (p.clone(), 1)).collect();
-            if equal_ones_merged(apart).len() < operand.degree() {
-                return self.doubt(format!("two paths met in the fibre at ({u:.6}, {v:.6})"));
-            }
-            for refined in refined {
-                let point = doubles_of(&refined.point);
-                let apart = point.iter().map(|z| z.im.abs()).fold(0.0, f64::max);
-                if (REAL..NOT_REAL).contains(&apart) {
-                    return self.doubt("a point is neither clearly real nor clearly not");
-                }
-                let third = &self.now.forms[2];
-                let row = row_of(third, 0.0);
-                let value: Complex64 = row[1..].iter().zip(&point).map(|(c, x)| c * x).sum();
-                fibre.third.push([value.re, value.im]);
-                if apart < REAL {
-                    fibre.real.push([u, v, value.re]);
-                }
-            }
-            fibre.real.sort_by(|a, b| a[2].total_cmp(&b[2]));
-            fibres.push(fibre);
+            fibres.push(self.fibre(with, rows, ends));
         }
         let mut fibres = fibres.into_iter();
-        let mut next = || fibres.next().expect("a fibre for each target");
         for section in &mut plan.sections {
-            for fibre in section.strips.iter_mut().flat_map(|s| &mut s.fibres) {
-                *fibre = next();
+            let filled = section.fill(&mut fibres);
+            if let Err(doubt) = filled.and_then(|()| section.connect()) {
+                return self.doubt(doubt);
             }
         }
-        for fibre in plan.looks.iter_mut().flatten().flatten().flatten() {
-            *fibre = next();
+        for sections in plan.near.iter_mut().flatten() {
+            // What is not clear there is no help, that is all.
+            sections.retain_mut(|section| {
+                let filled = section.fill(&mut fibres);
+                filled.and_then(|()| section.connect()).is_ok()
+            });
         }
         Some(())
+    }
+
+    /// The real points over the slice of a fibre, to which these paths came; what is not clear.
+    fn fibre(
+        &self,
+        with: &mut Context<'_>,
+        rows: &[Vec<Complex64>],
+        ends: &[(&PathResult, Decision, Vec<Complex64>)],
+    ) -> Result<Fibre, String> {
+        let (u, v) = (-rows[0][0].re, -rows[1][0].re);
+        // Beside a mark points lie near one another, and look singular to a path: whether they are, all digits tell.
+        let lost = |d: &Decision| matches!(d.verdict, Verdict::Failed | Verdict::AtInfinity);
+        if ends.iter().any(|(_, d, _)| lost(d)) {
+            return Err(format!("points of the fibre at ({u:.6}, {v:.6}) were lost"));
+        }
+        let points: Vec<Vec<Complex64>> = ends.iter().map(|(_, _, v)| v.clone()).collect();
+        let refined = with
+            .deflations
+            .points_on(with.problem, (rows, &[]), &points);
+        let mut fibre = Fibre {
+            v,
+            ..Fibre::default()
+        };
+        let ends = refined.into_iter().zip(ends);
+        let clear = ends.map(|(refined, (_, decision, _))| {
+            refined.filter(|r| decision.verdict == Verdict::Finite || r.moved < MOVED_SINGULAR)
+        });
+        let Some(refined) = clear.collect::<Option<Vec<_>>>() else {
+            return Err(format!("the fibre at ({u:.6}, {v:.6}) is not regular"));
+        };
+        let apart = refined.iter().map(|p| (p.clone(), 1)).collect();
+        if equal_ones_merged(apart).len() < points.len() {
+            return Err(format!("two paths met in the fibre at ({u:.6}, {v:.6})"));
+        }
+        let third = row_of(&self.now.forms[2], 0.0);
+        for refined in refined {
+            let point = doubles_of(&refined.point);
+            let apart = point.iter().map(|z| z.im.abs()).fold(0.0, f64::max);
+            if (REAL..NOT_REAL).contains(&apart) {
+                return Err("a point is neither clearly real nor clearly not".into());
+            }
+            let value: Complex64 = third[1..].iter().zip(&point).map(|(c, x)| c * x).sum();
+            fibre.third.push([value.re, value.im]);
+            if apart < REAL {
+                fibre.real.push([u, v, value.re]);
+            }
+        }
+        fibre.real.sort_by(|a, b| a[2].total_cmp(&b[2]));
+        Ok(fibre)
     }
 
     /// Puts sections and triangles together.
     fn assemble(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
         let mut plan = self.plan(operand)?;
         self.fill(with, operand, job, &mut plan)?;
-        for section in &mut plan.sections {
-            if let Err(doubt) = section.connect() {
-                return self.doubt(doubt);
-            }
-        }
-        let built = match self.built(&plan) {
+        let built = match built(&plan) {
             Ok(built) => built,
             Err(doubt) => return self.doubt(doubt),
         };
@@ -683,7 +533,7 @@ impl RealSurfaces {
             let point = with.problem.to_variables(&unknowns);
             [point[0].re, point[1].re, point[2].re]
         });
-        let (euler, compact) = cells(&plan);
+        let (euler, compact) = plan.cells();
         let mut surface = RealSurface {
             id: operand.id,
             degree: operand.degree() as u64,
@@ -701,43 +551,40 @@ impl RealSurfaces {
         self.settle(operand, Some(surface));
         None
     }
+}
 
-    /// All triangles.
-    fn built(&self, plan: &Plan) -> Result<Builder, String> {
-        let mut builder = Builder::default();
-        let section = |k: usize| (k, &plan.sections[k]);
-        for k in 0..plan.sections.len() {
-            let own = section(k);
-            for mark in (0..own.1.marks.len()).filter(|&m| own.1.on[m]) {
-                builder.mark(own, mark);
+/// All triangles.
+fn built(plan: &Plan) -> Result<Builder, String> {
+    let mut builder = Builder::default();
+    let section = |k: usize| (k, &plan.sections[k]);
+    for k in 0..plan.sections.len() {
+        let own = section(k);
+        for mark in (0..own.1.marks.len()).filter(|&m| own.1.on[m]) {
+            builder.mark(own, mark);
+        }
+        let Some(level) = plan.levels[k] else {
+            if k > 0 && plan.levels[k - 1].is_none() {
+                builder.between(section(k - 1), own)?;
+                curves(&mut builder, plan, [k - 1, k]);
             }
-            let Some(level) = plan.levels[k] else {
-                if k > 0 && plan.levels[k - 1].is_none() {
-                    builder.between(section(k - 1), own)?;
-                    curves(&mut builder, plan, [k - 1, k]);
-                }
-                continue;
-            };
-            for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
-                let looks = plan.looks[level][side].iter();
-                let looks: Vec<Vec<(f64, usize)>> = looks
-                    .map(|fibres| fibres.iter().map(|f| (f.v, f.real.len())).collect())
-                    .collect();
-                let limits = &plan.limits[level][side];
-                let links = links(own.1, &plan.sections[beside], &looks)?;
-                builder.at_level(own, section(beside), limits, &links)?;
-                let other = &plan.sections[beside];
-                for (m, mark) in other.marks.iter().enumerate() {
-                    let on = plan.singular[mark.name] && other.on[m];
-                    if let Some(&limit) = limits.get(&mark.name).filter(|_| on) {
-                        let ends = (builder.mark(own, limit), builder.mark(section(beside), m));
-                        builder.segment(ends.0, ends.1);
-                    }
+            continue;
+        };
+        for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
+            let limits = &plan.limits[level][side];
+            let near = &plan.near[level][side];
+            let links = links(own.1, &plan.sections[beside], near, limits)?;
+            builder.at_level(own, section(beside), limits, &links)?;
+            let other = &plan.sections[beside];
+            for (m, mark) in other.marks.iter().enumerate() {
+                let on = plan.singular[mark.name] && other.on[m];
+                if let Some(&limit) = limits.get(&mark.name).filter(|_| on) {
+                    let ends = (builder.mark(own, limit), builder.mark(section(beside), m));
+                    builder.segment(ends.0, ends.1);
                 }
             }
         }
-        Ok(builder)
     }
+    Ok(builder)
 }
 
 /// Singular curves between two sections of one slab.
@@ -751,71 +598,6 @@ fn curves(builder: &mut Builder, plan: &Plan, [a, b]: [usize; 2]) {
         {
             let ends = (builder.mark((a, of_a), m), builder.mark((b, of_b), other));
             builder.segment(ends.0, ends.1);
-        }
-    }
-}
-
-/// Euler characteristic with compact support, and whether nothing goes to infinity.
-fn cells(plan: &Plan) -> (i64, bool) {
-    let mut euler = 0;
-    let mut compact = true;
-    let last = plan.sections.len() - 1;
-    let mut first_of_slab = true;
-    for (section, level) in plan.sections.iter().zip(&plan.levels) {
-        match level {
-            Some(_) => {
-                euler += section.euler();
-                first_of_slab = true;
-            }
-            None if first_of_slab => {
-                euler -= section.euler();
-                first_of_slab = false;
-            }
-            None => {}
-        }
-        compact &= section
-            .arcs
-            .iter()
-            .all(|arc| arc.ends.iter().all(Option::is_some));
-    }
-    let empty = |section: &Section| section.euler() == 0 && section.arcs.is_empty();
-    compact &= empty(&plan.sections[0]) && empty(&plan.sections[last]);
-    (euler, compact)
-}
-
-/// Values of v at which the sections beside a level are looked at, strip by strip.
-fn looks(sections: &[Section], levels: &[Option<usize>]) -> Vec<[Vec<Vec<Fibre>>; 2]> {
-    let own = sections
-        .iter()
-        .zip(levels)
-        .filter(|(_, level)| level.is_some());
-    own.map(|(section, _)| {
-        let strips = section.strips.iter().map(|strip| {
-            let fibre = |part: f64| Fibre {
-                v: strip.from + part * (strip.to - strip.from),
-                ..Fibre::default()
-            };
-            LOOKS.map(fibre).to_vec()
-        });
-        let strips: Vec<Vec<Fibre>> = strips.collect();
-        [strips.clone(), strips]
-    })
-    .collect()
-}
-
-/// Calls with u and v of each fibre: those of the sections, then those that are looked at beside levels.
-fn each_fibre(plan: &Plan, take: &mut dyn FnMut(f64, f64)) {
-    for section in &plan.sections {
-        for fibre in section.strips.iter().flat_map(|s| &s.fibres) {
-            take(section.u, fibre.v);
-        }
-    }
-    for (k, level) in plan.levels.iter().enumerate() {
-        let Some(level) = level else { continue };
-        for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
-            for fibre in plan.looks[*level][side].iter().flatten() {
-                take(plan.sections[beside].u, fibre.v);
-            }
         }
     }
 }
@@ -853,27 +635,6 @@ fn inverse(forms: &[Vec<[i32; 2]>; 3]) -> [[f64; 3]; 3] {
             (at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1)) / all
         })
     })
-}
-
-/// Values by size, those that are one merged.
-fn merged(mut values: Vec<f64>) -> Vec<f64> {
-    values.sort_by(f64::total_cmp);
-    let range = match (values.first(), values.last()) {
-        (Some(first), Some(last)) => (last - first).max(1e-3 * first.abs().max(1.0)),
-        _ => 1.0,
-    };
-    values.dedup_by(|b, a| *b - *a <= SAME_LEVEL * range);
-    values
-}
-
-fn near(a: &Place, b: &Place) -> bool {
-    let apart = a
-        .iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max);
-    let size = a.iter().map(|x| x.abs()).fold(1.0, f64::max);
-    apart <= SAME_MARK * size
 }
 
 /// The progress of a stage of a solve inside.

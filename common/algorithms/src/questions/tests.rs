@@ -339,7 +339,10 @@ fn what_is_not_whole_is_found() {
 fn real_counts(text: &str, seed: u64) -> [u64; 5] {
     let system = system(text);
     let found = components(&system, seed);
-    let question = Question::RealCurve { samples: 2 };
+    let question = Question::RealCurve {
+        samples: 2,
+        projection: None,
+    };
     let (answer, doubts) = ask(&system, &found.components, &question);
     let Answer::RealCurve(curves) = answer else {
         panic!("{answer:?}");
@@ -409,6 +412,53 @@ fn real_curves_have_their_loops_arcs_and_points() {
     for (text, expected) in curves {
         for seed in 1..=2 {
             assert_eq!(real_counts(text, seed), expected, "seed {seed}: {text}");
+        }
+    }
+}
+
+/// Along x many things are not general: values of critical points are the same, an inflection is critical, branches go to
+/// infinity over a value or lie in a fibre. Each is right, or a doubt that says why.
+#[test]
+fn projections_that_are_not_general_are_right_or_in_doubt() {
+    let curves = [
+        ("x^2 + y^2 - 1", Ok([1, 0, 0, 0, 1])),
+        // Two loops that meet in the origin, with equal highest and lowest points.
+        ("(x^2 + y^2)^2 - y^2 + x^2", Ok([0, 0, 0, 1, 1])),
+        ("x - y^3", Ok([0, 1, 0, 0, 1])),
+        ("x^4 + y^4 - 1", Ok([1, 0, 0, 0, 1])),
+        ("x*y - 1", Err("at infinity")),
+        ("x - 1", Err("")),
+    ];
+    for (equation, expected) in curves {
+        for seed in 1..=3 {
+            let system = system(&format!("variable_group x, y; function f; f = {equation};"));
+            let found = components(&system, seed);
+            let question = Question::RealCurve {
+                samples: 2,
+                projection: Some(0),
+            };
+            let (answer, doubts) = ask(&system, &found.components, &question);
+            let Answer::RealCurve(curves) = answer else {
+                panic!("{answer:?}");
+            };
+            let counts = curves[0].counts();
+            let own = [
+                counts.closed_loops,
+                counts.unbounded_arcs,
+                counts.isolated_points,
+                counts.singular_points,
+                counts.connected_components,
+            ];
+            match expected {
+                Ok(expected) => {
+                    assert!(doubts.is_empty(), "{equation}, seed {seed}: {doubts:?}");
+                    assert_eq!(own, expected, "{equation}, seed {seed}");
+                }
+                Err(why) => assert!(
+                    doubts.iter().any(|doubt| doubt.contains(why)),
+                    "{equation}, seed {seed}: {own:?}, {doubts:?}"
+                ),
+            }
         }
     }
 }

@@ -28,6 +28,7 @@ fn asked(m: v1::Question) -> Result<Asked, ProtocolError> {
         v1::question::Kind::Project(project) => Question::Project { onto: project.onto },
         v1::question::Kind::RealCurve(curve) => Question::RealCurve {
             samples: curve.samples,
+            projection: curve.projection,
         },
         v1::question::Kind::Intersect(second) => Question::Intersect(SecondSet {
             own: second.own,

@@ -21,9 +21,13 @@ pub fn question(asked: &Asked) -> v1::Question {
         Question::Project { onto } => {
             Some(Kind::Project(v1::ProjectQuestion { onto: onto.clone() }))
         }
-        Question::RealCurve { samples } => {
-            Some(Kind::RealCurve(v1::RealCurveQuestion { samples: *samples }))
-        }
+        Question::RealCurve {
+            samples,
+            projection,
+        } => Some(Kind::RealCurve(v1::RealCurveQuestion {
+            samples: *samples,
+            projection: *projection,
+        })),
         Question::Intersect(second) => Some(Kind::Intersect(v1::IntersectQuestion {
             own: second.own,
             from: second.from,

@@ -69,6 +69,8 @@ pub enum Question {
     RealCurve {
         /// Points of each arc, on either side of its middle.
         samples: u32,
+        /// The variable along which it is followed, of a pair of conjugates its real part; `None`: a random form.
+        projection: Option<u32>,
     },
     /// What each component has in common with other sets.
     Intersect(SecondSet),

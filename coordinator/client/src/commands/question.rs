@@ -65,17 +65,20 @@ pub async fn sample(a: &Sample) -> Result<Exit, ClientError> {
 pub async fn project(a: &Project) -> Result<Exit, ClientError> {
     ask(&a.set, |set| {
         let variables = &set.system.variables;
-        let place = |name: &String| {
-            let place = variables.iter().position(|v| v == name.trim());
-            place.map(|place| place as u32).ok_or_else(|| {
-                let message = format!("`{name}`; expected some of {}", variables.join(", "));
-                wrong("--onto", &message)
-            })
-        };
+        let place = |name: &String| place_of(name, variables, "--onto");
         let onto = a.onto.iter().map(place).collect::<Result<_, _>>()?;
         Ok(Question::Project { onto })
     })
     .await
+}
+
+/// The place of a variable that an option names.
+fn place_of(name: &str, variables: &[String], option: &str) -> Result<u32, ClientError> {
+    let place = variables.iter().position(|v| v == name.trim());
+    place.map(|place| place as u32).ok_or_else(|| {
+        let message = format!("`{name}`; expected some of {}", variables.join(", "));
+        wrong(option, &message)
+    })
 }
 
 /// Degrees of components by groups of variables.
@@ -121,7 +124,13 @@ pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
     let ended = ask(&a.set, |set| {
         let own = curve_svg::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
         *axes.lock().expect("one command has it") = own;
-        Ok(Question::RealCurve { samples })
+        let variables = &set.system.variables;
+        let projection = a.projection.as_ref();
+        let projection = projection.map(|name| place_of(name, variables, "--projection"));
+        Ok(Question::RealCurve {
+            samples,
+            projection: projection.transpose()?,
+        })
     })
     .await?;
     if let Some(folder) = &a.set.output {

@@ -153,6 +153,9 @@ pub struct RealCurve {
     /// The two variables that curve.svg shows [default: the first two]; of a pair of conjugates real and imaginary part
     #[arg(long, value_name = "X,Y", value_delimiter = ',')]
     pub axes: Vec<String>,
+    /// The variable whose values divide the curve; of a pair of conjugates its real part [default: a random real form]
+    #[arg(long, value_name = "X")]
+    pub projection: Option<String>,
 }
 
 /// `cognate real-surface`.

@@ -1,7 +1,7 @@
 //! The graph of a real curve, put together from what paths between fibres found.
 
 use super::super::{Context, Operand};
-use super::traced::{End, FibrePoint, Tracing, distance, value};
+use super::traced::{End, FibrePoint, Task, Tracing, distance, value};
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};
 use num_complex::Complex64;
@@ -44,7 +44,7 @@ pub(super) fn assemble(with: &Context<'_>, operand: &Operand, now: &Tracing) -> 
     for (task, ends) in now.tasks.iter().zip(&now.ends) {
         match task.level {
             Some(level) => assembly.arrive(task.slab, level, ends),
-            None => assembly.sample(task.slab, task.to, ends),
+            None => assembly.sample(task, ends),
         }
     }
     match now.apart {
@@ -187,15 +187,17 @@ impl<'a> Assembly<'a> {
     }
 
     /// Real points of a slab came to a value inside it.
-    fn sample(&mut self, slab: usize, at: f64, ends: &[Option<End>]) {
-        let arcs = self.arcs[slab].iter().flatten();
+    fn sample(&mut self, task: &Task, ends: &[Option<End>]) {
+        let at = task.to;
+        let arcs = self.arcs[task.slab].iter().flatten();
         for (&arc, end) in arcs.zip(ends) {
             match end {
                 Some(End::At {
                     point,
                     regular: true,
                 }) => self.edges[arc].samples.push(point.clone()),
-                _ => self.doubts.push(format!("a sample at {at:.6} was lost")),
+                _ if task.needed => self.doubts.push(format!("a sample at {at:.6} was lost")),
+                _ => {}
             }
         }
     }

@@ -20,6 +20,8 @@ pub(super) struct Critical {
     pub value: f64,
     /// Whether the form is critical there in a regular way.
     pub regular: bool,
+    /// Whether it is known to all digits of a double.
+    pub exact: bool,
 }
 
 /// What a stage between fibres is for.
@@ -30,6 +32,8 @@ pub(super) struct Task {
     pub to: f64,
     /// The level at the end of the slab, by place; `None` for samples.
     pub level: Option<usize>,
+    /// Whether a path that is lost leaves a doubt: samples near levels may be missing.
+    pub needed: bool,
 }
 
 /// A point of a fibre in the middle of a slab.
@@ -52,6 +56,8 @@ pub(super) struct Tracing {
     pub levels: Vec<f64>,
     /// Values in the middle of the slabs: before the first level, between, after the last.
     pub middles: Vec<f64>,
+    /// Values beyond all levels, below and above in turn.
+    pub far: Vec<f64>,
     pub fibres: Vec<Vec<FibrePoint>>,
     pub tasks: Vec<Task>,
     /// Where the points of each task's slab came, in the order of the points.

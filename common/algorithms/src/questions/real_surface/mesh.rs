@@ -1,9 +1,12 @@
 //! The triangles between sections of a surface: arcs of neighbouring sections with the same ends belong together, and at
 //! a level, where sections change, each arc has a chain of arcs of the level's section as its limit.
 
-use super::section::{Place, Section};
+use super::section::{Mark, Place, Section, Strip};
 use cognate_solutions::witness::real_surface::Mesh;
 use std::collections::BTreeMap;
+
+/// Parts of a strip of a level at which sections beside it are compared.
+const LOOKS: [f64; 5] = [0.5, 0.25, 0.75, 0.1, 0.9];
 
 /// A vertex of the mesh by where it is made: section, then a mark, or a strip, a fibre and a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -209,28 +212,30 @@ impl Builder {
     }
 }
 
-/// The arc of a section that comes to each sheet of each strip of a level beside it. `looks`: for each strip some values of
-/// v, and how many real points the section has over each.
+/// The arc of a section that comes to each sheet of each strip of a level beside it. Where no value of v divides the marks of
+/// both alike, one of the sections that are still nearer to the level, and have the same arcs, tells.
 pub(super) fn links(
     level: &Section,
     beside: &Section,
-    looks: &[Vec<(f64, usize)>],
+    near: &[Section],
+    limits: &BTreeMap<usize, usize>,
 ) -> Result<Vec<Vec<usize>>, String> {
+    let own: Vec<usize> = (0..beside.arcs.len()).collect();
+    let mut others = vec![(beside, own)];
+    let keys = beside.keys();
+    for other in near {
+        let same = |key| keys.iter().position(|own| own == key);
+        let arcs: Option<Vec<usize>> = other.keys().iter().map(same).collect();
+        let arcs = arcs.filter(|arcs| arcs.len() == keys.len());
+        others.extend(arcs.map(|arcs| (other, arcs)));
+    }
     let mut links = Vec::with_capacity(level.strips.len());
-    for (strip, looks) in looks.iter().enumerate() {
-        let sheets = level.sheets(strip);
-        let found = looks.iter().find_map(|&(v, count)| {
-            let other = beside.strip_at(v)?;
-            if beside.sheets(other) != sheets || count != sheets {
-                return None;
-            }
-            let arc_of = |sheet: usize| {
-                let of = beside.arcs.iter();
-                let mut of = of.enumerate();
-                let found = of.find(|(_, arc)| arc.chain.contains(&[other, sheet]));
-                found.map(|(k, _)| k)
-            };
-            (0..sheets).map(arc_of).collect::<Option<Vec<usize>>>()
+    for strip in 0..level.strips.len() {
+        let found = others.iter().find_map(|(other, names)| {
+            let arcs = LOOKS
+                .into_iter()
+                .find_map(|part| linked(level, strip, part, other, limits))?;
+            Some(arcs.into_iter().map(|arc| names[arc]).collect())
         });
         links.push(found.ok_or_else(|| {
             format!(
@@ -240,4 +245,134 @@ pub(super) fn links(
         })?);
     }
     Ok(links)
+}
+
+/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where the marks do not
+/// lie on the same sides of it, or there are not as many sheets.
+fn linked(
+    level: &Section,
+    strip: usize,
+    part: f64,
+    other: &Section,
+    limits: &BTreeMap<usize, usize>,
+) -> Option<Vec<usize>> {
+    let v = divided(level, strip, part, other, limits)?;
+    let over = other.strip_at(v)?;
+    let sheets = level.sheets(strip);
+    if other.sheets(over) != sheets {
+        return None;
+    }
+    let arc_of = |sheet: usize| {
+        let mut arcs = other.arcs.iter();
+        arcs.position(|arc| arc.chain.contains(&[over, sheet]))
+    };
+    (0..sheets).map(arc_of).collect()
+}
+
+/// The value of v that divides a strip of a level in these parts, where it divides the marks of a section beside the level
+/// as it divides those of the level to which they come.
+fn divided(
+    level: &Section,
+    strip: usize,
+    part: f64,
+    other: &Section,
+    limits: &BTreeMap<usize, usize>,
+) -> Option<f64> {
+    let Strip { from, to, .. } = level.strips[strip];
+    let v = from + part * (to - from);
+    let stays = |(mark, on): (&Mark, &bool)| match limits.get(&mark.name) {
+        Some(&limit) => (level.marks[limit].place[1] < v) == (mark.place[1] < v),
+        None => !on,
+    };
+    let mut marks = other.marks.iter().zip(&other.on);
+    marks.all(stays).then_some(v)
+}
+
+/// Of sections near a level, nearest last, those that divide a strip of the level as neither the section beside it nor one
+/// before them does.
+pub(super) fn helpful(
+    level: &Section,
+    beside: &Section,
+    near: Vec<Section>,
+    limits: &BTreeMap<usize, usize>,
+) -> Vec<Section> {
+    let clear = |strip: usize, other: &Section| {
+        let mut values = LOOKS.into_iter();
+        values.any(|part| divided(level, strip, part, other, limits).is_some())
+    };
+    let mut left: Vec<usize> = (0..level.strips.len()).collect();
+    left.retain(|&strip| !clear(strip, beside));
+    let mut helpful = near;
+    helpful.retain(|other| {
+        let before = left.len();
+        left.retain(|&strip| !clear(strip, other));
+        left.len() < before
+    });
+    helpful
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::section::{Approach, Fibre};
+    use super::*;
+
+    /// A circle in the section over u, between two values of v.
+    fn circle(u: f64, ends: [f64; 2]) -> Section {
+        let mark = |(name, v): (usize, f64)| Mark {
+            place: [u, v, 0.0],
+            name,
+            approach: Approach::Fold,
+        };
+        let marks = ends.into_iter().enumerate().map(mark).collect();
+        let mut section = Section::new(u, marks, [-10.0, 10.0], 1);
+        let fibre = |v: f64| {
+            let square = (v - ends[0]) * (ends[1] - v);
+            let root = square.abs().sqrt();
+            let real = |third: f64| [u, v, third];
+            Ok(match square > 0.0 {
+                true => Fibre {
+                    v,
+                    real: vec![real(-root), real(root)],
+                    third: vec![[-root, 0.0], [root, 0.0]],
+                    lost: None,
+                },
+                false => Fibre {
+                    v,
+                    third: vec![[0.0, -root], [0.0, root]],
+                    ..Fibre::default()
+                },
+            })
+        };
+        let strips = section.strips.iter();
+        let values: Vec<f64> = strips.flat_map(|s| &s.fibres).map(|f| f.v).collect();
+        let filled = section.fill(&mut values.into_iter().map(fibre));
+        filled.and_then(|()| section.connect()).expect("a circle");
+        section
+    }
+
+    #[test]
+    fn a_section_near_a_level_tells_where_the_others_lie_over_other_values() {
+        let level = circle(0.0, [0.0, 1.0]);
+        let limits = BTreeMap::from([(0, 0), (1, 1)]);
+        let sheets = vec![vec![], vec![0, 1], vec![]];
+        let beside = circle(1.0, [0.2, 1.1]);
+        assert_eq!(links(&level, &beside, &[], &limits), Ok(sheets.clone()));
+        assert!(helpful(&level, &beside, vec![circle(0.1, [0.1, 1.0])], &limits).is_empty());
+
+        let far = circle(1.0, [1.5, 2.5]);
+        assert!(links(&level, &far, &[], &limits).is_err());
+        let near = circle(0.01, [0.1, 1.1]);
+        let near = helpful(&level, &far, vec![near.clone(), near], &limits);
+        assert_eq!(near.len(), 1);
+        assert_eq!(links(&level, &far, &near, &limits), Ok(sheets));
+    }
+
+    /// The numbers of sheets are the same, the sheets are not.
+    #[test]
+    fn marks_on_the_other_side_are_no_link() {
+        let level = circle(0.0, [0.0, 1.0]);
+        let limits = BTreeMap::from([(0, 1), (1, 0)]);
+        let crossed = circle(1.0, [0.0, 1.0]);
+        assert!(links(&level, &crossed, &[], &limits).is_err());
+    }
 }

@@ -13,17 +13,38 @@ pub(super) type Place = [f64; 3];
 const BESIDE: f64 = 2e-5;
 /// ... beside one where the surface is singular, since there sheets come as near to one another,
 const BESIDE_SINGULAR: f64 = 2e-3;
-/// ... and how much nearer the second look is.
+/// ... beside one where u is critical, for the same reason,
+const BESIDE_CRITICAL: f64 = 2e-4;
+/// ... and how much nearer the next look is.
 const NEARER: f64 = 1.0 / 16.0;
 /// No look is nearer than this part of the size of v: marks are known to about 1e-15.
 const NEAREST: f64 = 1e-11;
+/// ... and beside a mark where u is critical none is nearer than this part: what is looked at is the section over a u that
+/// is rounded to 1e-16, which turns beside the mark by the square root of that.
+const NEAREST_CRITICAL: f64 = 3e-6;
 /// A sheet whose distance to the mark shrinks at least to this part comes to it: at a fold it shrinks to a quarter, at a
 /// cusp of the projection to 0.4,
 const COMES: f64 = 0.45;
 /// ... and one whose distance stays above this part does not.
 const STAYS: f64 = 0.55;
-/// Values nearer than this part of the range of v are one.
-const SAME: f64 = 1e-7;
+/// Values of v nearer than this part of the size of their points are one: they are known to about 1e-15,
+const SAME: f64 = 1e-12;
+/// ... and where the surface is singular to half as many digits.
+const SAME_SINGULAR: f64 = 1e-7;
+/// Sheets are looked at from no more than this part of the distance to the nearest other mark.
+const FARTHEST: f64 = 0.1;
+
+/// How sheets come to a mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Approach {
+    /// They turn there: by the root of the distance in v.
+    Fold,
+    /// u is critical: at a node or an isolated point of the section in proportion to the distance, at a cusp of the
+    /// outline by its third root.
+    Critical,
+    /// The surface is singular.
+    Singular,
+}
 
 /// A point of the section where v is critical or the surface singular.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +52,7 @@ pub(super) struct Mark {
     pub place: Place,
     /// The arc of critical points that it is on, or its vertex.
     pub name: usize,
-    /// Whether the surface is singular there.
-    pub singular: bool,
+    pub approach: Approach,
 }
 
 /// The fibre over a value of v.
@@ -43,6 +63,8 @@ pub(super) struct Fibre {
     pub real: Vec<Place>,
     /// All points: v of u and v fixed, third forms as complex numbers.
     pub third: Vec<[f64; 2]>,
+    /// Why its points are not known, beside a mark where others that are known may do.
+    pub lost: Option<String>,
 }
 
 /// A strip of values of v between those of marks.
@@ -53,6 +75,8 @@ pub(super) struct Strip {
     pub to: f64,
     /// Fibres by growing v.
     pub fibres: Vec<Fibre>,
+    /// How many of the first and of the last are there to look at the marks at its ends.
+    pub looks: [usize; 2],
 }
 
 /// A curve of the section on which v grows, between marks or to infinity.
@@ -78,23 +102,43 @@ pub(super) struct Section {
     pub on: Vec<bool>,
 }
 
-/// Parts of a strip at which fibres are taken; `ends`: how near to the marks at its ends, where some are.
-fn parts(samples: u32, ends: [Option<f64>; 2]) -> Vec<f64> {
+/// What comes to a group of marks.
+struct Beside {
+    /// For each sheet of the strip before it the mark to which it comes; `None`: it goes on.
+    coming: Vec<Option<usize>>,
+    /// The same for the strip after it.
+    leaving: Vec<Option<usize>>,
+    /// For each mark whether it is on the surface.
+    on: Vec<bool>,
+}
+
+impl Strip {
+    /// Number of sheets.
+    fn sheets(&self) -> usize {
+        let known = self.fibres.iter().find(|fibre| fibre.lost.is_none());
+        known.map_or(0, |fibre| fibre.real.len())
+    }
+}
+
+/// Parts of a strip at which fibres are taken; `looks`: those beside the marks at its ends, from the border on, nearest
+/// first; none where no mark is.
+fn parts(samples: u32, looks: [&[f64]; 2]) -> Vec<f64> {
     let mut parts = vec![0.5];
     let count = f64::from(samples + 1);
+    let farthest = looks.map(|looks| looks.last().copied().unwrap_or(0.0));
     for k in 1..=samples {
         let t = f64::from(k) / count;
-        // Denser near the ends, where arcs turn.
+        // Denser near the ends, where arcs turn; what looks at marks is nearer still.
         let part = 0.5 * t * (2.0 - t);
-        parts.extend([0.5 - part, 0.5 + part]);
+        parts.extend((0.5 - part > 2.0 * farthest[0]).then_some(0.5 - part));
+        parts.extend((0.5 - part > 2.0 * farthest[1]).then_some(0.5 + part));
     }
-    match ends[0] {
-        Some(beside) => parts.extend([beside, beside * NEARER]),
-        None => parts.push(0.0),
-    }
-    match ends[1] {
-        Some(beside) => parts.extend([1.0 - beside, 1.0 - beside * NEARER]),
-        None => parts.push(1.0),
+    for (end, looks) in looks.into_iter().enumerate() {
+        let from = |part: f64| if end == 0 { part } else { 1.0 - part };
+        match looks {
+            [] => parts.push(from(0.0)),
+            looks => parts.extend(looks.iter().map(|&part| from(part))),
+        }
     }
     parts.sort_by(f64::total_cmp);
     parts.dedup();
@@ -105,11 +149,22 @@ impl Section {
     /// The strips between these marks, in a window of v that holds all of them; fibres have no points yet.
     pub fn new(u: f64, mut marks: Vec<Mark>, window: [f64; 2], samples: u32) -> Self {
         marks.sort_by(|a, b| a.place[1].total_cmp(&b.place[1]));
-        let same = SAME * (window[1] - window[0]);
+        let size = |mark: &Mark| {
+            mark.place
+                .iter()
+                .fold(0.0, |size: f64, x| size.max(x.abs()))
+        };
+        let same = |a: &Mark, b: &Mark| {
+            let part = match a.approach.max(b.approach) {
+                Approach::Singular => SAME_SINGULAR,
+                Approach::Fold | Approach::Critical => SAME,
+            };
+            (a.place[1] - b.place[1]).abs() <= part * size(a).max(size(b))
+        };
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (k, mark) in marks.iter().enumerate() {
             match groups.last_mut() {
-                Some(group) if mark.place[1] - marks[group[0]].place[1] <= same => group.push(k),
+                Some(group) if same(&marks[group[0]], mark) => group.push(k),
                 _ => groups.push(vec![k]),
             }
         }
@@ -117,21 +172,32 @@ impl Section {
         let mut borders = vec![window[0]];
         borders.extend(groups.iter().map(at));
         borders.push(window[1]);
-        // How far from a group of marks its sheets are looked at.
-        let beside = |j: usize| {
-            let part = match groups[j].iter().any(|&m| marks[m].singular) {
-                true => BESIDE_SINGULAR,
-                false => BESIDE,
-            };
+        // How far from a group of marks its sheets are looked at, nearest first.
+        let beside = |j: usize| -> Vec<f64> {
+            let approach = groups[j].iter().map(|&m| marks[m].approach).max();
             let nearest = (borders[j + 1] - borders[j]).min(borders[j + 2] - borders[j + 1]);
-            (part * nearest).max(NEAREST * borders[j + 1].abs())
+            let size = groups[j]
+                .iter()
+                .map(|&m| size(&marks[m]))
+                .fold(0.0, f64::max);
+            let (part, least) = match approach {
+                Some(Approach::Singular) => (BESIDE_SINGULAR, NEAREST),
+                Some(Approach::Critical) => (BESIDE_CRITICAL, NEAREST_CRITICAL),
+                Some(Approach::Fold) | None => (BESIDE, NEAREST),
+            };
+            let far = (part * nearest).max((least * size).min(FARTHEST * nearest));
+            vec![far * NEARER, far]
         };
+        let beside: Vec<Vec<f64>> = (0..groups.len()).map(beside).collect();
         let mut strips = Vec::new();
         for j in 0..=groups.len() {
             let (from, to) = (borders[j], borders[j + 1]);
             let ends = [j.checked_sub(1), (j < groups.len()).then_some(j)];
-            let part = |group: usize| beside(group) / (to - from);
-            let values = parts(samples, ends.map(|group| group.map(part)));
+            let looks = ends.map(|group| {
+                let looks = group.map(|group| beside[group].iter().map(|x| x / (to - from)));
+                looks.into_iter().flatten().collect::<Vec<f64>>()
+            });
+            let values = parts(samples, [&looks[0], &looks[1]]);
             let fibre = |part: f64| Fibre {
                 v: from + part * (to - from),
                 ..Fibre::default()
@@ -140,6 +206,7 @@ impl Section {
                 from,
                 to,
                 fibres: values.into_iter().map(fibre).collect(),
+                looks: looks.map(|looks| looks.len()),
             });
         }
         Self {
@@ -154,10 +221,7 @@ impl Section {
 
     /// Number of sheets in a strip.
     pub fn sheets(&self, strip: usize) -> usize {
-        self.strips[strip]
-            .fibres
-            .first()
-            .map_or(0, |f| f.real.len())
+        self.strips[strip].sheets()
     }
 
     /// The strip that holds a value of v.
@@ -165,12 +229,34 @@ impl Section {
         self.strips.iter().position(|s| s.from < v && v < s.to)
     }
 
+    /// Takes its fibres from the next of these; what is not clear of one of them, where it is not one of several that look
+    /// at a mark. All are taken in any case.
+    pub fn fill(
+        &mut self,
+        fibres: &mut impl Iterator<Item = Result<Fibre, String>>,
+    ) -> Result<(), String> {
+        let mut clear = Ok(());
+        for strip in &mut self.strips {
+            let needed = strip.looks[0]..strip.fibres.len() - strip.looks[1];
+            for (k, place) in strip.fibres.iter_mut().enumerate() {
+                match fibres.next().expect("a fibre for each place") {
+                    Ok(fibre) => *place = fibre,
+                    Err(doubt) if !needed.contains(&k) => place.lost = Some(doubt),
+                    Err(doubt) if clear.is_ok() => clear = Err(doubt),
+                    Err(_) => {}
+                }
+            }
+        }
+        clear
+    }
+
     /// Puts the arcs together; what does not fit.
     pub fn connect(&mut self) -> Result<(), String> {
         let u = self.u;
         for strip in &self.strips {
-            let sheets = strip.fibres.first().map_or(0, |f| f.real.len());
-            if strip.fibres.iter().any(|f| f.real.len() != sheets) {
+            let sheets = strip.sheets();
+            let mut known = strip.fibres.iter().filter(|f| f.lost.is_none());
+            if known.any(|f| f.real.len() != sheets) {
                 return Err(format!(
                     "the number of real points changes between {:.6} and {:.6} over {u:.6}",
                     strip.from, strip.to
@@ -183,24 +269,13 @@ impl Section {
             open.push(self.begin(None, [0, sheet]));
         }
         for j in 0..self.groups.len() {
-            let left = &self.strips[j].fibres;
-            let right = &self.strips[j + 1].fibres;
-            let (left, right) = (
-                [&left[left.len() - 2], &left[left.len() - 1]],
-                [&right[1], &right[0]],
-            );
-            let coming = self.coming(j, left)?;
-            let leaving = self.coming(j, right)?;
-            for &m in &self.groups[j].clone() {
-                let count = |of: &[Option<usize>]| of.iter().filter(|c| **c == Some(m)).count();
-                let (a, b) = (count(&coming), count(&leaving));
-                if (a + b) % 2 == 1 {
-                    let v = self.marks[m].place[1];
-                    return Err(format!(
-                        "{a} and {b} branches come to a critical point at ({u:.6}, {v:.6})"
-                    ));
-                }
-                self.on[m] = a + b > 0 || self.is_on(m, left);
+            let Beside {
+                coming,
+                leaving,
+                on,
+            } = self.beside(j)?;
+            for (&m, on) in self.groups[j].iter().zip(on) {
+                self.on[m] = on;
             }
             let passing: Vec<usize> = coming
                 .iter()
@@ -212,14 +287,6 @@ impl Section {
                 if mark.is_some() {
                     self.arcs[arc].ends[1] = *mark;
                 }
-            }
-            let goes_on = leaving.iter().filter(|mark| mark.is_none()).count();
-            if goes_on != passing.len() {
-                let v = self.strips[j].to;
-                return Err(format!(
-                    "{} branches come past ({u:.6}, {v:.6}) and {goes_on} go on",
-                    passing.len()
-                ));
             }
             let mut passing = passing.into_iter();
             let mut next = Vec::with_capacity(leaving.len());
@@ -236,7 +303,69 @@ impl Section {
             }
             open = next;
         }
+        for strip in &mut self.strips {
+            strip.fibres.retain(|fibre| fibre.lost.is_none());
+        }
         Ok(())
+    }
+
+    /// What comes to a group of marks and leaves it, by the looks on either side. From no farther away: beside pinch points
+    /// other sheets seem to come.
+    fn beside(&self, group: usize) -> Result<Beside, String> {
+        let (left, right) = (&self.strips[group], &self.strips[group + 1]);
+        let left: Vec<&Fibre> = left.fibres.iter().rev().take(left.looks[1]).collect();
+        let right: Vec<&Fibre> = right.fibres.iter().take(right.looks[0]).collect();
+        let mut doubts = Vec::new();
+        for left in left.windows(2) {
+            for right in right.windows(2) {
+                let of = |pair: &[&Fibre]| pair.iter().find_map(|fibre| fibre.lost.clone());
+                let found = match of(left).or_else(|| of(right)) {
+                    Some(lost) => Err(lost),
+                    None => self.looked_at(group, [left[1], left[0]], [right[1], right[0]]),
+                };
+                match found {
+                    Ok(found) => return Ok(found),
+                    Err(doubt) => doubts.push(doubt),
+                }
+            }
+        }
+        Err(doubts.into_iter().next().expect("every mark is looked at"))
+    }
+
+    /// What comes to a group of marks, by a farther and a nearer fibre on either side; what does not fit.
+    fn looked_at(
+        &self,
+        group: usize,
+        left: [&Fibre; 2],
+        right: [&Fibre; 2],
+    ) -> Result<Beside, String> {
+        let coming = self.coming(group, left)?;
+        let leaving = self.coming(group, right)?;
+        let mut on = Vec::with_capacity(self.groups[group].len());
+        for &m in &self.groups[group] {
+            let count = |of: &[Option<usize>]| of.iter().filter(|c| **c == Some(m)).count();
+            let (a, b) = (count(&coming), count(&leaving));
+            if (a + b) % 2 == 1 {
+                let (u, v) = (self.u, self.marks[m].place[1]);
+                return Err(format!(
+                    "{a} and {b} branches come to a critical point at ({u:.6}, {v:.6})"
+                ));
+            }
+            on.push(a + b > 0 || self.is_on(m, left));
+        }
+        let passing = |of: &[Option<usize>]| of.iter().filter(|mark| mark.is_none()).count();
+        let (past, goes_on) = (passing(&coming), passing(&leaving));
+        match past == goes_on {
+            true => Ok(Beside {
+                coming,
+                leaving,
+                on,
+            }),
+            false => Err(format!(
+                "{past} branches come past ({:.6}, {:.6}) and {goes_on} go on",
+                self.u, self.strips[group].to
+            )),
+        }
     }
 
     fn begin(&mut self, mark: Option<usize>, at: [usize; 2]) -> usize {
@@ -299,5 +428,22 @@ impl Section {
     /// Euler characteristic with compact support.
     pub fn euler(&self) -> i64 {
         self.on.iter().filter(|on| **on).count() as i64 - self.arcs.len() as i64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Else a sample would be taken for a look, from which sheets that come to a mark do not seem to come nearer.
+    #[test]
+    fn samples_come_no_nearer_to_a_mark_than_what_looks_at_it() {
+        let looks = [1e-4, 2e-3, 3e-2];
+        for samples in [1, 4, 20, 50] {
+            let parts = parts(samples, [&looks, &[]]);
+            assert_eq!(parts[..3], looks, "{samples}");
+            assert!(parts[3] > 2.0 * looks[2], "{samples}");
+            assert_eq!(parts.last(), Some(&1.0));
+        }
     }
 }

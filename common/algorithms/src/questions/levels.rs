@@ -1,0 +1,85 @@
+//! Levels: the values of a real form at which sections of a real curve or surface change, each once.
+
+/// Values that are known to all digits of a double and nearer than this part of their range are one,
+const SAME: f64 = 1e-11;
+/// ... and farther than this are two: beside a level what turns there comes apart by the root of it.
+const OTHER: f64 = 1e-8;
+/// The same where one of them is of a singular point, of which fewer digits are known.
+const SAME_SINGULAR: f64 = 1e-7;
+/// See `SAME_SINGULAR`.
+const OTHER_SINGULAR: f64 = 1e-5;
+/// A double has so many digits, of which some are lost.
+const ROUNDING: f64 = 1e-14;
+
+/// The value of a form at a point where sections change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Change {
+    pub value: f64,
+    /// Whether it is known to all digits of a double.
+    pub exact: bool,
+}
+
+/// The range of values; where they are all nearly one, a small part of their size.
+pub(super) fn range_of(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values {
+        (low, high) = (low.min(value), high.max(value));
+    }
+    match low <= high {
+        true => (high - low).max(1e-3 * low.abs().max(1.0)),
+        false => 1.0,
+    }
+}
+
+/// Each value once, ascending; `None` where two are neither clearly one nor clearly two.
+pub(super) fn levels(mut changes: Vec<Change>) -> Option<Vec<f64>> {
+    changes.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let range = range_of(changes.iter().map(|change| change.value));
+    let mut found: Vec<Change> = Vec::new();
+    for change in changes {
+        let Some(last) = found.last_mut() else {
+            found.push(change);
+            continue;
+        };
+        let apart = change.value - last.value;
+        let (same, other) = match change.exact && last.exact {
+            true => (SAME, OTHER),
+            false => (SAME_SINGULAR, OTHER_SINGULAR),
+        };
+        let rounding = ROUNDING * change.value.abs();
+        if apart <= (same * range).max(rounding) {
+            if change.exact && !last.exact {
+                *last = change;
+            }
+        } else if apart <= (other * range).max(1e3 * rounding) {
+            return None;
+        } else {
+            found.push(change);
+        }
+    }
+    Some(found.into_iter().map(|change| change.value).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_values_are_one_or_two_or_not_clear() {
+        let all = |values: &[(f64, bool)]| {
+            let change = |&(value, exact): &(f64, bool)| Change { value, exact };
+            levels(values.iter().map(change).collect())
+        };
+        assert_eq!(all(&[(3.0, true), (1.0, true)]), Some(vec![1.0, 3.0]));
+        assert_eq!(
+            all(&[(1.0, true), (1.0 + 1e-6, true), (3.0, true)]),
+            Some(vec![1.0, 1.0 + 1e-6, 3.0])
+        );
+        assert_eq!(all(&[(1.0, true), (1.0 + 1e-9, true), (3.0, true)]), None);
+        assert_eq!(all(&[(1.0, false), (1.0 + 1e-6, true), (3.0, true)]), None);
+        assert_eq!(
+            all(&[(1.0, false), (1.0 + 1e-8, true), (3.0, true)]),
+            Some(vec![1.0 + 1e-8, 3.0])
+        );
+    }
+}

@@ -1,0 +1,210 @@
+//! Surfaces: real surfaces whose topology is known, each asked with several seeds and compared.
+//!
+//! `cargo run --release -p cognate-tests --bin surfaces -- [--seeds 3] [--first 1] [--samples 2] [--limit 100] [--only NAME,NAME] [--known FILE]`
+//!
+//! `known.json`, or another file, has their equations, and Euler characteristic with compact support, whether they are bounded, and how many
+//! connected parts they have, by their `source`. Prints a line of a table for each surface. After `--limit` CPU seconds no
+//! further stage is begun. A wrong answer that is called settled makes the exit code 1.
+
+use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
+use cognate_algorithms::questions::QuestionSolve;
+use cognate_algorithms::solve::Root;
+use cognate_solutions::witness::{Answer, Question};
+use cognate_systems::system::System;
+use cognate_tests::arguments::{number, options, or_exit};
+use cognate_tests::limited::run_within;
+use cognate_tests::measures::cpu_seconds;
+use cognate_tests::systems::written;
+use serde::Deserialize;
+use std::process::ExitCode;
+
+/// What is asked for.
+struct Wanted {
+    seeds: u64,
+    first: u64,
+    samples: u32,
+    limit: f64,
+    only: Vec<String>,
+    known: Vec<Known>,
+}
+
+fn wanted() -> Result<Wanted, String> {
+    let mut wanted = Wanted {
+        seeds: 3,
+        first: 1,
+        samples: 2,
+        limit: 100.0,
+        only: Vec::new(),
+        known: read(include_str!("known.json"))?,
+    };
+    for (word, value) in options()? {
+        match word.as_str() {
+            "--seeds" => wanted.seeds = number(&word, &value)?,
+            "--first" => wanted.first = number(&word, &value)?,
+            "--samples" => wanted.samples = number(&word, &value)?,
+            "--limit" => wanted.limit = number(&word, &value)?,
+            "--known" => {
+                let text = std::fs::read_to_string(&value).map_err(|e| format!("{value}: {e}"))?;
+                wanted.known = read(&text)?;
+            }
+            "--only" => wanted.only = value.split(',').map(str::to_owned).collect(),
+            _ => {
+                return Err(format!(
+                    "{word}: expected --seeds N, --first N, --samples N, --limit SECONDS, --only NAMES or --known FILE"
+                ));
+            }
+        }
+    }
+    Ok(wanted)
+}
+
+/// A surface, and what is known of it.
+#[derive(Deserialize)]
+struct Known {
+    name: String,
+    equation: String,
+    euler: i64,
+    compact: Option<bool>,
+    parts: Option<u64>,
+}
+
+fn read(text: &str) -> Result<Vec<Known>, String> {
+    serde_json::from_str(text).map_err(|e| format!("known surfaces: {e}"))
+}
+
+/// What is said of a surface.
+enum Said {
+    Settled {
+        euler: i64,
+        compact: bool,
+        parts: u64,
+    },
+    Doubt(String),
+    Unfinished,
+}
+
+fn ask(system: &System, seed: u64, wanted: &Wanted) -> Result<Said, String> {
+    let options = DecompositionOptions {
+        seed,
+        ..DecompositionOptions::default()
+    };
+    let solve = DecompositionSolve::new(system, &options).map_err(|e| e.to_string())?;
+    let mut root = Root::new(solve);
+    if !run_within(wanted.limit, system, &mut root)? {
+        return Ok(Said::Unfinished);
+    }
+    let found = root.solve.decomposition().cloned();
+    let components = found.ok_or("it is done without an answer")?.components;
+    let question = Question::RealSurface {
+        samples: wanted.samples,
+    };
+    let solve = QuestionSolve::new(system, &options, &components, &question);
+    let mut root = Root::new(solve.map_err(|e| e.to_string())?);
+    if !run_within(wanted.limit, system, &mut root)? {
+        return Ok(Said::Unfinished);
+    }
+    if let Some(doubt) = root.solve.doubts().into_iter().next() {
+        return Ok(Said::Doubt(doubt));
+    }
+    let Some(Answer::RealSurface(surfaces)) = root.solve.answer() else {
+        return Err("the answer is no surface".into());
+    };
+    let [surface] = surfaces.as_slice() else {
+        return Err(format!("{} components", surfaces.len()));
+    };
+    Ok(Said::Settled {
+        euler: surface.euler,
+        compact: surface.compact,
+        parts: surface.mesh.counts().parts,
+    })
+}
+
+/// What all seeds of one surface came to.
+#[derive(Default)]
+struct Tally {
+    right: u64,
+    unsettled: u64,
+    wrong: u64,
+    unfinished: u64,
+    seconds: Vec<f64>,
+    notes: Vec<String>,
+}
+
+impl Tally {
+    fn add(&mut self, known: &Known, seed: u64, said: Result<Said, String>) {
+        match said {
+            Ok(Said::Settled {
+                euler,
+                compact,
+                parts,
+            }) => {
+                let right = euler == known.euler
+                    && known.compact.is_none_or(|known| known == compact)
+                    && known.parts.is_none_or(|known| known == parts);
+                self.right += u64::from(right);
+                self.wrong += u64::from(!right);
+                if !right {
+                    let said =
+                        format!("seed {seed}: WRONG: {euler}, bounded {compact}, {parts} parts");
+                    self.notes.push(said);
+                }
+            }
+            Ok(Said::Doubt(doubt)) => {
+                self.unsettled += 1;
+                self.notes.push(format!("seed {seed}: {doubt}"));
+            }
+            Ok(Said::Unfinished) => self.unfinished += 1,
+            Err(error) => {
+                self.unfinished += 1;
+                self.notes.push(format!("seed {seed}: {error}"));
+            }
+        }
+    }
+
+    fn line(&mut self, name: &str) -> String {
+        self.seconds.sort_by(f64::total_cmp);
+        let second = |place: usize| self.seconds.get(place).copied().unwrap_or(0.0);
+        let most = self.seconds.len().saturating_sub(1);
+        format!(
+            "| {name} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} |",
+            self.right,
+            self.unsettled,
+            self.wrong,
+            self.unfinished,
+            second(0),
+            second(most / 2),
+            second(most)
+        )
+    }
+}
+
+fn main() -> ExitCode {
+    let wanted = or_exit(wanted());
+    println!("| surface | right | unsettled | wrong | not done | least CPU s | median | most |");
+    println!("|---|---|---|---|---|---|---|---|");
+    let mut wrong = 0;
+    for known in &wanted.known {
+        if !wanted.only.is_empty() && !wanted.only.contains(&known.name) {
+            continue;
+        }
+        let input = format!(
+            "variable_group x, y, z; function f; f = {};",
+            known.equation
+        );
+        let system = written(&input);
+        let mut tally = Tally::default();
+        for seed in wanted.first..wanted.first + wanted.seeds {
+            let began = or_exit(cpu_seconds().map_err(|e| e.to_string()));
+            let said = ask(&system, seed, &wanted);
+            let now = or_exit(cpu_seconds().map_err(|e| e.to_string()));
+            tally.seconds.push(now - began);
+            tally.add(known, seed, said);
+        }
+        println!("{}", tally.line(&known.name));
+        for note in &tally.notes {
+            println!("  {note}");
+        }
+        wrong += tally.wrong;
+    }
+    ExitCode::from(u8::from(wrong > 0))
+}
