@@ -258,7 +258,7 @@ impl Scene {
         self.cluster.coordinator.log() + &second.unwrap_or_default()
     }
 
-    /// Workers that do evil, have had chunks, and are named nowhere; and those whose forged calls were believed.
+    /// Workers that do evil, have had chunks, and are named nowhere; and those whose forged reports were accepted.
     fn unnamed(&self) -> Vec<String> {
         let said = self.said();
         let warnings: Vec<&str> = said.lines().filter(|line| line.contains("WARN")).collect();

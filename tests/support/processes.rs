@@ -142,7 +142,7 @@ impl Process {
         &self.name
     }
 
-    /// Its number.
+    /// The number by which the system knows the process.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
