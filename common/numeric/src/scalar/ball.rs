@@ -148,7 +148,8 @@ where
     fn set_lane(&mut self, lane: usize, value: f64) {
         self.middle.set_lane(lane, value);
         let mut radius = self.radius.value().clone();
-        radius.set_lane(lane, value - value);
+        // Not 0: nothing is known where it is not finite.
+        radius.set_lane(lane, 0.0 * value);
         self.radius = Magnitude::of(&radius);
     }
     /// The middle.
