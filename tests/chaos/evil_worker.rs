@@ -39,6 +39,16 @@ pub enum Evil {
 impl Evil {
     /// Every kind.
     pub const ALL: [Self; 3] = [Self::BlackHole, Self::Liar, Self::Squatter];
+    /// After so many chunks it must be named: lies show at once, three failures in a row are a fault, and of some chunks
+    /// that a squatter reaches for another worker has one.
+    pub fn found_out_after(self) -> usize {
+        match self {
+            Self::BlackHole => 4,
+            Self::Liar => 1,
+            Self::Squatter => 6,
+        }
+    }
+
     /// What a squatter says where a forged report was accepted.
     pub const BELIEVED: &str = "forged reports were accepted";
 }
