@@ -310,10 +310,12 @@ impl Pair<'_> {
                     both!(self, complete(lease.lease, object.clone()))
                 };
                 let workers = both!(self, workers(10)).unwrap_or_default();
-                if workers.iter().filter(|worker| worker.evicted).count() > *evicted {
+                let others = workers.iter().filter(|worker| worker.evicted).count();
+                // Of a worker that was never heard of no list says so.
+                let is_wrong = audited && why == Confirmation::Wrong;
+                if others > *evicted || is_wrong {
                     // What only that worker has found is done again.
-                    *evicted = workers.iter().filter(|worker| worker.evicted).count();
-                    *accepted = self.accepted().await;
+                    (*evicted, *accepted) = (others, self.accepted().await);
                     return;
                 }
                 if done == Some(Completion::Accepted) {
@@ -321,6 +323,10 @@ impl Pair<'_> {
                     for item in items.first..items.last {
                         let new = accepted.insert(((job, stage), item));
                         assert!(new, "item {item} was accepted twice");
+                    }
+                    if audited {
+                        // One that was outvoted and never heard of.
+                        *accepted = self.accepted().await;
                     }
                 }
             }
