@@ -36,25 +36,31 @@ fn two_by_shared_memory_and_one_by_grpc_solve_one_job() {
         cluster.add_worker(&by(transport));
     }
     let client = cluster.client();
-    until("all three are there", || {
-        (client.workers().len() == 3).then_some(())
+    let ways = || {
+        let mut ways: Vec<_> = client
+            .workers()
+            .into_iter()
+            .map(|worker| worker.transport)
+            .collect();
+        ways.sort();
+        ways
+    };
+    let wanted = ["grpc", "shared-memory", "shared-memory"];
+    until("all three are there", || (ways() == wanted).then_some(()));
+    // Of one job a worker that the machine lets wait may get nothing.
+    until("all three have worked", || {
+        let job = client.submit(&problem());
+        client.wait_until_solved(&job);
+        assert!(
+            client.answer(&job) == *quiet_answer(),
+            "the same answer, bit for bit"
+        );
+        let all = client.workers();
+        all.iter()
+            .all(|worker| worker.accepted_paths > 0)
+            .then_some(())
     });
-    let job = client.submit(&problem());
-    client.wait_until_solved(&job);
-    assert!(
-        client.answer(&job) == *quiet_answer(),
-        "the same answer, bit for bit"
-    );
-    let mut ways: Vec<_> = client
-        .workers()
-        .iter()
-        .map(|worker| {
-            assert!(worker.accepted_paths > 0, "{worker:?}");
-            worker.transport.clone()
-        })
-        .collect();
-    ways.sort();
-    assert_eq!(ways, ["grpc", "shared-memory", "shared-memory"]);
+    assert_eq!(ways(), wanted);
     cluster.stop();
 }
 
@@ -74,7 +80,10 @@ fn killed_workers_leave_nothing_in_the_way() {
             client.progress_once(&job, "some chunks are done", |p| accepted(p) >= threshold);
         assert!(accepted(&before) < total(&before), "{before:?}");
         let mut killed = cluster.workers.remove(0);
-        assert!(killed.log().contains("by shared memory"));
+        // The others may have done all that was done.
+        until("it works by shared memory", || {
+            killed.log().contains("by shared memory").then_some(())
+        });
         killed.kill();
         cluster.add_worker(&by("shared-memory"));
     }
@@ -83,7 +92,10 @@ fn killed_workers_leave_nothing_in_the_way() {
         client.answer(&job) == *quiet_answer(),
         "the same answer, bit for bit"
     );
-    assert!(cluster.workers[1].log().contains("by shared memory"));
+    until("the last one works by shared memory", || {
+        let log = cluster.workers[1].log();
+        log.contains("by shared memory").then_some(())
+    });
     cluster.stop();
 }
 
