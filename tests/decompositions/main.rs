@@ -14,7 +14,7 @@ use cognate_systems::formats;
 use cognate_systems::system::System;
 use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::limited::run_within;
-use cognate_tests::measures::cpu_seconds;
+use cognate_tests::tally::{Tally, Verdict};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -156,18 +156,6 @@ fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decom
     Ok(whole.then(|| root.solve.decomposition().cloned()).flatten())
 }
 
-/// What all seeds of one system came to.
-#[derive(Default)]
-struct Tally {
-    right: u64,
-    unsettled: u64,
-    wrong: u64,
-    unfinished: u64,
-    seconds: Vec<f64>,
-    notes: Vec<String>,
-    proofs: Proofs,
-}
-
 /// What is proved, where proofs are asked for.
 #[derive(Default)]
 struct Proofs {
@@ -196,65 +184,29 @@ impl Proofs {
     }
 }
 
-impl Tally {
-    fn add(
-        &mut self,
-        instance: &Instance,
-        seed: u64,
-        found: Result<Option<Decomposition>, String>,
-    ) {
-        let found = match found {
-            Ok(Some(found)) => found,
-            Ok(None) => {
-                self.unfinished += 1;
-                return;
-            }
-            Err(error) => {
-                self.unfinished += 1;
-                return self.notes.push(format!("seed {seed}: {error}"));
-            }
-        };
-        self.proofs.add(&found);
-        let components = counted(&found);
-        let mut what = Vec::new();
-        if components != instance.expected {
-            what.push(format!("{components:?} instead of {:?}", instance.expected));
-        }
-        if !found.adds_up() {
-            what.push("counts do not add up".into());
-        }
-        let doubts = found.dimensions.iter().map(|d| (d.number, &d.doubts));
-        let of_sets = found.components.iter();
-        let of_sets = of_sets.map(|set| (set.dimension(), &set.evidence.doubts));
-        for (dimension, doubts) in doubts.chain(of_sets) {
-            let said = doubts.iter().map(|d| format!("dimension {dimension}: {d}"));
-            what.extend(said);
-        }
-        match (found.settled(), what.is_empty()) {
-            (true, true) => self.right += 1,
-            (true, false) => self.wrong += 1,
-            (false, _) => self.unsettled += 1,
-        }
-        if !what.is_empty() {
-            self.notes.push(format!("seed {seed}: {}", what.join("; ")));
-        }
+/// What a decomposition comes to beside what is known.
+fn judged(instance: &Instance, found: &Decomposition) -> (Verdict, Option<String>) {
+    let components = counted(found);
+    let mut what = Vec::new();
+    if components != instance.expected {
+        what.push(format!("{components:?} instead of {:?}", instance.expected));
     }
-
-    fn line(&mut self, name: &str) -> String {
-        self.seconds.sort_by(f64::total_cmp);
-        let second = |place: usize| self.seconds.get(place).copied().unwrap_or(0.0);
-        let most = self.seconds.len().saturating_sub(1);
-        format!(
-            "| {name} | {} | {} | {} | {} | {:.2} | {:.2} | {:.2} |",
-            self.right,
-            self.unsettled,
-            self.wrong,
-            self.unfinished,
-            second(0),
-            second(most / 2),
-            second(most)
-        )
+    if !found.adds_up() {
+        what.push("counts do not add up".into());
     }
+    let doubts = found.dimensions.iter().map(|d| (d.number, &d.doubts));
+    let of_sets = found.components.iter();
+    let of_sets = of_sets.map(|set| (set.dimension(), &set.evidence.doubts));
+    for (dimension, doubts) in doubts.chain(of_sets) {
+        let said = doubts.iter().map(|d| format!("dimension {dimension}: {d}"));
+        what.extend(said);
+    }
+    let verdict = match (found.settled(), what.is_empty()) {
+        (true, true) => Verdict::Right,
+        (true, false) => Verdict::Wrong,
+        (false, _) => Verdict::Unsettled,
+    };
+    (verdict, (!what.is_empty()).then(|| what.join("; ")))
 }
 
 fn main() -> ExitCode {
@@ -263,31 +215,34 @@ fn main() -> ExitCode {
         println!("skipped: {} is not there", wanted.folder.display());
         return ExitCode::SUCCESS;
     }
-    println!("| system | right | unsettled | wrong | not done | least CPU s | median | most |");
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("{}", Tally::head("system"));
     let mut wrong = 0;
     for instance in or_exit(instances(&wanted)) {
-        let mut tally = Tally::default();
-        for seed in wanted.first..wanted.first + wanted.seeds {
-            let began = or_exit(cpu_seconds().map_err(|e| e.to_string()));
-            let found = decompose(&instance.system, seed, &wanted);
-            let now = or_exit(cpu_seconds().map_err(|e| e.to_string()));
-            tally.seconds.push(now - began);
-            tally.add(&instance, seed, found);
-        }
+        let mut proofs = Proofs::default();
+        let seeds = wanted.first..wanted.first + wanted.seeds;
+        let tally = or_exit(Tally::of(seeds, |seed| {
+            match decompose(&instance.system, seed, &wanted) {
+                Ok(Some(found)) => {
+                    proofs.add(&found);
+                    judged(&instance, &found)
+                }
+                Ok(None) => (Verdict::Unfinished, None),
+                Err(error) => (Verdict::Unfinished, Some(error)),
+            }
+        }));
         println!("{}", tally.line(&instance.name));
         if wanted.certify {
-            let p = &tally.proofs;
+            let p = &proofs;
             println!(
                 "  proofs: {} components, {} with all points in boxes apart, {} of the given equations, {} irreducible \
                  where no point is missing; {} unions excluded",
                 p.components, p.whole, p.given, p.irreducible, p.unions
             );
         }
-        for note in &tally.notes {
+        for note in tally.notes() {
             println!("  {note}");
         }
-        wrong += tally.wrong;
+        wrong += tally.wrong();
     }
     ExitCode::from(u8::from(wrong > 0))
 }

@@ -6,6 +6,7 @@
 use cognate_algorithms::decomposition::{self, DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::questions::{QuestionSolve, run_locally};
 use cognate_solutions::witness::question::{GivenPoint, SecondSet};
+use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::{Answer, Decomposition, Question, WitnessSet};
 use cognate_systems::system::System;
 use cognate_tests::systems::{shared, written};
@@ -171,21 +172,22 @@ fn multidegree_of_conic_p1p2() {
     }
 }
 
+/// The real curves of the components of dimension 1, with two samples on either side of an arc's middle.
+fn real_curves_of(name: &str, system: &System, seed: u64) -> Vec<RealCurve> {
+    let question = Question::RealCurve {
+        samples: 2,
+        projection: None,
+    };
+    match ask(name, system, seed, &question) {
+        Answer::RealCurve(curves) => curves,
+        answer => panic!("{answer:?}"),
+    }
+}
+
 /// Closed loops, unbounded arcs, isolated points, singular points, connected components.
 fn check_real(name: &str, system: &System, expected: [u64; 5]) {
     for seed in seeds() {
-        let answer = ask(
-            name,
-            system,
-            seed,
-            &Question::RealCurve {
-                samples: 2,
-                projection: None,
-            },
-        );
-        let Answer::RealCurve(curves) = answer else {
-            panic!("{answer:?}");
-        };
+        let curves = real_curves_of(name, system, seed);
         let mut sum = [0; 5];
         for counts in curves.iter().map(|curve| curve.counts()) {
             sum[0] += counts.closed_loops;
@@ -238,18 +240,7 @@ fn circuits_of_four_bars() {
 
 /// The singular points of a real curve: the point, and how many branches come to it.
 fn singular_points(name: &str, system: &System, seed: u64) -> Vec<(Vec<f64>, usize)> {
-    let answer = ask(
-        name,
-        system,
-        seed,
-        &Question::RealCurve {
-            samples: 2,
-            projection: None,
-        },
-    );
-    let Answer::RealCurve(curves) = answer else {
-        panic!("{answer:?}");
-    };
+    let curves = real_curves_of(name, system, seed);
     let [curve] = curves.as_slice() else {
         panic!("{name}: one component");
     };

@@ -18,3 +18,4 @@ pub mod six_revolute;
 pub mod skip;
 pub mod subjects;
 pub mod systems;
+pub mod tally;

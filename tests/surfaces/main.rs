@@ -13,8 +13,8 @@ use cognate_solutions::witness::{Answer, Question};
 use cognate_systems::system::System;
 use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::limited::run_within;
-use cognate_tests::measures::cpu_seconds;
 use cognate_tests::systems::written;
+use cognate_tests::tally::{Tally, Verdict};
 use serde::Deserialize;
 use std::process::ExitCode;
 
@@ -119,69 +119,32 @@ fn ask(system: &System, seed: u64, wanted: &Wanted) -> Result<Said, String> {
     })
 }
 
-/// What all seeds of one surface came to.
-#[derive(Default)]
-struct Tally {
-    right: u64,
-    unsettled: u64,
-    wrong: u64,
-    unfinished: u64,
-    seconds: Vec<f64>,
-    notes: Vec<String>,
-}
-
-impl Tally {
-    fn add(&mut self, known: &Known, seed: u64, said: Result<Said, String>) {
-        match said {
-            Ok(Said::Settled {
-                euler,
-                compact,
-                parts,
-            }) => {
-                let right = euler == known.euler
-                    && known.compact.is_none_or(|known| known == compact)
-                    && known.parts.is_none_or(|known| known == parts);
-                self.right += u64::from(right);
-                self.wrong += u64::from(!right);
-                if !right {
-                    let said =
-                        format!("seed {seed}: WRONG: {euler}, bounded {compact}, {parts} parts");
-                    self.notes.push(said);
-                }
+/// What an answer comes to beside what is known.
+fn judged(known: &Known, said: Result<Said, String>) -> (Verdict, Option<String>) {
+    match said {
+        Ok(Said::Settled {
+            euler,
+            compact,
+            parts,
+        }) => {
+            let right = euler == known.euler
+                && known.compact.is_none_or(|known| known == compact)
+                && known.parts.is_none_or(|known| known == parts);
+            if right {
+                return (Verdict::Right, None);
             }
-            Ok(Said::Doubt(doubt)) => {
-                self.unsettled += 1;
-                self.notes.push(format!("seed {seed}: {doubt}"));
-            }
-            Ok(Said::Unfinished) => self.unfinished += 1,
-            Err(error) => {
-                self.unfinished += 1;
-                self.notes.push(format!("seed {seed}: {error}"));
-            }
+            let note = format!("WRONG: {euler}, bounded {compact}, {parts} parts");
+            (Verdict::Wrong, Some(note))
         }
-    }
-
-    fn line(&mut self, name: &str) -> String {
-        self.seconds.sort_by(f64::total_cmp);
-        let second = |place: usize| self.seconds.get(place).copied().unwrap_or(0.0);
-        let most = self.seconds.len().saturating_sub(1);
-        format!(
-            "| {name} | {} | {} | {} | {} | {:.1} | {:.1} | {:.1} |",
-            self.right,
-            self.unsettled,
-            self.wrong,
-            self.unfinished,
-            second(0),
-            second(most / 2),
-            second(most)
-        )
+        Ok(Said::Doubt(doubt)) => (Verdict::Unsettled, Some(doubt)),
+        Ok(Said::Unfinished) => (Verdict::Unfinished, None),
+        Err(error) => (Verdict::Unfinished, Some(error)),
     }
 }
 
 fn main() -> ExitCode {
     let wanted = or_exit(wanted());
-    println!("| surface | right | unsettled | wrong | not done | least CPU s | median | most |");
-    println!("|---|---|---|---|---|---|---|---|");
+    println!("{}", Tally::head("surface"));
     let mut wrong = 0;
     for known in &wanted.known {
         if !wanted.only.is_empty() && !wanted.only.contains(&known.name) {
@@ -192,19 +155,15 @@ fn main() -> ExitCode {
             known.equation
         );
         let system = written(&input);
-        let mut tally = Tally::default();
-        for seed in wanted.first..wanted.first + wanted.seeds {
-            let began = or_exit(cpu_seconds().map_err(|e| e.to_string()));
-            let said = ask(&system, seed, &wanted);
-            let now = or_exit(cpu_seconds().map_err(|e| e.to_string()));
-            tally.seconds.push(now - began);
-            tally.add(known, seed, said);
-        }
+        let seeds = wanted.first..wanted.first + wanted.seeds;
+        let tally = or_exit(Tally::of(seeds, |seed| {
+            judged(known, ask(&system, seed, &wanted))
+        }));
         println!("{}", tally.line(&known.name));
-        for note in &tally.notes {
+        for note in tally.notes() {
             println!("  {note}");
         }
-        wrong += tally.wrong;
+        wrong += tally.wrong();
     }
     ExitCode::from(u8::from(wrong > 0))
 }
