@@ -128,3 +128,24 @@ pub(super) fn check<E: Enclosure>(context: E::Context) {
         assert!((1000..2000).contains(&known), "{known}");
     }
 }
+
+/// What is unknown stays so, whatever known number meets it, and is compared with nothing.
+///
+/// # Panics
+/// Where it does not.
+pub(super) fn check_unknown<E: Enclosure<Mask = bool>>(unknown: &E, known: &E) {
+    for operation in [
+        Real::add,
+        Real::sub,
+        Real::mul,
+        Real::div,
+        Real::max,
+        Real::min,
+    ] {
+        for (mut a, b) in [(unknown.clone(), known), (known.clone(), unknown)] {
+            operation(&mut a, b);
+            assert!(!a.is_known(), "{a:?}");
+        }
+    }
+    assert!(!unknown.less(known) && !known.less(unknown) && !unknown.less_equal(unknown));
+}
