@@ -1,6 +1,6 @@
 //! Directed rounding without switching the processor's mode: doubles by their rounding errors, MPFR by its own.
 
-use super::double::{exact_double, nearest_double};
+use super::double::{exact_double, nearest_of_many_digits};
 use super::{MultiplePrecision, Real};
 use crate::rational::Rational;
 use rug::Float;
@@ -81,7 +81,7 @@ impl Directed for f64 {
         if let Some(exact) = exact_double(value) {
             return exact;
         }
-        let rounded = nearest_double(value);
+        let rounded = nearest_of_many_digits(value);
         match Rational::from_f64(rounded) {
             None => beyond(rounded, toward),
             Some(found) => match value.cmp(&found) {

@@ -51,9 +51,11 @@ pub(crate) fn exact_double(value: &Rational) -> Option<f64> {
 
 /// The double nearest to a rational, ties to even.
 pub(crate) fn nearest_double(value: &Rational) -> f64 {
-    if let Some(exact) = exact_double(value) {
-        return exact;
-    }
+    exact_double(value).unwrap_or_else(|| nearest_of_many_digits(value))
+}
+
+/// The same for one that is most likely no double.
+pub(crate) fn nearest_of_many_digits(value: &Rational) -> f64 {
     // Rational::to_f64 truncates; MPFR at 53 bits rounds to nearest.
     rug::Float::with_val(53, value).to_f64()
 }
