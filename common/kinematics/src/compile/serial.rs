@@ -15,6 +15,7 @@ use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
 use num_complex::Complex64;
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// The formulation of a chain's question.
 pub fn compile(
@@ -315,14 +316,15 @@ impl SixRevolute {
                 residual: f64::INFINITY,
             };
         };
-        // Joint 6 is what the first five leave of the pose.
+        // Joint 6 is what the first five leave of the pose; by the x axis, about which the last link turns.
         let mut first = arm.base;
         for ((c, s), joint) in turns.iter().zip(&arm.joints).take(5) {
             first = joint.along_link(&first.turned(*c, *s));
         }
-        let last = arm.joints[5].link().then(&arm.tool);
-        let sixth = first.inverse().then(&pose).then(&last.inverse());
-        turns[5] = (sixth.rotation[0][0], sixth.rotation[1][0]);
+        let x_axis = first
+            .inverse()
+            .direction(pose.direction(arm.tool.rotation[0]));
+        turns[5] = (x_axis[0], x_axis[1]);
         let mut free = turns.iter().zip(&arm.joints).map(|((c, s), joint)| {
             // q = turn - theta.
             let [ct, st] = joint.theta.direction;
@@ -368,8 +370,10 @@ fn solved_turns(parameters: &[Complex64], point: &[Complex64]) -> Option<(Turns,
         turns[k] = (at(cosine), at(sine));
     }
     let member = Member::of(parameters);
-    turns[2] = member.third_turn(&turns)?;
-    let (gap, growth) = member.gap(&turns);
+    let first = member.along(0..2, &Pose::IDENTITY, &turns);
+    turns[2] = member.third_turn(&first, &turns)?;
+    let last = member.along(2..5, &first, &turns);
+    let (gap, growth) = member.gap(&last, &turns);
     Some((turns, gap, growth))
 }
 
@@ -412,21 +416,43 @@ fn stereographic([x, y, z]: [f64; 3]) -> [Complex64; 3] {
     numbers.map(Complex64::from)
 }
 
-/// A member of the family: R1 A1 R2 ... A5 R6 with A = Tx(a) Rx(alpha) Tz(d).
+/// A link of the family: A = Tx(a) Rx(alpha) Tz(d).
+struct Link {
+    length: Complex64,
+    /// Cosine and sine of the twist.
+    twist: (Complex64, Complex64),
+    offset: Complex64,
+}
+
+impl Link {
+    /// The frame at its end, from the one at its beginning.
+    fn after(&self, frame: &Pose) -> Pose {
+        let (c, s) = self.twist;
+        let rotation = frame
+            .rotation
+            .map(|[x, y, z]| [x, y * c + z * s, z * c - y * s]);
+        let shift = |i: usize| frame.rotation[i][0] * self.length + rotation[i][2] * self.offset;
+        Pose {
+            position: std::array::from_fn(|i| frame.position[i] + shift(i)),
+            rotation,
+        }
+    }
+}
+
+/// A member of the family: R1 A1 R2 ... A5 R6.
 struct Member {
     /// A_1 .. A_5.
-    links: [Pose; 5],
+    links: [Link; 5],
     /// Direction of axis 6 and a point of it.
     axis: (Vector3, Vector3),
 }
 
 impl Member {
     fn of(parameters: &[Complex64]) -> Self {
-        let links = std::array::from_fn(|k| {
-            let (c, s) = turn_of(parameters[k], parameters[5 + k]);
-            Pose::shift(parameters[10 + k], 0.0, 0.0)
-                .then(&Pose::about_x(c, s))
-                .then(&Pose::shift(0.0, 0.0, parameters[15 + k]))
+        let links = std::array::from_fn(|k| Link {
+            length: parameters[10 + k],
+            twist: turn_of(parameters[k], parameters[5 + k]),
+            offset: parameters[15 + k],
         });
         let [u, v, w] = [20, 21, 22].map(|i| parameters[i]);
         let over = u * u + v * v + w * w;
@@ -441,41 +467,34 @@ impl Member {
         }
     }
 
-    /// Joint 3 from the others: it turns what the last joints make to what the first leave, in the plane
-    /// across its axis; by least squares of direction and place. `None` where both are along the axis.
-    fn third_turn(&self, turns: &Turns) -> Option<(Complex64, Complex64)> {
-        let turn = |k: usize| Pose::about_z(turns[k].0, turns[k].1);
-        let first = turn(0)
-            .then(&self.links[0])
-            .then(&turn(1))
-            .then(&self.links[1]);
-        let back = first.inverse();
-        let (y, w) = (back.direction(self.axis.0), back.point(self.axis.1));
-        let last = self.links[2]
-            .then(&turn(3))
-            .then(&self.links[3])
-            .then(&turn(4))
-            .then(&self.links[4]);
-        let (i, h) = (last.column(2), last.position);
-        turn_between((i, h), (y, w))
+    /// The frame after some joints and their links, from the one before them.
+    fn along(&self, joints: Range<usize>, from: &Pose, turns: &Turns) -> Pose {
+        joints.fold(*from, |frame, k| {
+            self.links[k].after(&frame.turned(turns[k].0, turns[k].1))
+        })
     }
 
-    /// The gap of axis 6 and of the circles, and how large numbers grow along the chain.
-    fn gap(&self, turns: &Turns) -> (f64, f64) {
-        let mut product = Pose::IDENTITY;
-        let mut growth = 1.0f64;
-        for k in 0..5 {
-            let (c, s) = turns[k];
-            growth *= (modulus(c) + modulus(s)).max(1.0);
-            product = product.then(&Pose::about_z(c, s)).then(&self.links[k]);
-        }
-        let mut gap = 0.0f64;
+    /// Joint 3 from the frame before it and the joints after it: it turns what the last joints make to what the first
+    /// leave, in the plane across its axis; by least squares of direction and place. `None` where both are along the
+    /// axis.
+    fn third_turn(&self, first: &Pose, turns: &Turns) -> Option<(Complex64, Complex64)> {
+        let back = first.inverse();
+        let axis = (back.direction(self.axis.0), back.point(self.axis.1));
+        let after_joint = self.links[2].after(&Pose::IDENTITY);
+        let last = self.along(3..5, &after_joint, turns);
+        turn_between((last.column(2), last.position), axis)
+    }
+
+    /// The gap of axis 6, which is that of the last frame, and of the circles; and how large numbers grow along the
+    /// chain.
+    fn gap(&self, last: &Pose, turns: &Turns) -> (f64, f64) {
+        let (mut gap, mut growth) = (0.0f64, 1.0f64);
         for k in 0..3 {
-            gap = gap.max(modulus(product.rotation[k][2] - self.axis.0[k]));
-            gap = gap.max(modulus(product.position[k] - self.axis.1[k]));
+            gap = gap.max(modulus(last.rotation[k][2] - self.axis.0[k]));
+            gap = gap.max(modulus(last.position[k] - self.axis.1[k]));
         }
-        for k in 0..5 {
-            let (c, s) = turns[k];
+        for (c, s) in &turns[..5] {
+            growth *= (modulus(*c) + modulus(*s)).max(1.0);
             gap = gap.max(modulus(c * c + s * s - 1.0) / (1.0 + c.norm_sqr() + s.norm_sqr()));
         }
         (gap, growth)

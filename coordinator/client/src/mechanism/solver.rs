@@ -19,9 +19,11 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Targets that are followed side by side: enough that the way to plan and compile is short against the paths, and few
-/// enough that some threads have something to do.
-const BATCH: usize = 64;
+/// Least and most targets that are followed side by side, where there are so many: enough that the way to plan is short
+/// against the paths and lanes seldom empty, and few enough that every thread has some batches.
+const BATCH: [usize; 2] = [64, 256];
+/// Batches for each thread where that leaves them large enough.
+const BATCHES_A_THREAD: usize = 2;
 /// Targets whose answers are held at a time where there may be any number of them.
 pub const ROUND: usize = 1024;
 
@@ -142,7 +144,9 @@ impl<'m> Solver<'m> {
 
     /// Answers targets, on as many threads as there are batches; in their order.
     pub fn solve(&self, targets: &[Target]) -> Result<Vec<TargetAnswer>, MechanismError> {
-        let batches: Vec<&[Target]> = targets.chunks(BATCH).collect();
+        let [least, most] = BATCH;
+        let size = targets.len().div_ceil(BATCHES_A_THREAD * self.threads);
+        let batches: Vec<&[Target]> = targets.chunks(size.clamp(least, most)).collect();
         let answers = parallel::map(batches.len(), self.threads, |k| self.batch(batches[k]));
         let answers: Vec<Vec<TargetAnswer>> = answers.into_iter().collect::<Result<_, _>>()?;
         Ok(answers.into_iter().flatten().collect())
