@@ -8,11 +8,12 @@ use cognate_client::mechanism::preparation::{AnswerOptions, Preparation};
 use cognate_client::mechanism::solver::Solver;
 use cognate_client::mechanism::summary::Summary;
 use cognate_client::mechanism::target_answer::TargetAnswer;
-use cognate_kinematics::compile::{Problem, Question, Target};
+use cognate_kinematics::compile::{Configuration, Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::{
     Body, Mechanism, MechanismError, ReadOptions, Space, read, targets,
 };
+use cognate_kinematics::shape::Shape;
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -112,12 +113,46 @@ fn check(
                 if residual > 1e-9 {
                     wrong += &format!("\n{name}, seed {seed}: a loop stays open by {residual:e}");
                 }
+                if position.is_real {
+                    for joint in joints_in_the_air(mechanism, &position.configuration) {
+                        wrong += &format!("\n{name}, seed {seed}: {joint} is drawn apart");
+                    }
+                }
             }
         }
         answers.push(found);
     }
     assert!(wrong.is_empty(), "{wrong}");
     answers
+}
+
+/// Joints of the drawing at which nothing of another body ends.
+fn joints_in_the_air(mechanism: &Mechanism, position: &Configuration) -> Vec<String> {
+    let shape = Shape::of(mechanism);
+    let poses = shape.poses(position);
+    let place = |body: usize, point: [f64; 3]| -> [f64; 3] {
+        let pose =
+            poses[body].unwrap_or_else(|| panic!("{} stands nowhere", shape.bodies[body].name));
+        pose.point(point.map(Into::into)).map(|c| c.re)
+    };
+    let rods = shape.rods.iter().flatten().copied();
+    let segments = shape.bodies.iter().enumerate().flat_map(|(b, body)| {
+        let ends = body.segments.iter().flatten();
+        ends.map(move |end| (b, *end))
+    });
+    let ends: Vec<(usize, [f64; 3])> = rods.chain(segments).collect();
+    let near = |p: [f64; 3], q: [f64; 3]| p.iter().zip(q).all(|(x, y)| (x - y).abs() < 1e-6);
+    let apart = shape.joints.iter().enumerate().filter(|(_, joint)| {
+        let here = place(joint.body, joint.point);
+        let is_other = |(body, point): &&(usize, [f64; 3])| {
+            (*body != joint.body || *point != joint.point) && near(here, place(*body, *point))
+        };
+        let at_rod = |rod: &[(usize, [f64; 3]); 2]| rod.contains(&(joint.body, joint.point));
+        !shape.rods.iter().any(at_rod) && ends.iter().find(is_other).is_none()
+    });
+    apart
+        .map(|(k, joint)| format!("joint {k} of {}", shape.bodies[joint.body].name))
+        .collect()
 }
 
 fn poses(instance: &str, mechanism: &Mechanism) -> Vec<Target> {

@@ -7,6 +7,7 @@ mod access;
 mod answers;
 mod caller;
 mod events;
+pub mod pictures;
 mod points;
 mod request;
 

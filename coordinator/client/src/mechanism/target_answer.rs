@@ -35,6 +35,22 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// Adds those of another target.
+    pub fn add(&mut self, other: &Self) {
+        self.complex += other.complex;
+        self.real += other.real;
+        self.certified_real = match (self.certified_real, other.certified_real) {
+            (Some(a), Some(b)) => Some(a + b),
+            (a, b) => a.or(b),
+        };
+        self.within_limits += other.within_limits;
+        self.singular += other.singular;
+        self.at_infinity += other.at_infinity;
+        self.positive_dimensional += other.positive_dimensional;
+        self.degenerate += other.degenerate;
+        self.failed += other.failed;
+    }
+
     /// All paths.
     pub fn sum(&self) -> u64 {
         self.complex

@@ -3,13 +3,14 @@
 use super::files::{create, write_file};
 use super::text::real;
 use crate::error::ClientError;
+use cognate_coordinator::page::pictures::SCENE;
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// Width and height of the picture.
 const SIZE: f64 = 640.0;
-/// The page; `DATA` stands for the surfaces.
+/// The page; `DATA` stands for the surfaces, and `SCENE` for the script that draws.
 const PAGE: &str = include_str!("surface.html");
 /// The direction from which the picture is seen, and what is up in it: orthogonal vectors of length 1.
 const VIEW: [[f64; 3]; 3] = [
@@ -108,7 +109,11 @@ pub fn page(folder: &Path, name: &str, surfaces: &[Value]) -> Result<(), ClientE
     let list = Value::Array(surfaces.to_vec());
     // Nothing in it can end the script.
     let data = list.to_string().replace('<', "\\u003c");
-    write_file(folder, name, &PAGE.replace("DATA", &data))
+    write_file(
+        folder,
+        name,
+        &PAGE.replace("SCENE", SCENE).replace("DATA", &data),
+    )
 }
 
 /// The unit vector on a triangle; 0 where it has none.

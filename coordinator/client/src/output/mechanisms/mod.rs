@@ -1,6 +1,7 @@
 //! Mechanisms and their positions as tables, JSON, CSV and files.
 
 pub mod csv;
+pub mod drawing;
 pub mod families;
 pub mod folder;
 pub mod info;

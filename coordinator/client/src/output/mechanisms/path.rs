@@ -25,7 +25,8 @@ pub struct ShownPath<'a> {
 }
 
 impl ShownPath<'_> {
-    fn branches(&self) -> impl Iterator<Item = (usize, &Branch)> {
+    /// The branches that are listed, with their numbers.
+    pub(super) fn branches(&self) -> impl Iterator<Item = (usize, &Branch)> {
         let all = self.path.branches.iter().enumerate();
         all.filter(|(b, branch)| {
             self.chosen.is_none_or(|chosen| chosen == *b)
