@@ -4,12 +4,14 @@ use crate::api::admission::CallLimits;
 use crate::api::held_stream::StreamLimits;
 use crate::api::security::Security;
 use crate::chunks::leasing::Policy;
+use crate::page::mechanisms::Mechanisms;
 use crate::transport::introduction::ConnectionLimits;
 use cognate_protocol::DEFAULT_ADDRESS;
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// What a coordinator is told when it starts.
@@ -27,6 +29,8 @@ pub struct Config {
     pub audit_log: Option<PathBuf>,
     /// Where the page for browsers is: host and port; `None`: nowhere.
     pub page: Option<String>,
+    /// What answers the page's questions about mechanisms; `None`: it takes systems only.
+    pub mechanisms: Option<Arc<dyn Mechanisms>>,
     /// Database or file of the ledger.
     pub ledger: LedgerPlace,
     /// The folder of the results and all other objects; `None`: in memory.
@@ -47,6 +51,7 @@ impl Default for Config {
             metrics: None,
             audit_log: None,
             page: None,
+            mechanisms: None,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),
             results: Some("cognate-data/results".into()),
             shared_memory: Some(LEAST_FREE),

@@ -119,7 +119,8 @@ impl Server {
         let page = match &config.page {
             None => None,
             Some(address) => {
-                Some(PageListener::open(address, &config.security, config.insecure).await?)
+                let page = PageListener::open(address, &config.security, config.insecure).await?;
+                Some(page.with_mechanisms(config.mechanisms))
             }
         };
         let mut security = config.security;

@@ -17,6 +17,8 @@ from browser import PROGRAM, Browser
 from cognate import program
 from conftest import EXAMPLES, until
 
+MECHANISMS = Path(__file__).parent.parent / "mechanisms"
+
 pytestmark = pytest.mark.skipif(PROGRAM is None and not os.environ.get("CI"), reason="no Chromium is installed")
 
 
@@ -29,8 +31,14 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A coordinator with a page and a worker; the page's address."""
+def page(service: tuple[str, str]) -> str:
+    """The page's address."""
+    return service[0]
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
+    """A coordinator with a page and a worker; the page's address, and the coordinator's."""
     folder = tmp_path_factory.mktemp("page")
     socket = f"unix:{folder}/c.sock"
     found = program.find()
@@ -52,7 +60,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         worker = subprocess.Popen(
             [found, "worker", "--coordinator", socket, "--threads", "1"], stderr=subprocess.DEVNULL
         )
-        yield url
+        yield url, socket
     finally:
         for process in filter(None, (worker, coordinator)):
             process.terminate()
@@ -64,6 +72,11 @@ def drop(name: str, content: str) -> str:
     return f"""(() => {{ const data = new DataTransfer();
         data.items.add(new File([{json.dumps(content)}], {json.dumps(name)}));
         dispatchEvent(new DragEvent('drop', {{ dataTransfer: data, bubbles: true, cancelable: true }})); }})()"""
+
+
+def press(words: str) -> str:
+    """A script that presses the button with these words."""
+    return f"[...document.querySelectorAll('button')].find(b => b.textContent === {json.dumps(words)}).click()"
 
 
 def shown(word: str) -> str:
@@ -184,6 +197,84 @@ def test_long_lists_come_in_pages_and_do_not_stutter(page: str) -> None:
             assert await browser.run(
                 "[...document.querySelectorAll('button')].find(b => b.textContent === 'Older').disabled"
             )
+
+    asyncio.run(look())
+
+
+def test_mechanisms_move(page: str, pictures: Path) -> None:
+    async def look() -> None:
+        async with Browser() as browser:
+            await browser.size(1280, 1100)
+            await browser.go(page)
+            await browser.until("!document.getElementById('to-mechanism').hidden")
+            arm = MECHANISMS / "arm_puma560" / "arm.json"
+            await browser.run("location.hash = '#mechanism'")
+            await browser.until(shown("Drop a mechanism here"))
+            await browser.run(drop("arm.json", arm.read_text()))
+            await browser.until(shown("poses of its output"))
+            await browser.run("document.getElementById('prove').click()")
+            await browser.run(press("Show its positions"))
+            await browser.until(shown("Position 1.1, real and proved"), 60)
+            assert await browser.run(shown("8 complex, 8 real, 8 proved real"))
+            await browser.run("document.getElementById('ghosts').click()")
+            await browser.picture(pictures / "mechanism_arm.png")
+            before = await browser.run("document.querySelector('canvas').toDataURL()")
+            await browser.run(press("1.3"))
+            assert before != await browser.run("document.querySelector('canvas').toDataURL()"), "another position"
+            # An input that goes around: branches, and a slider along each.
+            linkage = MECHANISMS / "stephenson" / "mechanism.json"
+            await browser.run(drop("mechanism.json", linkage.read_text()))
+            await browser.until("document.getElementById('targets').value.startsWith('A0')")
+            await browser.run("document.getElementById('targets').value = 'A0\\n0\\n3\\n6\\n'")
+            await browser.run("document.getElementById('follow').click()")
+            await browser.run(press("Show its positions"))
+            await browser.until(shown("branch 4"), 60)
+            await browser.run(press("branch 2"))
+            await browser.run(press("Play"))
+            await browser.until("Number(document.querySelector('input[type=range]').value) > 5")
+            await browser.run(press("Stop"))
+            await browser.size(420, 1100)
+            assert await browser.run("document.documentElement.scrollWidth <= 420"), "nothing sticks out"
+            await browser.picture(pictures / "mechanism_branches.png")
+            await browser.run(drop("wrong.urdf", "<robot"))
+            await browser.until(shown("wrong.urdf:1"))
+            assert browser.log == [] or all("400" in line for line in browser.log), browser.log
+
+    asyncio.run(look())
+
+
+def test_real_curves_are_drawn(service: tuple[str, str], pictures: Path, tmp_path: Path) -> None:
+    url, socket = service
+    file = tmp_path / "curve.bertini"
+    file.write_text("variable_group x, y, z; function f, g; f = x^2 + y^2 + z^2 - 4; g = (x - 1)^2 + y^2 - 1; END;")
+
+    def ask(*words: str) -> dict[str, Any]:
+        answer = subprocess.run(
+            [program.find(), *words, "--format", "json"], capture_output=True, text=True, check=True
+        )
+        found: dict[str, Any] = json.loads(answer.stdout)
+        return found
+
+    ask("decompose", str(file), "--output", str(tmp_path / "set"))
+    ask("real-curve", str(tmp_path / "set"), "--coordinator", socket)
+
+    async def look() -> None:
+        async with Browser() as browser:
+            await browser.size(1280, 1100)
+            await browser.go(url)
+            await browser.until("[...document.querySelectorAll('tbody a')].some(a => a.textContent.includes('curve'))")
+            await browser.run(
+                "[...document.querySelectorAll('tbody a')].find(a => a.textContent.includes('curve')).click()"
+            )
+            await browser.until(shown("Real part"))
+            await asyncio.sleep(0.3)
+            await browser.picture(pictures / "real_curve.png")
+            empty = await browser.run(
+                """(() => { const c = document.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+                   return !d.some((x, k) => k % 4 === 0 && x > 150 && d[k + 1] < 80); })()"""
+            )
+            assert not empty, "the curve is drawn in red"
+            assert browser.log == []
 
     asyncio.run(look())
 

@@ -15,11 +15,15 @@
 //! | `GET /api/results/ID/points` | the solutions as a picture has them |
 //! | `GET /api/results/ID/failures` | paths that failed |
 //! | `GET /api/results/ID/decomposition.json` | components with their witness points |
+//! | `POST /api/mechanism?name=` | inputs and examples of the mechanism `file` of the body |
+//! | `POST /api/mechanism/positions?name=&given=&follow=&certify=` | its positions at the body's `targets` |
 //! | `GET /api/events?job=` or `?from=&limit=` | what changes |
 
 use super::access::{self, Access, Refusal};
 use super::caller::{Calls, Services, calls};
 use super::events;
+use super::mechanisms::{self, MechanismQuestion, Mechanisms};
+use super::pictures::{MECHANISM, SCENE};
 use super::points::Sample;
 use super::request::{Fault, Query, answer, download, fault, full, json_text, json_value};
 use crate::recent::Recent;
@@ -72,11 +76,19 @@ pub struct Page {
     uploads: Semaphore,
     listeners: Arc<Semaphore>,
     pictures: Recent<String, Bytes>,
+    mechanisms: Option<Arc<dyn Mechanisms>>,
+    /// One question about a mechanism at a time.
+    solving: Arc<Semaphore>,
 }
 
 impl Page {
     /// In front of these services.
-    pub fn new(access: Access, services: Services, stopping: CancellationToken) -> Self {
+    pub fn new(
+        access: Access,
+        services: Services,
+        mechanisms: Option<Arc<dyn Mechanisms>>,
+        stopping: CancellationToken,
+    ) -> Self {
         Self {
             access,
             services,
@@ -84,6 +96,8 @@ impl Page {
             uploads: Semaphore::new(UPLOADS),
             listeners: Arc::new(Semaphore::new(LISTENERS)),
             pictures: Recent::new(PICTURES),
+            mechanisms,
+            solving: Arc::new(Semaphore::new(1)),
         }
     }
 
@@ -117,6 +131,10 @@ impl Page {
         match (path.as_slice(), &parts.method) {
             (["api", what @ ..], _) if reads => self.read(what, query, calls).await,
             (["api", "jobs"], &Method::POST) => self.submit(query, body, calls).await,
+            (["api", "mechanism"], &Method::POST) => self.mechanism(query, body, calls).await,
+            (["api", "mechanism", "positions"], &Method::POST) => {
+                self.positions(query, body, calls).await
+            }
             (["api", "jobs", job], &Method::DELETE) => cancel(job, calls).await,
             (["api", ..], _) => Err(Fault {
                 status: StatusCode::METHOD_NOT_ALLOWED,
@@ -196,6 +214,7 @@ impl Page {
             "protocol_version": info.protocol_version,
             "numerics_revision": info.numerics_revision,
             "asks_for_tokens": self.access.asks_for_tokens(),
+            "mechanisms": self.mechanisms.is_some(),
             "starts": starts.map(|start| start.name()).collect::<Vec<_>>(),
             "most_bytes": MESSAGE_BYTES.value,
         })))
@@ -243,6 +262,88 @@ impl Page {
         drop(turn);
         let answer = client_json::submitted(&accepted.job, &accepted.warnings);
         Ok(json_value(&answer))
+    }
+
+    /// Inputs of a mechanism, and examples of its targets.
+    async fn mechanism(
+        &self,
+        query: Query,
+        body: Body,
+        calls: Calls,
+    ) -> Result<Response<Body>, Fault> {
+        let query = query.only(&["name"])?;
+        let name = query.get("name").unwrap_or("mechanism.json").to_owned();
+        self.of_mechanisms(calls, body, move |mechanisms, sent| {
+            mechanisms.describe(&name, &sent.file)
+        })
+        .await
+    }
+
+    /// Positions of a mechanism, or its branches.
+    async fn positions(
+        &self,
+        query: Query,
+        body: Body,
+        calls: Calls,
+    ) -> Result<Response<Body>, Fault> {
+        let query = query.only(&["name", "given", "follow", "certify"])?;
+        let poses = match query.get("given") {
+            Some("poses") => true,
+            Some("inputs") => false,
+            given => {
+                let given = given.unwrap_or_default();
+                let message = format!("given is `{given}`; expected poses or inputs");
+                return Err(Fault::of_request(message));
+            }
+        };
+        let name = query.get("name").unwrap_or("mechanism.json").to_owned();
+        let (follow, certify) = (query.flag("follow")?, query.flag("certify")?);
+        self.of_mechanisms(calls, body, move |mechanisms, sent| {
+            mechanisms.positions(&MechanismQuestion {
+                name,
+                file: sent.file,
+                targets: sent.targets,
+                poses,
+                follow,
+                certify,
+            })
+        })
+        .await
+    }
+
+    /// What is answered to the file of a body.
+    async fn of_mechanisms(
+        &self,
+        mut calls: Calls,
+        body: Body,
+        asked: impl FnOnce(&dyn Mechanisms, Sent) -> Result<Value, String> + Send + 'static,
+    ) -> Result<Response<Body>, Fault> {
+        // Who may not call the service may not have it compute.
+        calls.get_server_info(v1::GetServerInfoRequest {}).await?;
+        let Some(mechanisms) = self.mechanisms.clone() else {
+            return Err(Fault::not_found());
+        };
+        let bytes = gather(body, mechanisms::MOST_BYTES).await?;
+        let sent: Sent = serde_json::from_slice(&bytes)
+            .map_err(|error| Fault::of_request(format!("the body is not as expected: {error}")))?;
+        let solving = Arc::clone(&self.solving);
+        let turn = solving.try_acquire_owned().map_err(|_| Fault {
+            status: StatusCode::SERVICE_UNAVAILABLE,
+            message: "another mechanism is being solved: try again".to_owned(),
+        })?;
+        let solved = tokio::task::spawn_blocking(move || {
+            let answer = asked(mechanisms.as_ref(), sent);
+            drop(turn);
+            answer
+        });
+        match solved.await {
+            Ok(Ok(value)) => Ok(json_value(&value)),
+            Ok(Err(message)) => Err(Fault::of_request(message)),
+            Err(error) => Err(Fault {
+                status: StatusCode::INTERNAL_SERVER_ERROR,
+                message: format!("solving ended: {error}"),
+            }),
+        }
     }
 
     /// The solutions as a picture has them; made once for those who look at the same job.
@@ -295,6 +396,15 @@ impl Page {
     }
 }
 
+/// A mechanism's file and its targets, as the page sends them.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sent {
+    file: String,
+    #[serde(default)]
+    targets: String,
+}
+
 fn refused(refusal: &Refusal) -> Fault {
     Fault {
         status: refusal.status(),
@@ -305,7 +415,10 @@ fn refused(refusal: &Refusal) -> Fault {
 /// The page itself. Its scripts and styles run by a number that is in no other answer.
 fn html() -> Response<Body> {
     let nonce = uuid::Uuid::new_v4().simple().to_string();
-    let mut response = answer(StatusCode::OK, HTML_TYPE, full(HTML.replace(NONCE, &nonce)));
+    let scripts = HTML.replace("{{scene}}", SCENE);
+    let scripts = scripts.replace("{{mechanism}}", MECHANISM);
+    let page = scripts.replace(NONCE, &nonce);
+    let mut response = answer(StatusCode::OK, HTML_TYPE, full(page));
     let policy = format!(
         "default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; connect-src 'self'; \
          img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

@@ -59,6 +59,9 @@ function showMechanism(place, data) {
     }
     if (faint) return parts;
     for (const joint of data.joints) {
+      // What stands on nothing that is drawn stands on a plate.
+      if (!joint.body && !flat && !data.bodies[0].faces.length)
+        parts.push({ points: around(joint.point, joint.axis, 0.09 * scene.size, 24), color: GROUND, opacity: 0.4 });
       const m = movers[joint.body];
       if (!m) continue;
       const centre = m.at(joint.point), shape = kindOf(joint);
@@ -109,11 +112,13 @@ function showMechanism(place, data) {
   };
   const cells = values => values.map(value => el('td', { class: 'number' }, value === null ? '' : String(Number(value.toPrecision(7)))));
   const yes = (value, words) => value === null || value === undefined ? '' : value ? words[0] : words[1];
+  const known = [['proved', set => yes(set.proved, ['yes', 'no'])], ['limits', set => yes(set.limits, ['within', 'beyond'])]]
+    .filter(([, of]) => data.sets.some(set => of(set)));
   const table = data.sets.length ? el('div', { class: 'wide', tabindex: '0', role: 'region', 'aria-label': 'Positions' }, el('table', {},
     el('caption', {}, data.left_out ? `The first ${data.sets.length} real positions; ${data.left_out} more are in the other files` : 'Real positions'),
-    el('thead', {}, el('tr', {}, ...['', 'proved', 'limits', ...data.columns].map(name => el('th', { scope: 'col' }, name)))),
+    el('thead', {}, el('tr', {}, ...['', ...known.map(([name]) => name), ...data.columns].map(name => el('th', { scope: 'col' }, name)))),
     el('tbody', {}, ...data.sets.map((set, i) => el('tr', {}, el('td', {}, choose({ set: i }, set.title)),
-      el('td', {}, yes(set.proved, ['yes', 'no'])), el('td', {}, yes(set.limits, ['within', 'beyond'])), ...cells(set.inputs)))))) : '';
+      ...known.map(([, of]) => el('td', {}, of(set))), ...cells(set.inputs)))))) : '';
   const branches = data.branches.length ? el('div', { class: 'row' }, play, slider, ...data.branches.map((b, i) => choose({ branch: i }, b.title))) : '';
 
   function draw() {
@@ -133,7 +138,8 @@ function showMechanism(place, data) {
   }
   const counts = el('p', { class: 'dim' }, data.counts.map(([name, n]) => `${n} ${name}`).join(', '));
   place.replaceChildren(counts, ...data.notes.map(note => el('p', { class: 'warn' }, note)), canvas, status,
-    el('div', { class: 'row' }, el('span', {}, ghosts, el('label', { for: 'ghosts' }, ' all positions, faintly'))), branches, table);
+    data.sets.length > 1 ? el('div', { class: 'row' }, el('span', {}, ghosts, el('label', { for: 'ghosts' }, ' all positions, faintly'))) : '',
+    branches, table);
   draw();
   return draw;
 }

@@ -7,6 +7,7 @@ mod access;
 mod answers;
 mod caller;
 mod events;
+pub mod mechanisms;
 pub mod pictures;
 mod points;
 mod request;
@@ -19,6 +20,7 @@ use crate::transport::introduction::{ConnectionLimits, Connections};
 use crate::transport::{self, Callers, ListenError, tcp};
 use access::Access;
 use answers::Page;
+use mechanisms::Mechanisms;
 use std::convert::Infallible;
 use std::sync::Arc;
 use tokio::net::TcpListener;
@@ -38,6 +40,7 @@ pub struct PageListener {
     host: String,
     asks_for_tokens: bool,
     tls: bool,
+    mechanisms: Option<Arc<dyn Mechanisms>>,
 }
 
 impl PageListener {
@@ -71,7 +74,13 @@ impl PageListener {
                 .to_owned(),
             asks_for_tokens: knows_callers && security.tokens.is_some(),
             tls,
+            mechanisms: None,
         })
+    }
+
+    /// The same, with what answers questions about mechanisms.
+    pub fn with_mechanisms(self, mechanisms: Option<Arc<dyn Mechanisms>>) -> Self {
+        Self { mechanisms, ..self }
     }
 
     /// Where it is, as a browser takes it.
@@ -102,7 +111,12 @@ impl PageListener {
         };
         let service = Before(guard).layer(Before(admission).layer(routes));
         let access = Access::new(&self.host, self.asks_for_tokens);
-        let page = Arc::new(Page::new(access, service, stopping.clone()));
+        let page = Arc::new(Page::new(
+            access,
+            service,
+            self.mechanisms,
+            stopping.clone(),
+        ));
         let service = tower::service_fn(move |request| {
             let page = Arc::clone(&page);
             async move { Ok::<_, Infallible>(page.answer(request).await) }

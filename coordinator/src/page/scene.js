@@ -57,7 +57,7 @@ class Scene {
     canvas.width = Math.round(box.width * ratio); canvas.height = Math.round(box.height * ratio);
     const c = canvas.getContext('2d'), w = canvas.width, h = canvas.height;
     const room = this.flat && this.extent ? Math.min(w / (this.extent[0] || 1e-9), h / (this.extent[1] || 1e-9), Math.max(w, h) / this.size)
-      : 0.72 * Math.min(w, h) / this.size;
+      : 0.85 * Math.min(w, h) / this.size;
     const scale = (this.flat ? 0.86 : 1) * this.zoom * room;
     const seen = p => this.view.map(row => row.reduce((sum, x, k) => sum + x * (p[k] - this.middle[k]), 0));
     const parts = this.parts.map(part => {

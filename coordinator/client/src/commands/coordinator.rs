@@ -1,12 +1,14 @@
 //! `cognate coordinator`: the service.
 
 use crate::arguments::Coordinator;
+use crate::commands::mechanism::page::PageMechanisms;
 use crate::config_file::{ConfigFile, DAY, age_ms};
 use crate::error::{ClientError, Exit};
 use cognate_coordinator::api::security::{Tls, Tokens};
 use cognate_coordinator::config::Config;
 use cognate_coordinator::server::{self, RunningServer, ServerError};
 use cognate_worker::transport::connect::CredentialError;
+use std::sync::Arc;
 
 /// Serves until somebody wants it to end; then lets running calls finish.
 pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
@@ -100,6 +102,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
     config.metrics = a.metrics.clone().or(file.metrics);
     config.audit_log = a.audit_log.clone().or(file.audit_log);
     config.page = a.page.clone().or(file.page);
+    config.mechanisms = Some(Arc::new(PageMechanisms));
     config.insecure = a.insecure || file.insecure.unwrap_or(false);
     Ok(config)
 }

@@ -3,6 +3,7 @@
 mod describe;
 mod families;
 mod follow;
+pub mod page;
 mod read;
 mod serve;
 mod solve;

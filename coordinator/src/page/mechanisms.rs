@@ -1,0 +1,33 @@
+//! Mechanisms: questions about links and joints. The service knows polynomials only, so that whoever starts a coordinator may
+//! bring something that answers them; it runs in this process, one question at a time.
+
+use serde_json::Value;
+use std::fmt::Debug;
+
+/// Most bytes of a question: a file and its targets.
+pub const MOST_BYTES: usize = 4 << 20;
+
+/// What a person asks about a mechanism.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MechanismQuestion {
+    /// Name of the file, for its kind and for messages.
+    pub name: String,
+    /// The file: JSON, TOML, URDF, or a table of rows.
+    pub file: String,
+    /// Poses of the output, or values of the inputs: JSON, or CSV with a header.
+    pub targets: String,
+    /// Whether targets are poses; else they are inputs.
+    pub poses: bool,
+    /// Follow branches along the targets.
+    pub follow: bool,
+    /// Prove the positions.
+    pub certify: bool,
+}
+
+/// What answers questions about mechanisms. Errors are sentences for the person who asked.
+pub trait Mechanisms: Debug + Send + Sync {
+    /// Name, inputs and examples of targets: `{"name", "inputs": [...], "poses": csv, "inputs_csv": csv}`.
+    fn describe(&self, name: &str, file: &str) -> Result<Value, String>;
+    /// Positions or branches, as [`super::pictures::MECHANISM`] draws them.
+    fn positions(&self, question: &MechanismQuestion) -> Result<Value, String>;
+}
