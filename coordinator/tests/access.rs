@@ -154,7 +154,10 @@ async fn a_tenant_sees_and_touches_its_own_jobs_only() {
     let summary = bob
         .get_summary(v1::GetSummaryRequest { job: job.clone() })
         .await;
-    let solutions = v1::StreamSolutionsRequest { job: job.clone() };
+    let solutions = v1::StreamSolutionsRequest {
+        job: job.clone(),
+        skip: 0,
+    };
     let solutions = bob.stream_solutions(solutions).await;
     let paths = bob
         .stream_paths(v1::StreamPathsRequest { job: job.clone() })

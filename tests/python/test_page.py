@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import time
+import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import pytest
 from browser import PROGRAM, Browser
 
+import cognate as cg
 from cognate import program
 from conftest import EXAMPLES, until
 
@@ -166,8 +168,6 @@ def test_the_page_is_used_by_keyboard_and_read_aloud(page: str) -> None:
 
 def test_long_lists_come_in_pages_and_do_not_stutter(page: str) -> None:
     async def look() -> None:
-        import urllib.request
-
         content = b"variable_group x; function f; f = x - 1; END;"
         for k in range(250):
             request = urllib.request.Request(
@@ -201,6 +201,27 @@ def test_long_lists_come_in_pages_and_do_not_stutter(page: str) -> None:
     asyncio.run(look())
 
 
+def test_parts_of_a_list_are_those_of_the_whole_over_all_targets(service: tuple[str, str]) -> None:
+    url, socket = service
+    family = cg.System(["x^2 + y^2 - p", "x*y - q"], parameters="p q")
+    with cg.Service(socket) as known:
+        base = cg.solve(family, start="monodromy", expect=4)
+        job = known.submit(family, start=base, targets=[[4, 1], [5, 0.5], [1, 2]])
+        assert len(job.results().targets) == 3
+
+    def read(path: str) -> bytes:
+        with urllib.request.urlopen(f"{url}api/results/{job.id}/{path}", timeout=60) as answer:
+            content: bytes = answer.read()
+            return content
+
+    whole = [json.loads(line) for line in read("solutions.jsonl").splitlines()]
+    assert [s["target"] for s in whole] == [k // 4 for k in range(12)]
+    for first in range(14):
+        part = json.loads(read(f"solutions?from={first}&limit=5"))
+        assert part["solutions"] == whole[first : first + 5], first
+        assert part["more"] == (first + 5 < 12)
+
+
 def test_mechanisms_move(page: str, pictures: Path) -> None:
     async def look() -> None:
         async with Browser() as browser:
@@ -224,7 +245,7 @@ def test_mechanisms_move(page: str, pictures: Path) -> None:
             # An input that goes around: branches, and a slider along each.
             linkage = MECHANISMS / "stephenson" / "mechanism.json"
             await browser.run(drop("mechanism.json", linkage.read_text()))
-            await browser.until("document.getElementById('targets').value.startsWith('A0')")
+            await browser.until("document.getElementById('targets')?.value.startsWith('A0')")
             await browser.run("document.getElementById('targets').value = 'A0\\n0\\n3\\n6\\n'")
             await browser.run("document.getElementById('follow').click()")
             await browser.run(press("Show its positions"))

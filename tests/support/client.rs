@@ -276,7 +276,7 @@ impl Client {
     pub fn each_solution(&self, job: &str, mut each: impl FnMut(v1::Solution)) {
         let job = job.to_owned();
         let call = |mut client: ClientApiClient<Channel>| async move {
-            let request = v1::StreamSolutionsRequest { job };
+            let request = v1::StreamSolutionsRequest { job, skip: 0 };
             let mut stream = client.stream_solutions(request).await?.into_inner();
             while let Some(solution) = stream.message().await? {
                 each(solution);

@@ -233,7 +233,10 @@ impl Connection {
         job: &str,
         mut take: impl FnMut(Solution, u32) -> Result<bool, ClientError>,
     ) -> Result<(), ClientError> {
-        let request = v1::StreamSolutionsRequest { job: job.into() };
+        let request = v1::StreamSolutionsRequest {
+            job: job.into(),
+            skip: 0,
+        };
         let answer = self.client.stream_solutions(request).await;
         let mut stream = answer.map_err(|e| self.explain(&e))?.into_inner();
         while let Some(solution) = stream.message().await.map_err(|e| self.explain(&e))? {

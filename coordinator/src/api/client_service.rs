@@ -319,12 +319,13 @@ fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::Wor
 /// One message at a time of what comes a chunk at a time.
 fn flattened<T: Send + 'static>(
     answers: Receiver<Result<Vec<Answered>, CoordinatorError>>,
-    message: fn(Answered) -> Option<Result<T, Status>>,
+    mut message: impl FnMut(Answered) -> Option<Result<T, Status>> + Send + 'static,
 ) -> Answers<T> {
     let messages = ReceiverStream::new(answers).flat_map(move |some| match some {
-        Ok(some) => stream::iter(some)
-            .filter_map(move |a| ready(message(a)))
-            .left_stream(),
+        Ok(some) => {
+            let messages: Vec<_> = some.into_iter().filter_map(&mut message).collect();
+            stream::iter(messages).left_stream()
+        }
         Err(error) => {
             let status = Status::from(ApiError::from(error));
             stream::once(ready(Err(status))).right_stream()
@@ -416,12 +417,19 @@ impl ClientApi for ClientService {
         request: Request<v1::StreamSolutionsRequest>,
     ) -> Result<Response<Self::StreamSolutionsStream>, Status> {
         let caller = Caller::of(&request);
-        let job = self.job(&caller, &request.into_inner().job).await?;
+        let request = request.into_inner();
+        let job = self.job(&caller, &request.job).await?;
+        let skip = usize::try_from(request.skip).unwrap_or(usize::MAX);
         let turn = self.context.streams.turn().await?;
         let large = self.context.coordinator.answers(job).await;
         if let Some(answers) = large.map_err(ApiError::from)? {
-            let message = |answered: Answered| {
+            let mut left_out = 0;
+            let message = move |answered: Answered| {
                 let (target, solution) = answered.solution?;
+                if left_out < skip {
+                    left_out += 1;
+                    return None;
+                }
                 Some(Ok(to_proto::solution::solution(&solution, target)))
             };
             return Ok(Response::new(turn.hold(flattened(answers, message))));
@@ -429,15 +437,20 @@ impl ClientApi for ClientService {
         let sets = self.context.coordinator.solutions(job).await;
         let sets = sets.map_err(ApiError::from)?;
         // One at a time: a message takes more memory than what it is made of.
-        let solutions = stream::unfold((sets, 0, 0), |(sets, mut target, mut index)| async move {
-            while index >= sets.get(target)?.points().count() {
-                (target, index) = (target + 1, 0);
-            }
-            let number = u32::try_from(target).unwrap_or(u32::MAX);
-            let point = sets[target].points().nth(index)?;
-            let message = to_proto::solution::solution(point, number);
-            Some((Ok(message), (sets, target, index + 1)))
-        });
+        let solutions = stream::unfold(
+            (sets, 0, skip),
+            |(sets, mut target, mut index)| async move {
+                // What a set does not have is of the sets after it.
+                while index >= sets.get(target)?.points().count() {
+                    index -= sets[target].points().count();
+                    target += 1;
+                }
+                let number = u32::try_from(target).unwrap_or(u32::MAX);
+                let point = sets[target].points().nth(index)?;
+                let message = to_proto::solution::solution(point, number);
+                Some((Ok(message), (sets, target, index + 1)))
+            },
+        );
         Ok(Response::new(turn.hold(Box::pin(solutions))))
     }
 

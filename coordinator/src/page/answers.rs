@@ -354,7 +354,7 @@ impl Page {
             return Ok(answer(StatusCode::OK, JSON, full((*kept).clone())));
         }
         let mut sample = Sample::default();
-        let mut stream = solutions(&mut calls, job).await?;
+        let mut stream = solutions(&mut calls, job, 0).await?;
         while let Some(solution) = stream.message().await? {
             sample.take(solution);
         }
@@ -524,9 +524,14 @@ async fn summary(calls: &mut Calls, job: &str) -> Result<String, Status> {
     Ok(summary.into_inner().json)
 }
 
-async fn solutions(calls: &mut Calls, job: &str) -> Result<tonic::Streaming<v1::Solution>, Status> {
-    let job = job.to_owned();
-    let request = v1::StreamSolutionsRequest { job };
+/// The solutions from one of them on.
+async fn solutions(
+    calls: &mut Calls,
+    job: &str,
+    from: usize,
+) -> Result<tonic::Streaming<v1::Solution>, Status> {
+    let (job, skip) = (job.to_owned(), from as u64);
+    let request = v1::StreamSolutionsRequest { job, skip };
     Ok(calls.stream_solutions(request).await?.into_inner())
 }
 
@@ -555,17 +560,14 @@ async fn some_solutions(
     limit: usize,
 ) -> Result<Response<Body>, Fault> {
     let several = !solved(calls, job).await?.targets.is_empty();
-    let mut stream = solutions(calls, job).await?;
-    let (mut number, mut lines, mut more) = (0, Vec::new(), false);
+    let mut stream = solutions(calls, job, from).await?;
+    let (mut lines, mut more) = (Vec::new(), false);
     while let Some(solution) = stream.message().await? {
         if lines.len() == limit {
             more = true;
             break;
         }
-        if number >= from {
-            lines.push(line(&solution, several)?);
-        }
-        number += 1;
+        lines.push(line(&solution, several)?);
     }
     // The lines are JSON as they are, with all their digits.
     let list = lines.join(",");
@@ -576,7 +578,7 @@ async fn some_solutions(
 
 async fn all_solutions(mut calls: Calls, job: &str) -> Result<Response<Body>, Fault> {
     let several = !solved(&mut calls, job).await?.targets.is_empty();
-    let stream = solutions(&mut calls, job).await?;
+    let stream = solutions(&mut calls, job, 0).await?;
     // An error cuts the answer off, so that no browser takes a part for the whole.
     let lines = stream.map(move |solution| {
         let line = line(&solution?, several)?;

@@ -26,7 +26,8 @@ pub struct MechanismQuestion {
 
 /// What answers questions about mechanisms. Errors are sentences for the person who asked.
 pub trait Mechanisms: Debug + Send + Sync {
-    /// Name, inputs and examples of targets: `{"name", "inputs": [...], "poses": csv, "inputs_csv": csv}`.
+    /// What can be given, with examples as CSV, the usual one first:
+    /// `{"name", "angles": "deg"|"rad", "given": [["poses"|"inputs", csv]...], "no_inputs": why}`.
     fn describe(&self, name: &str, file: &str) -> Result<Value, String>;
     /// Positions or branches, as [`super::pictures::MECHANISM`] draws them.
     fn positions(&self, question: &MechanismQuestion) -> Result<Value, String>;

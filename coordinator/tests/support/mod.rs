@@ -231,6 +231,7 @@ impl Client {
     pub async fn solutions(&mut self, job: &str) -> Vec<v1::Solution> {
         let request = v1::StreamSolutionsRequest {
             job: job.to_owned(),
+            skip: 0,
         };
         let mut stream = self.0.stream_solutions(request).await.unwrap().into_inner();
         let mut all = Vec::new();

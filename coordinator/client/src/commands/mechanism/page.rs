@@ -30,11 +30,19 @@ impl Mechanisms for PageMechanisms {
         let inputs = compile(&mechanism, &question(Problem::Forward));
         let inputs = inputs.map(|formulation| formulation.inputs().to_vec());
         let poses = compile(&mechanism, &question(Problem::Inverse)).is_ok();
+        let example = inputs
+            .as_ref()
+            .ok()
+            .map(|names| example_inputs(&mechanism, names));
+        let mut given: Vec<(&str, String)> = example.map(|e| ("inputs", e)).into_iter().collect();
+        given.extend(poses.then(|| ("poses", example_pose(&mechanism))));
+        if matches!(mechanism.body, Body::Chain(_)) {
+            given.reverse();
+        }
         Ok(json!({
             "name": mechanism.name,
             "angles": if mechanism.degrees { "deg" } else { "rad" },
-            "poses": poses.then(|| example_pose(&mechanism)),
-            "inputs": inputs.as_ref().ok().map(|names| example_inputs(&mechanism, names)),
+            "given": given,
             "no_inputs": inputs.err().map(|error| error.to_string()),
         }))
     }
