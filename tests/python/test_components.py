@@ -73,6 +73,20 @@ def test_files_stay_where_they_are_wanted(tmp_path: Path) -> None:
     assert found.summary["decomposition"]["components"][0]["certified"] is not None
 
 
+def test_real_parts_are_seen(tmp_path: Path) -> None:
+    node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1).real_curve(samples=20, axes=["x", "y"])
+    assert node.settled and node.components[0]["singular_points"] == 1
+    assert len(node.parts[0]["edges"]) >= 3 and node._repr_html_().startswith("<svg")
+    assert node.picture.save(tmp_path / "node.svg").read_text() == node.picture.svg
+    sphere = cg.decompose(["x^2 + y^2 + z^2 - 1"], workers=1).real_surface(samples=4)
+    assert sphere.settled and sphere.components[0]["euler"] == 2
+    assert len(sphere.parts[0]["triangles"]) > 20
+    assert "class Scene" in sphere.picture.save(tmp_path / "sphere.html").read_text()
+    assert sphere._repr_html_().startswith("<iframe") and repr(sphere) == "<RealPart: 2.1>"
+    with pytest.raises(ValueError, match=r"no drawing"):
+        cg.Picture("nothing").save(tmp_path / "nothing.svg")
+
+
 def test_a_service_does_it(service: cg.Service) -> None:
     found = cg.decompose(["x^2 - y^3"], service=service)
     assert [(c.dimension, c.degree) for c in found] == [(1, 3)]

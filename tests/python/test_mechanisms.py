@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy
@@ -100,6 +101,17 @@ def test_equations_are_a_system(arm: cg.Mechanism) -> None:
 def test_what_is_no_pose_is_refused(arm: cg.Mechanism, pose: object, words: str) -> None:
     with pytest.raises(cg.InputError, match=words):
         arm.inverse(pose)
+
+
+def test_positions_are_shown(arm: cg.Mechanism, tmp_path: Path) -> None:
+    poses = json.loads((EXAMPLES / "arm_6r_poses.json").read_text())
+    page = arm.show(poses[0], certify=True)
+    data = json.loads(re.search(r'id="data">(.*?)</script>', page.html or "")[1])  # type: ignore[index]
+    assert data["counts"][0] == ["complex", 16] and len(data["bodies"]) == 7
+    assert all(found["proved"] for found in data["sets"])
+    assert page.save(tmp_path / "arm.html").read_text() == page.html
+    with pytest.raises(TypeError, match="found both"):
+        arm.show(poses[0], inputs={"q1": 1.0})
 
 
 def test_linkages_for_five_poses() -> None:

@@ -29,10 +29,17 @@ def outputs(tour: Any) -> list[Any]:
 
 def test_results_are_tables(tour: Any) -> None:
     pages = [o.data["text/html"] for o in outputs(tour) if "text/html" in o.get("data", {})]
-    assert len(pages) == 3
+    assert len(pages) == 5
     assert "4 solutions, 4 real" in pages[0] and "<caption>Paths</caption>" in pages[0]
     assert "6 proved" in pages[1]
     assert "dataframe" in pages[2]
+
+
+def test_curves_and_mechanisms_are_pictures(tour: Any) -> None:
+    pages = [o.data["text/html"] for o in outputs(tour) if "text/html" in o.get("data", {})]
+    assert pages[3].startswith("<svg") and pages[3].count("<path") + pages[3].count("<polyline") >= 2
+    assert pages[4].startswith("<iframe") and 'sandbox="allow-scripts"' in pages[4]
+    assert "branch 2" in pages[4] and "showMechanism" in pages[4]
 
 
 def test_answers_of_the_tour(tour: Any) -> None:

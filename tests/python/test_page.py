@@ -291,7 +291,8 @@ def test_real_curves_are_drawn(service: tuple[str, str], pictures: Path, tmp_pat
             await asyncio.sleep(0.3)
             await browser.picture(pictures / "real_curve.png")
             empty = await browser.run(
-                """(() => { const c = document.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+                """(() => { const c = document.querySelector('canvas');
+                   const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
                    return !d.some((x, k) => k % 4 === 0 && x > 150 && d[k + 1] < 80); })()"""
             )
             assert not empty, "the curve is drawn in red"

@@ -73,7 +73,7 @@ impl Shape {
     pub fn of(mechanism: &Mechanism) -> Self {
         match &mechanism.body {
             Body::Chain(chain) => Self::of_chain(chain),
-            Body::Linkage(linkage) => Self::of_linkage(linkage, mechanism.space),
+            Body::Linkage(linkage) => Self::of_linkage(linkage, mechanism),
             Body::Platform(platform) => Self::of_platform(platform),
             Body::Framework(framework) => Self::of_framework(framework),
         }
@@ -177,7 +177,8 @@ impl Shape {
     }
 
     /// A link by the points of its joints; on the sphere by arcs between their axes.
-    fn of_linkage(linkage: &Linkage, space: Space) -> Self {
+    fn of_linkage(linkage: &Linkage, mechanism: &Mechanism) -> Self {
+        let space = mechanism.space;
         let mut shape = Self {
             spherical: space == Space::Spherical,
             ..Self::default()
@@ -213,6 +214,13 @@ impl Shape {
             if matches!(joint.kind, JointKind::P | JointKind::C | JointKind::E) {
                 shape.rods.push([(place.0, place.1), (other.0, other.1)]);
             }
+        }
+        // The point that is asked for belongs to its link.
+        if let Some(output) = &mechanism.output
+            && let Some(link) = linkage.links.iter().position(|l| *l == output.link)
+            && let Some(point) = &output.point
+        {
+            points[number(link)].push(numbers(point));
         }
         for (body, points) in shape.bodies.iter_mut().zip(&points) {
             match space {

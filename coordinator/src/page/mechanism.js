@@ -83,7 +83,7 @@ function showMechanism(place, data) {
   const extent = poses => partsOf(poses, false).flatMap(part => part.points);
   const all = [...data.sets.map(set => set.poses), ...data.branches.flatMap(b =>
     [...Array(Math.min(20, b.input.length)).keys()].map(k => branchPoses(b, Math.floor(k * b.input.length / Math.min(20, b.input.length)))))];
-  scene.fit(all.flatMap(extent));
+  scene.fit([...all.flatMap(extent), ...data.curves.flatMap(curve => curve.points)]);
 
   // ---- what is shown ----
   let shown = { set: data.sets.length ? 0 : null, branch: data.sets.length ? null : 0, sample: 0 };

@@ -13,7 +13,7 @@ coordinators; `formats` for the files of other programs; errors and warnings.
 """
 
 from . import formats
-from .components import Component, Decomposition, Membership, Sample, decompose
+from .components import Component, Decomposition, Membership, RealPart, Sample, decompose
 from .errors import (
     Cancelled,
     CognateError,
@@ -29,6 +29,7 @@ from .errors import (
 )
 from .mechanism import Mechanism, Pose, Position, Positions
 from .options import Options
+from .picture import Picture
 from .program import Progress
 from .result import PathCounts, Result, SolutionCounts, TargetResult
 from .service import Job, Service
@@ -55,11 +56,13 @@ __all__ = [
     "NotKnown",
     "Options",
     "PathCounts",
+    "Picture",
     "Pose",
     "Position",
     "Positions",
     "ProgramNotFound",
     "Progress",
+    "RealPart",
     "Result",
     "RoundedWarning",
     "Sample",

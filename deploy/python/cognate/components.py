@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import exact, expressions, program
 from .errors import CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .picture import Picture
 from .progress import Bar, Wanted
 from .system import problem_file
 
@@ -75,6 +76,30 @@ class Sample:
         chosen = self.points.values() if component is None else [self.points[component]]
         rows = [point for points in chosen for point in points]
         return numpy.array(rows, dtype=numpy.complex128).reshape(len(rows), len(self.variables))
+
+
+@dataclass(frozen=True, repr=False)
+class RealPart:
+    """The real part of curves or surfaces; a notebook shows its picture.
+
+    `components`: counts of each, as the program's table has them. `parts`: vertices with their points and edges with
+    their samples, or vertices and triangles. `settled`: nothing of it is in doubt. `picture`: a drawing, and in three
+    variables a page that can be turned.
+    """
+
+    components: tuple[Mapping[str, Any], ...]
+    parts: tuple[Mapping[str, Any], ...]
+    settled: bool
+    picture: Picture
+    summary: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """Which components."""
+        shown = ", ".join(str(c["id"]) for c in self.components)
+        return f"<RealPart: {shown}{'' if self.settled else ', not settled'}>"
+
+    def _repr_html_(self) -> str:
+        return self.picture._repr_html_()
 
 
 @dataclass(frozen=True, repr=False)
@@ -200,6 +225,55 @@ class Decomposition:
             for block in summary["components"]
         }
         return Sample(self.variables, points, bool(summary["settled"]), summary)
+
+    def real_curve(
+        self,
+        *,
+        components: Iterable[str] = (),
+        samples: int | None = None,
+        axes: Sequence[str] = (),
+        strict: bool = False,
+        progress: Wanted = None,
+    ) -> RealPart:
+        """The real part of curves: arcs between vertices, loops, singular points.
+
+        `samples`: points of each arc; `axes`: the two variables that the drawing shows.
+
+        >>> import cognate as cg
+        >>> circle = cg.decompose(["x^2 + y^2 - 1"], workers=1).real_curve()
+        >>> circle.components[0]["closed_loops"], circle.settled
+        (1, True)
+        """
+        more = [f"--samples={samples}"] if samples is not None else []
+        more += [f"--axes={','.join(axes)}"] if axes else []
+        return self._real("real-curve", "curve", more, components, strict, progress)
+
+    def real_surface(
+        self,
+        *,
+        components: Iterable[str] = (),
+        samples: int | None = None,
+        strict: bool = False,
+        progress: Wanted = None,
+    ) -> RealPart:
+        """The real part of surfaces in three variables as triangles. `samples`: points of each edge."""
+        more = [f"--samples={samples}"] if samples is not None else []
+        return self._real("real-surface", "surface", more, components, strict, progress)
+
+    def _real(
+        self, question: str, name: str, more: list[str], components: Iterable[str], strict: bool, progress: Wanted
+    ) -> RealPart:
+        with program.Folder() as folder:
+            files = folder.path / "files"
+            summary = self._ask(question, [*more, f"--output={files}"], components, strict, progress, {})
+
+            def text(kind: str) -> str | None:
+                path = files / f"{name}.{kind}"
+                return path.read_text(encoding="utf-8") if path.exists() else None
+
+            picture = Picture(f"{question} of {self!r}", html=text("html"), svg=text("svg"))
+        parts = summary.get("curves") or summary.get("surfaces") or []
+        return RealPart(tuple(summary["components"]), tuple(parts), bool(summary["settled"]), picture, summary)
 
     def _ask(
         self,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import program
 from .errors import CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .picture import Picture
 from .system import System
 
 if TYPE_CHECKING:
@@ -262,6 +263,43 @@ class Mechanism:
         driven = [f"--input={name}" for name in listed[0]] if listed and self._needs(listed[0]) else []
         found = self._solve("forward", "inputs", listed, driven, within_limits, certify, seed, strict)
         return found[0] if one else found
+
+    def show(
+        self,
+        poses: Any = None,
+        *,
+        inputs: Target | Sequence[Target] | None = None,
+        follow: bool = False,
+        samples: int | None = None,
+        certify: bool = False,
+    ) -> Picture:
+        """A page of the real positions, which can be turned by hand: for poses of the output, or values of the inputs.
+
+        `follow`: branches along the targets instead, two or more of them, with a slider for each; `samples`: in how
+        many steps. Shown by notebooks; `save` writes it.
+        """
+        if (poses is None) == (inputs is None) and poses is not None:
+            raise TypeError("expected poses or inputs, found both")
+        problem, option = ("inverse", "poses") if poses is not None else ("forward", "inputs")
+        more: list[str] = ["--certify"] if certify else []
+        if poses is not None:
+            targets: list[Any] = _poses(poses)[1]
+        else:
+            given = [inputs] if inputs is None or isinstance(inputs, Mapping) else list(inputs)
+            targets = [{name: float(x) for name, x in (values or {}).items()} for values in given]
+            if targets[0] and self._needs(targets[0]):
+                more += [f"--input={name}" for name in targets[0]]
+        if follow:
+            problem = "follow"
+            more += [] if samples is None else [f"--samples={samples}"]
+        files = {option: json.dumps(targets)} if targets != [{}] else {}
+        with program.Folder() as folder:
+            page = folder.path / "page"
+            finished = self._call([problem, "--format", "json", f"--output={page}", *more], folder, files)
+            html = (page / "page.html").read_text(encoding="utf-8")
+        for warning in finished.warnings:
+            warn(warning, CognateWarning)
+        return Picture(f"{self._file.stem}: {'branches' if follow else 'positions'}", html=html)
 
     def _needs(self, values: Target) -> bool:
         """Whether the inputs that are given are others than the file's."""

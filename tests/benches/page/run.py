@@ -1,5 +1,8 @@
-"""The live page with 10,000 jobs and a job of 10^6 solutions, in a real browser: how long lists and pictures take, and how long
-the page is busy at once. `run.py [--jobs N] [--power P]`; COGNATE_PROGRAM is the program. Prints a table."""
+"""The live page with 10,000 jobs and a job of 10^6 solutions, in a real browser.
+
+How long lists and pictures take, and how long the page is busy at once. `run.py [--jobs N] [--power P]`;
+COGNATE_PROGRAM is the program. Prints a table.
+"""
 
 from __future__ import annotations
 
@@ -35,6 +38,7 @@ def got(url: str) -> tuple[float, bytes]:
 
 
 def posted(url: str, content: bytes) -> dict[str, Any]:
+    """What the page answers to a file."""
     request = urllib.request.Request(url, data=content, headers={"X-Cognate": "page"}, method="POST")
     with urllib.request.urlopen(request, timeout=600) as answer:
         found: dict[str, Any] = json.load(answer)
@@ -50,6 +54,7 @@ def resident(process: subprocess.Popen[bytes]) -> float:
 
 
 async def of_jobs(url: str, row: Any) -> None:
+    """The list of jobs in a browser."""
     async with Browser() as browser:
         start = time.monotonic()
         await browser.go(url)
@@ -63,16 +68,17 @@ async def of_jobs(url: str, row: Any) -> None:
 
 
 async def of_solutions(url: str, job: str, row: Any) -> None:
+    """A job's solutions in a browser."""
     async with Browser() as browser:
         start = time.monotonic()
         await browser.go(f"{url}#job/{job}")
-        busy = asyncio.create_task(browser.run("1"))
-        await busy
         await browser.until("document.getElementById('main').innerText.includes('Solutions 1 to 50')", 300)
         row("10^6 solutions: picture and table are there", time.monotonic() - start)
         row("busy at once afterwards, at most", await browser.run(LONGEST % 3000) / 1000)
         start = time.monotonic()
-        await browser.run("const s = document.getElementById('coordinate'); s.value = '1'; s.dispatchEvent(new Event('change'))")
+        await browser.run(
+            "const s = document.getElementById('coordinate'); s.value = '1'; s.dispatchEvent(new Event('change'))"
+        )
         row("the plane of another coordinate", time.monotonic() - start)
         start = time.monotonic()
         await browser.run("[...document.querySelectorAll('button')].find(b => b.textContent === 'After').click()")
@@ -83,6 +89,7 @@ async def of_solutions(url: str, job: str, row: Any) -> None:
 
 
 def main() -> None:
+    """Prints the table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--jobs", type=int, default=10_000)
     parser.add_argument("--power", type=int, default=10, help="the large job has this to the sixth solutions")
@@ -94,7 +101,8 @@ def main() -> None:
         places = ["--ledger", f"sqlite:{folder}/ledger.db", "--results", str(folder / "results")]
         with log.open("w") as stderr:
             coordinator = subprocess.Popen(
-                [program, "coordinator", "--listen", f"unix:{folder}/c", "--page", "127.0.0.1:0", *places], stderr=stderr
+                [program, "coordinator", "--listen", f"unix:{folder}/c", "--page", "127.0.0.1:0", *places],
+                stderr=stderr,
             )
         while "page at " not in log.read_text():
             time.sleep(0.1)
@@ -123,7 +131,10 @@ def main() -> None:
             asyncio.run(of_solutions(url, job, row))
             total = wanted.power**6
             for first in (0, total // 2, total - 50):
-                row(f"50 solutions from {first:,} on, the answer", got(f"{url}api/results/{job}/solutions?from={first}&limit=50")[0])
+                row(
+                    f"50 solutions from {first:,} on, the answer",
+                    got(f"{url}api/results/{job}/solutions?from={first}&limit=50")[0],
+                )
             print(f"| memory of the coordinator | {resident(coordinator):.0f} MB |")
         finally:
             for process in (worker, coordinator):

@@ -117,7 +117,7 @@ fn spatial(curves: &Value) -> Option<Vec<Value>> {
             segments.extend((first + 1..vertices.len()).map(|k| [k - 1, k]));
         }
         found.push(
-            json!({"id": curve["id"], "vertices": vertices, "triangles": [], "segments": segments}),
+            json!({"id": curve["id"], "compact": !is_unbounded(curve), "vertices": vertices, "triangles": [], "segments": segments}),
         );
     }
     Some(found)
@@ -144,19 +144,51 @@ fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
 
+/// Left, right, low and high.
+type Reach = [f64; 4];
+
+/// What holds both.
+fn around([a, b, c, d]: Reach, [e, f, g, h]: Reach) -> Reach {
+    [a.min(e), b.max(f), c.min(g), d.max(h)]
+}
+
+/// The part of a curve that the drawing shows: all of a compact one; of one that goes to infinity, where its critical and
+/// singular points are, with as much again on each side.
+fn shown(curve: &Value, axes: &[AxisOf]) -> Option<Reach> {
+    let reach = |points: &mut dyn Iterator<Item = &Value>| {
+        let places = points.filter_map(|p| coordinates(p, axes));
+        places.map(|(x, y)| [x, x, y, y]).reduce(around)
+    };
+    let vertices = list(&curve["vertices"]);
+    let samples = list(&curve["edges"]).iter();
+    let samples = samples.flat_map(|e| list(&e["samples"]));
+    let whole = reach(&mut samples.chain(vertices.iter().map(|v| &v["point"])))?;
+    let special = vertices.iter().filter(|v| v["kind"] != "regular");
+    let special = reach(&mut special.map(|v| &v["point"]));
+    let Some([left, right, low, high]) = special.filter(|_| is_unbounded(curve)) else {
+        return Some(whole);
+    };
+    let more = (right - left)
+        .max(high - low)
+        .max(1e-3 * (right.abs() + high.abs()) + 1e-9);
+    Some([
+        whole[0].max(left - more),
+        whole[1].min(right + more),
+        whole[2].max(low - more),
+        whole[3].min(high + more),
+    ])
+}
+
+/// Whether an arc has an end at infinity.
+fn is_unbounded(curve: &Value) -> bool {
+    let ends = list(&curve["edges"]).iter().flat_map(|e| list(&e["ends"]));
+    ends.into_iter().any(Value::is_null)
+}
+
 /// The drawing.
 pub fn drawing(curves: &Value, axes: &[AxisOf]) -> String {
-    let mut reach: Option<[f64; 4]> = None;
-    let points = list(curves).iter().flat_map(|curve| {
-        let samples = list(&curve["edges"])
-            .iter()
-            .flat_map(|e| list(&e["samples"]));
-        samples.chain(list(&curve["vertices"]).iter().map(|v| &v["point"]))
-    });
-    for (x, y) in points.filter_map(|p| coordinates(p, axes)) {
-        let [a, b, c, d] = reach.unwrap_or([x, x, y, y]);
-        reach = Some([a.min(x), b.max(x), c.min(y), d.max(y)]);
-    }
+    let reaches = list(curves).iter().filter_map(|curve| shown(curve, axes));
+    let reach = reaches.reduce(around);
     let [left, right, low, high] = reach.unwrap_or([-1.0, 1.0, -1.0, 1.0]);
     // One scale for both axes: circles stay circles.
     let size = (right - left).max(high - low).max(1e-300);
