@@ -440,7 +440,7 @@ async fn a_token_opens_the_page_by_a_cookie() {
 
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("tokens");
-    let content = "client client-0123456789\nworker worker-0123456789\n";
+    let content = "client client-0123456789\nworker worker-0123456789\nviewer viewer-0123456789\n";
     std::fs::write(&file, content).unwrap();
     let config = Config {
         page: Some("localhost:0".to_owned()),
@@ -515,6 +515,26 @@ async fn a_token_opens_the_page_by_a_cookie() {
         (status, body.as_str()),
         (200, r#"{"from":0,"jobs":[],"more":false}"#)
     );
+    // Who may only look sees the jobs, and changes nothing.
+    let (status, set, _) = ask("POST", "/api/login", None, "viewer-0123456789").await;
+    let set = set.expect("a cookie");
+    let viewer = Some(set.split(';').next().unwrap());
+    assert_eq!(status, 200);
+    let (status, _, info) = ask("GET", "/api/info", viewer, "").await;
+    assert!(
+        status == 200 && info.contains(r#""reads_only":true"#),
+        "{info}"
+    );
+    assert_eq!(ask("GET", "/api/jobs", viewer, "").await.0, 200);
+    let system = "variable_group x; function f; f = x - 1; END;";
+    for (method, path) in [
+        ("POST", "/api/jobs?name=a"),
+        ("DELETE", "/api/jobs/0123456789abcdef"),
+        ("POST", "/api/mechanism"),
+    ] {
+        let (status, _, body) = ask(method, path, viewer, system).await;
+        assert_eq!(status, 403, "{method} {path}: {body}");
+    }
     let forged = format!("{cookie}00");
     assert_eq!(ask("GET", "/api/jobs", Some(&forged), "").await.0, 401);
     let (_, set, _) = ask("POST", "/api/logout", Some(cookie), "").await;

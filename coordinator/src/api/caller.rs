@@ -19,6 +19,8 @@ pub struct Caller {
     pub limits: Limits,
     /// Address that it calls from, or the way by which it came.
     pub peer: String,
+    /// Whether it may look only.
+    pub reads_only: bool,
 }
 
 impl Caller {
@@ -30,6 +32,7 @@ impl Caller {
             tenant: None,
             limits: Limits::default(),
             peer: peer.into(),
+            reads_only: false,
         }
     }
 

@@ -573,8 +573,9 @@ impl ClientApi for ClientService {
 
     async fn get_server_info(
         &self,
-        _: Request<v1::GetServerInfoRequest>,
+        request: Request<v1::GetServerInfoRequest>,
     ) -> Result<Response<v1::ServerInfo>, Status> {
+        let caller = Caller::of(&request);
         let limits = limits::ALL.iter().map(|limit| v1::NamedCount {
             name: limit.name.to_owned(),
             count: limit.value,
@@ -584,6 +585,7 @@ impl ClientApi for ClientService {
             protocol_version: PROTOCOL_VERSION,
             numerics_revision: NUMERICS_REVISION,
             limits: limits.collect(),
+            reads_only: caller.reads_only,
         }))
     }
 }

@@ -83,6 +83,19 @@ pub struct Tokens {
     file: PathBuf,
 }
 
+/// Calls of clients that change nothing.
+const READ: [&str; 9] = [
+    "Watch",
+    "GetSummary",
+    "GetDecomposition",
+    "StreamSolutions",
+    "StreamPaths",
+    "Explain",
+    "ListJobs",
+    "ListWorkers",
+    "GetServerInfo",
+];
+
 /// A token, without the token.
 struct HashedToken {
     /// What it opens; `None`: everything.
@@ -105,6 +118,7 @@ impl HashedToken {
             tenant: self.tenant.clone(),
             limits: self.limits,
             peer,
+            reads_only: self.role == Some(Role::Viewer),
         }
     }
 }
@@ -144,7 +158,7 @@ impl Tokens {
         // All of them are compared, so that the time says nothing about which one fits.
         for held in self.held().iter() {
             let fits = match (held.role, wanted) {
-                (Some(role), Some(wanted)) => role == wanted,
+                (Some(role), Some(wanted)) => role.covers(wanted),
                 _ => true,
             };
             if fits & (held.hash == shown) {
@@ -156,10 +170,13 @@ impl Tokens {
 
     /// Who calls from there, or why the call is refused.
     fn caller(&self, path: &str, headers: &http::HeaderMap, peer: &str) -> Result<Caller, Status> {
-        let wanted = match path.split('/').nth(1).unwrap_or_default() {
+        let mut words = path.split('/').skip(1);
+        let (service, method) = (words.next(), words.next().unwrap_or_default());
+        let wanted = match service.unwrap_or_default() {
             // Probes have no tokens, and learn only that it is alive.
             "grpc.health.v1.Health" => return Ok(Caller::untold("nobody", peer)),
             "cognate.v1.WorkerApi" => Some(Role::Worker),
+            "cognate.v1.ClientApi" if READ.contains(&method) => Some(Role::Viewer),
             "cognate.v1.ClientApi" => Some(Role::Client),
             _ => None,
         };
@@ -297,6 +314,7 @@ mod tests {
         let held = vec![
             hash(Some(Role::Client), "client-0123456789"),
             hash(Some(Role::Worker), "worker-0123456789"),
+            hash(Some(Role::Viewer), "viewer-0123456789"),
             hash(None, "both-0123456789abc"),
         ];
         Tokens {
@@ -357,6 +375,23 @@ mod tests {
             Some("Bearer client-0123456789"),
             Some(Code::PermissionDenied),
         );
+        // Whoever may look changes nothing, and works for nobody.
+        let viewer = Some("Bearer viewer-0123456789");
+        for method in READ {
+            let path = format!("/cognate.v1.ClientApi/{method}");
+            check(&path, viewer, None);
+            check(&path, Some("Bearer client-0123456789"), None);
+            check(
+                &path,
+                Some("Bearer worker-0123456789"),
+                Some(Code::PermissionDenied),
+            );
+        }
+        for method in ["Submit", "Cancel", "Delete", "Upload", "AnyOther"] {
+            let path = format!("/cognate.v1.ClientApi/{method}");
+            check(&path, viewer, Some(Code::PermissionDenied));
+        }
+        check(worker, viewer, Some(Code::PermissionDenied));
         check("/grpc.health.v1.Health/Check", None, None);
         let reflection = "/grpc.reflection.v1.ServerReflection/ServerReflectionInfo";
         check(reflection, None, Some(Code::Unauthenticated));

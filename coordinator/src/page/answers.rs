@@ -214,7 +214,8 @@ impl Page {
             "protocol_version": info.protocol_version,
             "numerics_revision": info.numerics_revision,
             "asks_for_tokens": self.access.asks_for_tokens(),
-            "mechanisms": self.mechanisms.is_some(),
+            "reads_only": info.reads_only,
+            "mechanisms": self.mechanisms.is_some() && !info.reads_only,
             "starts": starts.map(|start| start.name()).collect::<Vec<_>>(),
             "most_bytes": MESSAGE_BYTES.value,
         })))
@@ -318,8 +319,12 @@ impl Page {
         body: Body,
         asked: impl FnOnce(&dyn Mechanisms, Sent) -> Result<Value, String> + Send + 'static,
     ) -> Result<Response<Body>, Fault> {
-        // Who may not call the service may not have it compute.
-        calls.get_server_info(v1::GetServerInfoRequest {}).await?;
+        let caller = calls.get_server_info(v1::GetServerInfoRequest {}).await?;
+        if caller.into_inner().reads_only {
+            return Err(
+                Status::permission_denied("who may only look may not have it compute").into(),
+            );
+        }
         let Some(mechanisms) = self.mechanisms.clone() else {
             return Err(Fault::not_found());
         };

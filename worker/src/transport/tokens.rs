@@ -1,6 +1,6 @@
 //! Tokens: what the lines of a token file say.
 //!
-//! Coordinator, workers and clients read the same file: `ROLE TOKEN [name=NAME] [tenant=NAME] [LIMIT=N ...]`.
+//! Coordinator, workers, clients and viewers read the same file: `ROLE TOKEN [name=NAME] [tenant=NAME] [LIMIT=N ...]`.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -10,6 +10,8 @@ use std::path::Path;
 pub enum Role {
     /// Submit jobs and read results.
     Client,
+    /// Look at jobs and read results, and change nothing.
+    Viewer,
     /// Track paths.
     Worker,
 }
@@ -19,8 +21,14 @@ impl Role {
     pub fn name(self) -> &'static str {
         match self {
             Self::Client => "client",
+            Self::Viewer => "viewer",
             Self::Worker => "worker",
         }
+    }
+
+    /// Whether it may do what another one may: a client may look, too.
+    pub fn covers(self, wanted: Self) -> bool {
+        self == wanted || (self, wanted) == (Self::Client, Self::Viewer)
     }
 }
 
@@ -29,8 +37,8 @@ pub const SHORTEST_TOKEN: usize = 16;
 /// Most characters of a name in a token file.
 const LONGEST_NAME: usize = 64;
 /// What a line may be, for whoever wrote another.
-const EXPECTED: &str = "expected `client TOKEN`, `worker TOKEN` or a token, then name=, tenant=, jobs=, \
-                        paths=, bytes=, calls=";
+const EXPECTED: &str = "expected `client TOKEN`, `viewer TOKEN`, `worker TOKEN` or a token, then name=, \
+                        tenant=, jobs=, paths=, bytes=, calls=";
 
 /// A file that holds no token, or not what it should.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -68,7 +76,7 @@ pub struct Limits {
 /// A line of a token file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TokenLine {
-    /// What the token opens; `None`: both.
+    /// What the token opens; `None`: everything.
     pub role: Option<Role>,
     /// The token.
     pub token: String,
@@ -82,8 +90,8 @@ pub struct TokenLine {
 
 /// The tokens of a file; the first line that is malformed is refused.
 ///
-/// A line is `client TOKEN`, `worker TOKEN`, or a token alone, which is good for both. After it may follow
-/// `name=NAME`, and of clients `tenant=NAME` and limits (`jobs=N`, `paths=N`, `bytes=N`, `calls=N`). What
+/// A line is `client TOKEN`, `viewer TOKEN`, `worker TOKEN`, or a token alone, which is good for all. After it may follow
+/// `name=NAME`, and of clients and viewers `tenant=NAME` and limits (`jobs=N`, `paths=N`, `bytes=N`, `calls=N`). What
 /// follows `#` is a comment.
 pub fn read_tokens(file: &Path) -> Result<Vec<TokenLine>, CredentialError> {
     let text = std::fs::read_to_string(file).map_err(|error| CredentialError::of(file, error))?;
@@ -112,6 +120,7 @@ fn token_line(words: &[&str]) -> Result<TokenLine, String> {
     let (role, token) = match *head {
         [token] => (None, token),
         ["client", token] => (Some(Role::Client), token),
+        ["viewer", token] => (Some(Role::Viewer), token),
         ["worker", token] => (Some(Role::Worker), token),
         _ => return Err(EXPECTED.to_owned()),
     };
