@@ -5,7 +5,7 @@
 
 use cognate_algorithms::decomposition::{self, DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::questions::{QuestionSolve, run_locally};
-use cognate_solutions::witness::question::{GivenPoint, SecondSet};
+use cognate_solutions::witness::question::{CurveWish, GivenPoint, SecondSet};
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::{Answer, Decomposition, Question, WitnessSet};
 use cognate_systems::system::System;
@@ -174,10 +174,10 @@ fn multidegree_of_conic_p1p2() {
 
 /// The real curves of the components of dimension 1, with two samples on either side of an arc's middle.
 fn real_curves_of(name: &str, system: &System, seed: u64) -> Vec<RealCurve> {
-    let question = Question::RealCurve {
+    let question = Question::RealCurve(CurveWish {
         samples: 2,
-        projection: None,
-    };
+        ..CurveWish::default()
+    });
     match ask(name, system, seed, &question) {
         Answer::RealCurve(curves) => curves,
         answer => panic!("{answer:?}"),

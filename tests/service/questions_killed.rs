@@ -5,7 +5,7 @@ use crate::worker_lost::{nervous, slow_worker};
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
 use cognate_protocol::submission::{Asked, Options};
 use cognate_protocol::to_proto;
-use cognate_solutions::witness::question::SecondSet;
+use cognate_solutions::witness::question::{CurveWish, SecondSet};
 use cognate_solutions::witness::{Question, WitnessSet};
 use cognate_systems::formats;
 use cognate_tests::client::{Submission, accepted, has_ended};
@@ -182,10 +182,10 @@ fn kills_leave_no_trace_in_real_points() {
 fn kills_leave_no_trace_in_a_real_curve() {
     let text = input("function f, g; f = y^2 - x*(x - 1)*(x + 1); g = z - x;");
     let curve = components(&text);
-    let question = Question::RealCurve {
+    let question = Question::RealCurve(CurveWish {
         samples: 1,
-        projection: None,
-    };
+        ..CurveWish::default()
+    });
     let submission = asked(text, curve, question);
     let summary = check(&submission, [8, 30], &["curve.json", "samples.csv"]);
     let counts = &summary["components"][0];

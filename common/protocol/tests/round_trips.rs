@@ -9,7 +9,7 @@ use cognate_continuation::start_systems::polyhedral::branches::{BRANCHES, CellBr
 use cognate_continuation::work::{Stage, Work};
 use cognate_protocol::submission::{Asked, Decompose, Options, Source, Submission};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
-use cognate_solutions::witness::question::SecondSet;
+use cognate_solutions::witness::question::{CurveWish, SecondSet};
 use cognate_solutions::witness::witness_set::Multiplicity;
 use cognate_solutions::witness::{
     ComponentId, Evidence, Irreducible, KnownComponents, Method, Question, WitnessSet,
@@ -199,10 +199,11 @@ fn questions_about_loci_come_back() {
     for question in [
         Question::SingularLocus,
         Question::RealPoints,
-        Question::RealCurve {
+        Question::RealCurve(CurveWish {
             samples: 3,
             projection: Some(1),
-        },
+            tolerance: Some(1e-3),
+        }),
         Question::RealSurface { samples: 4 },
         Question::Intersect(second(Vec::new())),
         Question::Intersect(second(vec![component(1, 4), component(0, 1)])),

@@ -5,6 +5,7 @@ use super::*;
 use crate::ledger::rows::JobRow;
 use cognate_protocol::submission::{Asked, Decompose};
 use cognate_solutions::witness::Question;
+use cognate_solutions::witness::question::CurveWish;
 use cognate_summary::AnySummary;
 
 /// A double line, a parabola, and a circle.
@@ -53,10 +54,10 @@ async fn question() -> NewProblem {
     asked.options.decompose = None;
     asked.options.question = Some(Asked {
         components,
-        question: Question::RealCurve {
+        question: Question::RealCurve(CurveWish {
             samples: 1,
-            projection: None,
-        },
+            ..CurveWish::default()
+        }),
     });
     asked
 }

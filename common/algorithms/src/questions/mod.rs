@@ -256,13 +256,17 @@ impl QuestionSolve {
             Question::Mobility { points, depth } => {
                 Asking::Mobility(Mobility::new(system, points, *depth)?)
             }
-            Question::RealCurve {
-                samples,
-                projection,
-            } => {
-                within("samples", *samples, MOST_ARC_SAMPLES)?;
+            Question::RealCurve(wish) => {
+                within("samples", wish.samples, MOST_ARC_SAMPLES)?;
+                if let Some(found) = wish.tolerance.filter(|t| !(t.is_finite() && *t > 0.0)) {
+                    return Err(QuestionError::Wish {
+                        field: "tolerance",
+                        found: found.to_string(),
+                        expected: "a positive number".to_owned(),
+                    });
+                }
                 let count = system.variables.len();
-                let place = projection.map(|variable| variable as usize);
+                let place = wish.projection.map(|variable| variable as usize);
                 if let Some(found) = place.filter(|&place| place >= count) {
                     return Err(QuestionError::Wish {
                         field: "projection",
@@ -270,7 +274,7 @@ impl QuestionSolve {
                         expected: format!("the place of one of {count} variables"),
                     });
                 }
-                Asking::RealCurve(Box::new(RealCurves::onto(*samples, place)))
+                Asking::RealCurve(Box::new(RealCurves::wished(*wish)))
             }
             Question::Intersect(with) => {
                 let all = system.equations.len();

@@ -6,6 +6,7 @@
 //! Wampler: Finding all real points of a complex curve, Contemp. Math. 448, 2007).
 
 mod assembled;
+mod finer;
 mod traced;
 
 use super::levels::{Change, levels, range_of};
@@ -20,9 +21,11 @@ use cognate_continuation::bend::{SlicedEquations, doubles_of, exactly};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::question::CurveWish;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_systems::system::System;
 use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
+use finer::finer_samples;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use traced::{Critical, End, FibrePoint, Task, Tracing, distance};
@@ -80,10 +83,9 @@ struct Given {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RealCurves {
     given: Option<Given>,
-    /// The variable along which all are followed, by place.
-    projection: Option<usize>,
-    /// Samples of each arc, besides its ends and its middle.
-    samples: u32,
+    /// Samples of each arc, besides its ends and its middle; the variable along which all are followed; how near the
+    /// samples are to the arcs.
+    wish: CurveWish,
     found: Vec<RealCurve>,
     phase: Phase,
     number: u32,
@@ -92,11 +94,10 @@ pub(super) struct RealCurves {
 
 impl RealCurves {
     /// Along a variable, where that is wanted, or along random forms.
-    pub fn onto(samples: u32, projection: Option<usize>) -> Self {
+    pub fn wished(wish: CurveWish) -> Self {
         Self {
             given: None,
-            projection,
-            samples,
+            wish,
             found: Vec::new(),
             phase: Phase::Begin,
             number: 0,
@@ -108,7 +109,10 @@ impl RealCurves {
     pub fn along(samples: u32, form: Vec<[i32; 2]>, levels: Vec<f64>, size: f64) -> Self {
         Self {
             given: Some(Given { form, levels, size }),
-            ..Self::onto(samples, None)
+            ..Self::wished(CurveWish {
+                samples,
+                ..CurveWish::default()
+            })
         }
     }
 
@@ -146,7 +150,7 @@ impl RealCurves {
         if begun && now.doubts.is_empty() {
             curve.check();
         }
-        let random = self.given.is_none() && self.projection.is_none();
+        let random = self.given.is_none() && self.wish.projection.is_none();
         let others = random && self.number + 1 < MOST_FORMS;
         if begun && !curve.doubts.is_empty() && others {
             self.number += 1;
@@ -177,9 +181,10 @@ impl RealCurves {
         let Some(involution) = &with.problem.involution else {
             return self.doubt("complex conjugation does not map solutions to solutions");
         };
-        self.now.form = match (&self.given, self.projection) {
+        self.now.form = match (&self.given, self.wish.projection) {
             (Some(given), _) => given.form.clone(),
             (None, Some(variable)) => {
+                let variable = variable as usize;
                 let of = [variable, involution.partner[variable]];
                 let coefficient = |v: usize| [i32::from(of.contains(&v)), 0];
                 (0..n).map(coefficient).collect()
@@ -416,7 +421,7 @@ impl RealCurves {
                 Some(far) => self.now.far[far],
             };
             let is = |wanted: Verdict| ends.iter().any(|(_, d, _)| d.verdict == wanted);
-            if self.projection.is_some() && is(Verdict::AtInfinity) {
+            if self.wish.projection.is_some() && is(Verdict::AtInfinity) {
                 return self.doubt(format!(
                     "points of the fibre at {middle:.6} are at infinity, since the projection is not general"
                 ));
@@ -477,6 +482,7 @@ impl RealCurves {
 
     /// Both ends of every slab, and samples in between.
     fn plan_tasks(&mut self) {
+        let samples = self.wish.samples;
         let now = &mut self.now;
         let last = now.levels.len();
         // Where there is no level.
@@ -488,7 +494,7 @@ impl RealCurves {
         for slab in 0..now.middles.len() {
             let middle = now.middles[slab];
             let sides = [slab.checked_sub(1), (slab < last).then_some(slab)];
-            let values = values_beside(&now.levels, middle, (slab, reach), (self.samples, near));
+            let values = values_beside(&now.levels, middle, (slab, reach), (samples, near));
             for (values, level) in values.into_iter().zip(sides) {
                 now.tasks.extend(level.map(|level| Task {
                     slab,
@@ -501,7 +507,7 @@ impl RealCurves {
                         slab,
                         to,
                         level: None,
-                        needed: place < self.samples as usize,
+                        needed: place < samples as usize,
                     };
                     now.tasks.extend(values.into_iter().enumerate().map(sample));
                 }
@@ -542,6 +548,17 @@ impl RealCurves {
             })
         });
         self.now.ends.push(ends.collect());
+        if place + 1 == self.now.tasks.len()
+            && let Some(tolerance) = self.wish.tolerance
+        {
+            let finer = finer_samples(&self.now, tolerance, &|p| with.problem.to_variables(p));
+            if finer.len() + self.now.tasks.len() > MOST_STAGES {
+                return self.doubt(format!(
+                    "the tolerance {tolerance} takes more than {MOST_STAGES} stages between fibres"
+                ));
+            }
+            self.now.tasks.extend(finer);
+        }
         self.next_task(with, place + 1)
     }
 }

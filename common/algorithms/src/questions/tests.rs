@@ -3,7 +3,7 @@
 use super::*;
 use crate::decomposition::{DecompositionSolve, run_locally as decompose};
 use cognate_solutions::witness::answer::{Membership, Samples};
-use cognate_solutions::witness::question::{GivenPoint, SampleWish};
+use cognate_solutions::witness::question::{CurveWish, GivenPoint, SampleWish};
 use cognate_solutions::witness::{ComponentId, Decomposition};
 use cognate_systems::formats;
 use num_complex::Complex64;
@@ -339,10 +339,10 @@ fn what_is_not_whole_is_found() {
 fn real_counts(text: &str, seed: u64) -> [u64; 5] {
     let system = system(text);
     let found = components(&system, seed);
-    let question = Question::RealCurve {
+    let question = Question::RealCurve(CurveWish {
         samples: 2,
-        projection: None,
-    };
+        ..CurveWish::default()
+    });
     let (answer, doubts) = ask(&system, &found.components, &question);
     let Answer::RealCurve(curves) = answer else {
         panic!("{answer:?}");
@@ -433,10 +433,11 @@ fn projections_that_are_not_general_are_right_or_in_doubt() {
         for seed in 1..=3 {
             let system = system(&format!("variable_group x, y; function f; f = {equation};"));
             let found = components(&system, seed);
-            let question = Question::RealCurve {
+            let question = Question::RealCurve(CurveWish {
                 samples: 2,
                 projection: Some(0),
-            };
+                ..CurveWish::default()
+            });
             let (answer, doubts) = ask(&system, &found.components, &question);
             let Answer::RealCurve(curves) = answer else {
                 panic!("{answer:?}");
@@ -480,6 +481,58 @@ fn witness_points_are_proved_and_different() {
         assert_eq!(
             points,
             found.components.iter().map(|set| set.degree).sum::<u64>()
+        );
+    }
+}
+
+/// Arcs whose points are as dense as a tolerance asks, also where they turn, and no denser than they must be.
+#[test]
+fn chords_are_as_near_to_their_arcs_as_is_asked() {
+    // The distance of a point near the curve from it, from the value and the gradient of its equation.
+    type Gap = fn(f64, f64) -> f64;
+    let circle: Gap = |x, y| (x.hypot(y) - 1.0).abs();
+    let cusp: Gap = |x, y| {
+        let gradient = (2.0 * y).hypot(3.0 * x * x).max(1e-3);
+        (y * y - x * x * x).abs() / gradient
+    };
+    let curves = [
+        ("x^2 + y^2 - 1", circle, 1e-2),
+        ("x^2 + y^2 - 1", circle, 1e-4),
+        ("y^2 - x^3", cusp, 1e-3),
+    ];
+    for (equation, gap, tolerance) in curves {
+        let system = system(&format!("variable_group x, y; function f; f = {equation};"));
+        let found = components(&system, 1);
+        let question = Question::RealCurve(CurveWish {
+            samples: 1,
+            tolerance: Some(tolerance),
+            ..CurveWish::default()
+        });
+        let (answer, doubts) = ask(&system, &found.components, &question);
+        let Answer::RealCurve(curves) = answer else {
+            panic!("{answer:?}");
+        };
+        assert!(doubts.is_empty(), "{equation}: {doubts:?}");
+        let (mut worst, mut count) = (0.0f64, 0);
+        for edge in &curves[0].edges {
+            let end = |k: usize| edge.ends[k].map(|v| &curves[0].vertices[v].point);
+            let points: Vec<_> = end(0)
+                .into_iter()
+                .chain(&edge.samples)
+                .chain(end(1))
+                .collect();
+            for pair in points.windows(2) {
+                let [x, y] = [0, 1].map(|v| 0.5 * (pair[0][v].re + pair[1][v].re));
+                worst = worst.max(gap(x, y));
+                count += 1;
+            }
+        }
+        assert!(worst < 2.0 * tolerance, "{equation}: {worst:e}");
+        // A circle takes pi / sqrt(2 * tolerance) chords at least.
+        let most = 40.0 + 12.0 / tolerance.sqrt();
+        assert!(
+            f64::from(count) < most,
+            "{equation}: {count} pieces at {tolerance}"
         );
     }
 }

@@ -5,7 +5,7 @@ use crate::error::{ProtocolError, within_limit};
 use crate::limits;
 use crate::submission::Asked;
 use crate::v1;
-use cognate_solutions::witness::question::{GivenPoint, SampleWish, SecondSet};
+use cognate_solutions::witness::question::{CurveWish, GivenPoint, SampleWish, SecondSet};
 use cognate_solutions::witness::witness_set::Multiplicity;
 use cognate_solutions::witness::{ComponentId, Evidence, Irreducible, Question, WitnessSet};
 use num_complex::Complex64;
@@ -26,10 +26,11 @@ fn asked(m: v1::Question) -> Result<Asked, ProtocolError> {
         },
         v1::question::Kind::Sample(sample) => Question::Sample(wish(sample)?),
         v1::question::Kind::Project(project) => Question::Project { onto: project.onto },
-        v1::question::Kind::RealCurve(curve) => Question::RealCurve {
+        v1::question::Kind::RealCurve(curve) => Question::RealCurve(CurveWish {
             samples: curve.samples,
             projection: curve.projection,
-        },
+            tolerance: curve.tolerance,
+        }),
         v1::question::Kind::Intersect(second) => Question::Intersect(SecondSet {
             own: second.own,
             from: second.from,

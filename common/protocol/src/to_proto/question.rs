@@ -21,12 +21,10 @@ pub fn question(asked: &Asked) -> v1::Question {
         Question::Project { onto } => {
             Some(Kind::Project(v1::ProjectQuestion { onto: onto.clone() }))
         }
-        Question::RealCurve {
-            samples,
-            projection,
-        } => Some(Kind::RealCurve(v1::RealCurveQuestion {
-            samples: *samples,
-            projection: *projection,
+        Question::RealCurve(wish) => Some(Kind::RealCurve(v1::RealCurveQuestion {
+            samples: wish.samples,
+            projection: wish.projection,
+            tolerance: wish.tolerance,
         })),
         Question::Intersect(second) => Some(Kind::Intersect(v1::IntersectQuestion {
             own: second.own,

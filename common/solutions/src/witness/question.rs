@@ -26,6 +26,18 @@ pub struct SampleWish {
     pub within: Vec<[f64; 2]>,
 }
 
+/// How real curves are followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CurveWish {
+    /// Points of each arc, on either side of its middle.
+    pub samples: u32,
+    /// The variable along which it is followed, of a pair of conjugates its real part; `None`: a random form.
+    pub projection: Option<u32>,
+    /// How far the arc may be from the lines between its points, in the units of the variables; more points are taken
+    /// until it is not farther. `None`: only the samples.
+    pub tolerance: Option<f64>,
+}
+
 /// With what components are intersected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SecondSet {
@@ -66,12 +78,7 @@ pub enum Question {
         depth: u32,
     },
     /// The real part of each component of dimension 1.
-    RealCurve {
-        /// Points of each arc, on either side of its middle.
-        samples: u32,
-        /// The variable along which it is followed, of a pair of conjugates its real part; `None`: a random form.
-        projection: Option<u32>,
-    },
+    RealCurve(CurveWish),
     /// What each component has in common with other sets.
     Intersect(SecondSet),
     /// Where the equations have less than their rank on each component.

@@ -13,7 +13,7 @@ use crate::sets::arguments::{
 use crate::sets::{KnownSet, points};
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Asked, Options, SettingsChoice, Source, Submission};
-use cognate_solutions::witness::question::SampleWish;
+use cognate_solutions::witness::question::{CurveWish, SampleWish};
 use cognate_solutions::witness::{ComponentId, Question};
 use cognate_systems::system::System;
 use cognate_systems::transform::join;
@@ -127,10 +127,11 @@ pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
         let variables = &set.system.variables;
         let projection = a.projection.as_ref();
         let projection = projection.map(|name| place_of(name, variables, "--projection"));
-        Ok(Question::RealCurve {
+        Ok(Question::RealCurve(CurveWish {
             samples,
             projection: projection.transpose()?,
-        })
+            tolerance: a.tolerance,
+        }))
     })
     .await?;
     if let Some(folder) = &a.set.output {

@@ -150,6 +150,9 @@ pub struct RealCurve {
     /// Points of each arc on either side of its middle
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub samples: u32,
+    /// Take more points until arcs are not farther than this from the lines between them, in the units of the variables
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub tolerance: Option<f64>,
     /// The two variables that curve.svg shows [default: the first two]; of a pair of conjugates real and imaginary part
     #[arg(long, value_name = "X,Y", value_delimiter = ',')]
     pub axes: Vec<String>,
@@ -226,6 +229,14 @@ pub struct Exceptional {
     /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
+    match value.is_finite() && value > 0.0 {
+        true => Ok(value),
+        false => Err("expected a positive number".into()),
+    }
 }
 
 fn accuracy(text: &str) -> Result<f64, String> {
