@@ -215,6 +215,8 @@ fn the_client_knows_the_server_only_where_it_starts_one() {
         "coordinator/client/src/commands/backup.rs",
         "coordinator/client/src/commands/coordinator.rs",
         "coordinator/client/src/commands/fsck.rs",
+        // What it brings to the page of one.
+        "coordinator/client/src/commands/mechanism/page.rs",
         "coordinator/client/src/commands/path.rs",
         "coordinator/client/src/config_file.rs",
         "coordinator/client/src/embedded.rs",

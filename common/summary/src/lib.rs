@@ -8,6 +8,7 @@ pub mod about;
 pub mod decomposition;
 mod explained;
 pub mod family;
+pub mod pictures;
 pub mod question;
 pub mod solve;
 

@@ -29,6 +29,6 @@ pub trait Mechanisms: Debug + Send + Sync {
     /// What can be given, with examples as CSV, the usual one first:
     /// `{"name", "angles": "deg"|"rad", "given": [["poses"|"inputs", csv]...], "no_inputs": why}`.
     fn describe(&self, name: &str, file: &str) -> Result<Value, String>;
-    /// Positions or branches, as [`super::pictures::MECHANISM`] draws them.
+    /// Positions or branches, as [`cognate_summary::pictures::MECHANISM`] draws them.
     fn positions(&self, question: &MechanismQuestion) -> Result<Value, String>;
 }

@@ -8,7 +8,6 @@ mod answers;
 mod caller;
 mod events;
 pub mod mechanisms;
-pub mod pictures;
 mod points;
 mod request;
 

@@ -3,7 +3,7 @@
 use super::files::{create, write_file};
 use super::text::real;
 use crate::error::ClientError;
-use cognate_coordinator::page::pictures::SCENE;
+use cognate_summary::pictures::SCENE;
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::Path;

@@ -7,11 +7,11 @@ use super::view::View;
 use crate::error::ClientError;
 use crate::mechanism::target_answer::{Counts, Position, TargetAnswer};
 use crate::output::files::write_file;
-use cognate_coordinator::page::pictures::{MECHANISM, SCENE};
 use cognate_kinematics::compile::Configuration;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::shape::Shape;
+use cognate_summary::pictures::{MECHANISM, SCENE};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 

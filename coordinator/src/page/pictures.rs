@@ -1,6 +1,0 @@
-//! Pictures: the scripts that draw surfaces, curves and mechanisms, for this page and for those that are written to files.
-
-/// A picture in space that is turned by hand, and the parts of surfaces and curves in it.
-pub const SCENE: &str = include_str!("scene.js");
-/// A mechanism in its positions and along its branches; draws by [`SCENE`].
-pub const MECHANISM: &str = include_str!("mechanism.js");
