@@ -4,6 +4,7 @@ use crate::api::admission::CallLimits;
 use crate::api::held_stream::StreamLimits;
 use crate::api::security::Security;
 use crate::chunks::leasing::Policy;
+use crate::results::place::ResultsPlace;
 use crate::transport::introduction::ConnectionLimits;
 use cognate_protocol::DEFAULT_ADDRESS;
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
@@ -29,8 +30,8 @@ pub struct Config {
     pub page: Option<String>,
     /// Database or file of the ledger.
     pub ledger: LedgerPlace,
-    /// The folder of the results and all other objects; `None`: in memory.
-    pub results: Option<PathBuf>,
+    /// Where the results and all other objects are; `None`: in memory.
+    pub results: Option<ResultsPlace>,
     /// Workers of the same user on this host may use shared memory while so many bytes are free in
     /// /dev/shm; `None`: never.
     pub shared_memory: Option<u64>,
@@ -48,7 +49,7 @@ impl Default for Config {
             audit_log: None,
             page: None,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),
-            results: Some("cognate-data/results".into()),
+            results: Some(PathBuf::from("cognate-data/results").into()),
             shared_memory: Some(LEAST_FREE),
             rules: Rules::default(),
         }

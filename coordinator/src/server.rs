@@ -21,6 +21,7 @@ use crate::ledger::{Ledger, LedgerError};
 use crate::measures::StorageMeasures;
 use crate::monitor::Monitor;
 use crate::page::PageListener;
+use crate::results::place::ResultsPlace;
 use crate::results::store::{Store, StoreError};
 use crate::transport::introduction::{Connections, raise_open_files};
 use crate::transport::shared_memory::SharedMemoryListener;
@@ -157,7 +158,7 @@ impl Server {
             }
         };
         let store = match &config.results {
-            Some(folder) => open_results(folder, &*ledger).await?,
+            Some(place) => open_results(place, &*ledger).await?,
             None => Store::in_memory(),
         };
         let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
@@ -352,15 +353,16 @@ fn read_tokens_again(tokens: Option<&Tokens>) {
     }
 }
 
-/// The results in a folder. Where the ledger knows of jobs and the folder of nothing, one of them is not
+/// The results in a folder or bucket. Where the ledger knows of jobs and that place of nothing, one of them is not
 /// what was meant.
-async fn open_results(folder: &Path, ledger: &dyn Ledger) -> Result<Store, ServerError> {
+async fn open_results(place: &ResultsPlace, ledger: &dyn Ledger) -> Result<Store, ServerError> {
     let is_new = ledger.jobs(1).await?.is_empty();
-    if is_new && Store::has_results(folder) {
-        tracing::warn!(folder = %folder.display(), "the ledger knows of no job, and there are results: \
+    let store = Store::open(place, is_new).await?;
+    if is_new && store.has_results().await? {
+        tracing::warn!(%place, "the ledger knows of no job, and there are results: \
             is it the right ledger, and whole?");
     }
-    Ok(Store::folder(folder, is_new)?)
+    Ok(store)
 }
 
 fn make_folder(path: &Path) -> Result<(), ServerError> {

@@ -733,8 +733,9 @@ pub struct Coordinator {
     /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
     #[arg(long, value_name = "URL")]
     pub ledger: Option<String>,
-    /// Where results are kept [default: cognate-data/results]
-    #[arg(long, value_name = "DIR")]
+    /// Where results are kept: a folder, or s3://BUCKET/PREFIX with keys in the environment [default:
+    /// cognate-data/results]
+    #[arg(long, value_name = "PLACE")]
     pub results: Option<String>,
     /// Settings as a file; options on the command line win
     #[arg(long, value_name = "FILE")]
@@ -923,9 +924,9 @@ pub struct DataArguments {
         default_value = "sqlite:cognate-data/ledger.db"
     )]
     pub ledger: String,
-    /// Where results are kept
-    #[arg(long, value_name = "DIR", default_value = "cognate-data/results")]
-    pub results: PathBuf,
+    /// Where results are kept: a folder, or s3://BUCKET/PREFIX
+    #[arg(long, value_name = "PLACE", default_value = "cognate-data/results")]
+    pub results: String,
 }
 
 /// `cognate fsck`.

@@ -65,12 +65,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
         config.ledger = ledger.parse().map_err(|e| wrong("--ledger", &e))?;
     }
     if let Some(results) = a.results.clone().or(file.results) {
-        if results.contains("://") && !results.starts_with("file://") {
-            return Err(ClientError::NotInThisVersion {
-                what: format!("--results {results} (only local folders)"),
-            });
-        }
-        config.results = Some(results.trim_start_matches("file://").into());
+        config.results = Some(results.parse().map_err(|e| wrong("--results", &e))?);
     }
     let failed = |error: CredentialError| ClientError::Input {
         origin: error.file,
