@@ -16,6 +16,7 @@ pub mod planted;
 pub mod processes;
 pub mod six_revolute;
 pub mod skip;
+pub mod storage;
 pub mod subjects;
 pub mod systems;
 pub mod tally;

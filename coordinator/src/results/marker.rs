@@ -89,7 +89,11 @@ impl Store {
 
     async fn mark(&self) -> Result<(), StoreError> {
         let create = PutOptions::from(PutMode::Create);
-        match self.objects.put_opts(&marker(), MARKED.into(), create).await {
+        match self
+            .objects
+            .put_opts(&marker(), MARKED.into(), create)
+            .await
+        {
             // Another coordinator began at the same time.
             Ok(_) | Err(Error::AlreadyExists { .. }) => Ok(()),
             Err(error) => Err(self.unusable(&error)),
@@ -175,7 +179,9 @@ impl Store {
         };
         let text = format!("{MARKED}{OWNER}{ledger}\n");
         let options = PutOptions::from(mode);
-        self.objects.put_opts(&marker(), text.into(), options).await?;
+        self.objects
+            .put_opts(&marker(), text.into(), options)
+            .await?;
         Ok(())
     }
 }

@@ -200,11 +200,7 @@ impl Store {
         Ok(written?)
     }
 
-    async fn upload(
-        &self,
-        address: &Address,
-        mut bytes: Bytes,
-    ) -> Result<(), object_store::Error> {
+    async fn upload(&self, address: &Address, mut bytes: Bytes) -> Result<(), object_store::Error> {
         let mut upload = self.objects.put_multipart(address).await?;
         while !bytes.is_empty() {
             let part = bytes.split_to(bytes.len().min(PART));
