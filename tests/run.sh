@@ -105,7 +105,7 @@ step "a PostgreSQL server for tests"
 postgres=${TMPDIR:-/tmp}/cognate-pg-$$
 COGNATE_SKIPS=$(mktemp)
 export COGNATE_SKIPS
-trap 'tests/support/postgres.sh stop "$postgres"; rm -f "$COGNATE_SKIPS"' EXIT
+trap 'tests/support/postgres.sh stop "$postgres"; tests/support/s3.sh stop "${storage:-/nowhere}"; rm -f "$COGNATE_SKIPS"' EXIT
 tests/support/postgres.sh start "$postgres" && started=0 || started=$?
 if [ "$started" -eq 77 ] && command -v apt-get >/dev/null; then
   install postgresql
@@ -116,6 +116,17 @@ case $started in
   77) skipped "the tests of the ledger on PostgreSQL, which is not installed" ;;
   *) exit 1 ;;
 esac
+
+step "a server of S3 for tests, into target/s3"
+storage=${TMPDIR:-/tmp}/cognate-s3-$$
+if tests/support/s3.sh install && tests/support/s3.sh start "$storage"; then
+  set -a
+  # shellcheck disable=SC1091
+  . "$storage/environment"
+  set +a
+else
+  skipped "the tests of results in a bucket: s3s-fs cannot be installed"
+fi
 
 step "building"
 # Programs and libraries are those of deploy/quickstart.sh: same profile, same features (tests/benches/build.md).
@@ -142,6 +153,10 @@ step "chaos: a minute and a half of random kills, on either ledger and with two 
 "$built/chaos" --seconds 30 --seed 1
 "$built/chaos" --seconds 30 --seed 2 --ledger postgres
 "$built/chaos" --seconds 30 --seed 3 --ledger postgres --coordinators 2
+
+step "chaos: a minute with workers that do evil and results that are lost, and half a minute with results in S3"
+"$built/chaos" --seconds 60 --seed 4 --katsura 12 --bits 53 --evil-workers yes --storage-faults yes
+"$built/chaos" --seconds 30 --seed 6 --ledger postgres --coordinators 2 --results s3
 
 step "partitions: ten workers join and leave in networks whose wires are cut"
 "$built/partitions" --seconds 20

@@ -80,6 +80,7 @@ case $verb in
     ;;
   kill) end KILL ;;
   stop)
+    [ -d "$folder" ] || exit 0
     end INT
     rm -rf "$folder"
     ;;

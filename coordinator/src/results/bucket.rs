@@ -191,18 +191,92 @@ impl HttpService for Requests {
     }
 }
 
-/// Why a request failed, without how long it took: the innermost cause.
+/// Why a request failed, without how long it took and what it was numbered: the innermost cause, or the service's own
+/// words.
 pub fn cause(error: &object_store::Error) -> String {
     let mut cause: &dyn Error = error;
     while let Some(inner) = cause.source() {
         cause = inner;
     }
-    cause.to_string()
+    said(&cause.to_string())
+}
+
+/// Code and message of an answer in XML; else the text itself.
+fn said(text: &str) -> String {
+    let between = |name: &str| {
+        let (_, rest) = text.split_once(&format!("<{name}>"))?;
+        Some(rest.split_once(&format!("</{name}>"))?.0)
+    };
+    match (between("Code"), between("Message")) {
+        (Some(code), Some(message)) => format!("{code}: {message}"),
+        (Some(code), None) => code.to_owned(),
+        (None, _) => text.to_owned(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A server that answers every request with two bytes, and who believes it: its own authority.
+    async fn secure_server() -> (std::net::SocketAddr, RootCertStore) {
+        use tokio::io::{AsyncReadExt, AsyncWriteExt};
+        let made = rcgen::generate_simple_self_signed(["localhost".to_owned()]).unwrap();
+        let certificate = made.cert.der().clone();
+        let key = rustls::pki_types::PrivateKeyDer::try_from(made.signing_key.serialize_der());
+        let provider = Arc::new(rustls::crypto::ring::default_provider());
+        let config = rustls::ServerConfig::builder_with_provider(provider)
+            .with_safe_default_protocol_versions()
+            .unwrap()
+            .with_no_client_auth()
+            .with_single_cert(vec![certificate.clone()], key.unwrap())
+            .unwrap();
+        let acceptor = tokio_rustls::TlsAcceptor::from(Arc::new(config));
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        tokio::spawn(async move {
+            while let Ok((connection, _)) = listener.accept().await {
+                let Ok(mut connection) = acceptor.accept(connection).await else {
+                    continue;
+                };
+                let mut request = [0; 4096];
+                let _ = connection.read(&mut request).await;
+                let answer = b"HTTP/1.1 200 OK\r\ncontent-length: 2\r\n\r\nok";
+                let _ = connection.write_all(answer).await;
+            }
+        });
+        let mut roots = RootCertStore::empty();
+        roots.add(certificate).unwrap();
+        (address, roots)
+    }
+
+    #[tokio::test]
+    async fn servers_are_believed_by_their_authority_and_only_encrypted() {
+        let (address, roots) = secure_server().await;
+        let ask = async |scheme: &str, roots: RootCertStore| {
+            let connections = Connections {
+                tls: Arc::new(tls(roots).unwrap()),
+            };
+            let client = connections.connect(&ClientOptions::new()).unwrap();
+            let url = format!("{scheme}://localhost:{}/", address.port());
+            let request = http::Request::get(url).body(HttpRequestBody::empty());
+            client.execute(request.unwrap()).await
+        };
+        let answer = ask("https", roots.clone()).await.unwrap();
+        let body = answer.into_body().bytes().await.unwrap();
+        assert_eq!(&body[..], b"ok");
+        let others = RootCertStore::from_iter(webpki_roots::TLS_SERVER_ROOTS.iter().cloned());
+        assert!(ask("https", others).await.is_err());
+        assert!(ask("http", roots).await.is_err());
+    }
+
+    #[test]
+    fn services_are_quoted_without_their_markup() {
+        let answer = "404 Not Found: <?xml version=\"1.0\"?><Error><Code>NoSuchBucket</Code>\
+                      <Message>There is none</Message><RequestId>7</RequestId></Error>";
+        assert_eq!(said(answer), "NoSuchBucket: There is none");
+        assert_eq!(said("Connection refused"), "Connection refused");
+    }
 
     #[test]
     fn unencrypted_endpoints_are_told_from_those_of_this_machine() {
