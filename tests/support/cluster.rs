@@ -24,6 +24,8 @@ pub struct CoordinatorOptions {
     pub data: Option<PathBuf>,
     /// More addresses to listen on, without asking who calls.
     pub listen: Vec<String>,
+    /// Where metrics are served: host and port.
+    pub metrics: Option<String>,
     /// Words before the command (see `namespaces`).
     pub within: Vec<String>,
     /// So many MiB must be free in /dev/shm for workers to use it.
@@ -266,6 +268,9 @@ fn start_coordinator(folder: &Path, name: &str, options: &CoordinatorOptions) ->
     ];
     for address in &options.listen {
         arguments.extend(["--listen".to_owned(), address.clone()]);
+    }
+    if let Some(address) = &options.metrics {
+        arguments.extend(["--metrics".to_owned(), address.clone()]);
     }
     if !options.listen.is_empty() {
         arguments.push("--insecure".to_owned());

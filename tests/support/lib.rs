@@ -1,6 +1,7 @@
 //! What the tests share.
 #![forbid(unsafe_code)]
 
+pub mod any_bytes;
 pub mod arguments;
 pub mod builders;
 pub mod client;

@@ -48,7 +48,7 @@ pub enum StoreError {
     Differs(String),
     /// The folder or bucket of all results is not there, or is another: nothing is missing from it.
     #[error(
-        "the place `{0}` of the results is not there (it has no `cognate-results`): is it mounted, and the one that is meant?"
+        "the place `{0}` of the results is not there (it has no `cognate-results`): is it mounted? Is it the right one?"
     )]
     Away(String),
     /// The bucket of all results cannot be used, or not now.
