@@ -24,6 +24,8 @@ pub struct Config {
     pub security: Security,
     /// Where metrics are read by HTTP: host and port; `None`: nowhere.
     pub metrics: Option<String>,
+    /// Collector of traces (OTLP by gRPC): `http://HOST:PORT`; `None`: there are none.
+    pub traces: Option<String>,
     /// File of who submitted, cancelled, deleted, and was refused; `None`: only the log says it.
     pub audit_log: Option<PathBuf>,
     /// Where the page for browsers is: host and port; `None`: nowhere.
@@ -46,6 +48,7 @@ impl Default for Config {
             insecure: false,
             security: Security::default(),
             metrics: None,
+            traces: None,
             audit_log: None,
             page: None,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),

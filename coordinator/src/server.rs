@@ -10,6 +10,7 @@ use crate::api::audit_log::AuditLog;
 use crate::api::client_service::ClientService;
 use crate::api::middleware::Before;
 use crate::api::security::{Guard, Security, Tokens};
+use crate::api::traces::{Traces, TracesError};
 use crate::api::worker_service::WorkerService;
 use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
 use crate::coordinator::Coordinator;
@@ -69,6 +70,9 @@ pub enum ServerError {
         /// The operating system's error.
         source: io::Error,
     },
+    /// Traces cannot be handed in where it was asked for.
+    #[error(transparent)]
+    Traces(#[from] TracesError),
     /// Signals cannot be listened to.
     #[error("cannot listen to signals: {0}")]
     Signals(io::Error),
@@ -168,7 +172,19 @@ impl Server {
             database.measure(Arc::clone(&measures));
         }
         let store = store.measured(Arc::clone(&measures));
-        let mut running = Self::serve(page, security, ledger, store, who, config.rules).await;
+        let (traces, collector) = match &config.traces {
+            None => (Traces::default(), None),
+            Some(address) => {
+                let (traces, collector) = Traces::to(address, who.as_str())?;
+                (traces, Some(collector))
+            }
+        };
+        let mut running =
+            Self::serve(page, security, ledger, store, who, config.rules, traces).await;
+        if let Some(collector) = collector {
+            let stopping = running.stopping();
+            running.tasks.spawn(collector.collect(stopping));
+        }
         for listener in listeners {
             running.listen(listener);
         }
@@ -196,6 +212,7 @@ impl Server {
         store: Store,
         who: CoordinatorId,
         rules: Rules,
+        traces: Traces,
     ) -> RunningServer {
         let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
         let accounting = Accounting {
@@ -205,7 +222,13 @@ impl Server {
         let admission = Admission::new(rules.calls);
         let connections = Connections::new(rules.connections);
         let stopping = CancellationToken::new();
-        let context = Context::new(coordinator.clone(), rules, stopping.clone(), accounting);
+        let context = Context::new(
+            coordinator.clone(),
+            rules,
+            stopping.clone(),
+            accounting,
+            traces,
+        );
         let context = Arc::new(context);
         let (routes, health) = routes(&context).await;
         let mut tasks = JoinSet::new();

@@ -16,7 +16,9 @@ fn cut(file: &std::path::Path, bytes: u64) {
 #[test]
 fn a_ledger_that_is_cut_gives_nothing_out_and_says_so() {
     let mut cluster = Cluster::start(CoordinatorOptions::default());
-    let first = cluster.client().submit(&Submission::of(square_root_of_two()));
+    let first = cluster
+        .client()
+        .submit(&Submission::of(square_root_of_two()));
     // A new process has nothing of the ledger in memory.
     cluster.coordinator.terminate();
     cluster.coordinator.wait(PATIENCE);

@@ -746,6 +746,9 @@ pub struct Coordinator {
     /// Where Prometheus reads metrics, and probes ask /live and /ready, by plain HTTP: HOST:PORT [default: nowhere]
     #[arg(long, value_name = "ADDR")]
     pub metrics: Option<String>,
+    /// A collector of OpenTelemetry that traces of jobs are handed to: http://HOST:PORT [default: none]
+    #[arg(long, value_name = "URL")]
+    pub traces: Option<String>,
     /// How the log is written to standard error
     #[arg(long, value_enum, default_value_t)]
     pub log_format: cognate_worker::log::LogFormat,

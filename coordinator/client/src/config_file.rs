@@ -37,6 +37,8 @@ pub struct ConfigFile {
     pub tls_client_ca: Option<PathBuf>,
     /// Address at which metrics are served.
     pub metrics: Option<String>,
+    /// Collector of traces.
+    pub traces: Option<String>,
     /// File of who submitted, cancelled, deleted and was refused.
     pub audit_log: Option<PathBuf>,
     /// Address of the page for browsers.
@@ -272,6 +274,7 @@ mod tests {
             "tls_key",
             "tls_client_ca",
             "metrics",
+            "traces",
             "audit_log",
             "page",
         ];

@@ -93,6 +93,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
         config.rules.policy.retention.keep_ms = keep.map_err(|e| wrong("--retain-days", &e))?;
     }
     config.metrics = a.metrics.clone().or(file.metrics);
+    config.traces = a.traces.clone().or(file.traces);
     config.audit_log = a.audit_log.clone().or(file.audit_log);
     config.page = a.page.clone().or(file.page);
     config.insecure = a.insecure || file.insecure.unwrap_or(false);
