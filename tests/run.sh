@@ -68,6 +68,17 @@ step "format and lints"
 cargo fmt --all --check
 cargo clippy --release --workspace --all-targets -- -D warnings
 
+step "libraries: licences, sources, known faults"
+deny=target/deny/bin/cargo-deny
+[ -x "$deny" ] || cargo install --quiet --debug --locked cargo-deny --version 0.20.2 --root target/deny
+"$deny" --config deploy/deny.toml check licenses bans sources
+if "$deny" --config deploy/deny.toml fetch db; then
+  "$deny" --config deploy/deny.toml check advisories
+else
+  # Its database is not in a package registry, so that many machines cannot reach it; not a test of this project.
+  echo "the database of known faults cannot be reached: not looked at"
+fi
+
 step "a stranger's client: Python packages into target/stranger"
 if ! python3 -c 'import ensurepip, venv' 2>/dev/null; then
   install python3 python3-venv

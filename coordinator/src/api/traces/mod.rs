@@ -187,7 +187,7 @@ impl Collector {
             tokio::select! {
                 () = stopping.cancelled() => {}
                 _ = self.spans.recv_many(&mut spans, AT_ONCE) => {
-                    // Those of the next second go with them.
+                    // Spans of the next second go along in the same call.
                     let gathered = tokio::time::sleep(GATHERED);
                     tokio::select! {
                         () = stopping.cancelled() => {}
