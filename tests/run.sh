@@ -68,6 +68,17 @@ step "format and lints"
 cargo fmt --all --check
 cargo clippy --release --workspace --all-targets -- -D warnings
 
+step "libraries: licences, sources, known faults"
+deny=target/deny/bin/cargo-deny
+[ -x "$deny" ] || cargo install --quiet --debug --locked cargo-deny --version 0.20.2 --root target/deny
+"$deny" --config deploy/deny.toml check licenses bans sources
+if "$deny" --config deploy/deny.toml fetch db; then
+  "$deny" --config deploy/deny.toml check advisories
+else
+  # Its database is not in a package registry, so that many machines cannot reach it; not a test of this project.
+  echo "the database of known faults cannot be reached: not looked at"
+fi
+
 step "a stranger's client: Python packages into target/stranger"
 if ! python3 -c 'import ensurepip, venv' 2>/dev/null; then
   install python3 python3-venv
@@ -105,7 +116,7 @@ step "a PostgreSQL server for tests"
 postgres=${TMPDIR:-/tmp}/cognate-pg-$$
 COGNATE_SKIPS=$(mktemp)
 export COGNATE_SKIPS
-trap 'tests/support/postgres.sh stop "$postgres"; rm -f "$COGNATE_SKIPS"' EXIT
+trap 'tests/support/postgres.sh stop "$postgres"; tests/support/s3.sh stop "${storage:-/nowhere}"; rm -f "$COGNATE_SKIPS"' EXIT
 tests/support/postgres.sh start "$postgres" && started=0 || started=$?
 if [ "$started" -eq 77 ] && command -v apt-get >/dev/null; then
   install postgresql
@@ -116,6 +127,17 @@ case $started in
   77) skipped "the tests of the ledger on PostgreSQL, which is not installed" ;;
   *) exit 1 ;;
 esac
+
+step "a server of S3 for tests, into target/s3"
+storage=${TMPDIR:-/tmp}/cognate-s3-$$
+if tests/support/s3.sh install && tests/support/s3.sh start "$storage"; then
+  set -a
+  # shellcheck disable=SC1091
+  . "$storage/environment"
+  set +a
+else
+  skipped "the tests of results in a bucket: s3s-fs cannot be installed"
+fi
 
 step "building"
 # Programs and libraries are those of deploy/quickstart.sh: same profile, same features (tests/benches/build.md).
@@ -142,6 +164,10 @@ step "chaos: a minute and a half of random kills, on either ledger and with two 
 "$built/chaos" --seconds 30 --seed 1
 "$built/chaos" --seconds 30 --seed 2 --ledger postgres
 "$built/chaos" --seconds 30 --seed 3 --ledger postgres --coordinators 2
+
+step "chaos: a minute with workers that do evil and results that are lost, and half a minute with results in S3"
+"$built/chaos" --seconds 60 --seed 4 --katsura 12 --bits 53 --evil-workers yes --storage-faults yes
+"$built/chaos" --seconds 30 --seed 6 --ledger postgres --coordinators 2 --results s3
 
 step "partitions: ten workers join and leave in networks whose wires are cut"
 "$built/partitions" --seconds 20

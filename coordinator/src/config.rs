@@ -5,6 +5,7 @@ use crate::api::held_stream::StreamLimits;
 use crate::api::security::Security;
 use crate::chunks::leasing::Policy;
 use crate::page::mechanisms::Mechanisms;
+use crate::results::place::ResultsPlace;
 use crate::transport::introduction::ConnectionLimits;
 use cognate_protocol::DEFAULT_ADDRESS;
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
@@ -25,6 +26,8 @@ pub struct Config {
     pub security: Security,
     /// Where metrics are read by HTTP: host and port; `None`: nowhere.
     pub metrics: Option<String>,
+    /// Collector of traces (OTLP by gRPC): `http://HOST:PORT`; `None`: there are none.
+    pub traces: Option<String>,
     /// File of who submitted, cancelled, deleted, and was refused; `None`: only the log says it.
     pub audit_log: Option<PathBuf>,
     /// Where the page for browsers is: host and port; `None`: nowhere.
@@ -33,8 +36,8 @@ pub struct Config {
     pub mechanisms: Option<Arc<dyn Mechanisms>>,
     /// Database or file of the ledger.
     pub ledger: LedgerPlace,
-    /// The folder of the results and all other objects; `None`: in memory.
-    pub results: Option<PathBuf>,
+    /// Where the results and all other objects are; `None`: in memory.
+    pub results: Option<ResultsPlace>,
     /// Workers of the same user on this host may use shared memory while so many bytes are free in
     /// /dev/shm; `None`: never.
     pub shared_memory: Option<u64>,
@@ -49,11 +52,12 @@ impl Default for Config {
             insecure: false,
             security: Security::default(),
             metrics: None,
+            traces: None,
             audit_log: None,
             page: None,
             mechanisms: None,
             ledger: LedgerPlace::Sqlite("cognate-data/ledger.db".into()),
-            results: Some("cognate-data/results".into()),
+            results: Some(PathBuf::from("cognate-data/results").into()),
             shared_memory: Some(LEAST_FREE),
             rules: Rules::default(),
         }

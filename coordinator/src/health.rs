@@ -43,7 +43,8 @@ impl Health {
         }
         let store = store.clone();
         // A file system that hangs must not hang the runtime.
-        let looked = tokio::task::spawn_blocking(move || store.is_there());
+        let runtime = tokio::runtime::Handle::current();
+        let looked = tokio::task::spawn_blocking(move || runtime.block_on(store.is_there()));
         match timeout(PATIENCE, looked).await {
             Ok(Ok(Ok(()))) => {}
             Ok(Ok(Err(error))) => troubles.push(error.to_string()),

@@ -10,6 +10,7 @@ use crate::api::audit_log::AuditLog;
 use crate::api::client_service::ClientService;
 use crate::api::middleware::Before;
 use crate::api::security::{Guard, Security, Tokens};
+use crate::api::traces::{Traces, TracesError};
 use crate::api::worker_service::WorkerService;
 use crate::config::{Config, LedgerPlace, ListenAddress, Rules};
 use crate::coordinator::Coordinator;
@@ -21,6 +22,7 @@ use crate::ledger::{Ledger, LedgerError};
 use crate::measures::StorageMeasures;
 use crate::monitor::Monitor;
 use crate::page::PageListener;
+use crate::results::place::ResultsPlace;
 use crate::results::store::{Store, StoreError};
 use crate::transport::introduction::{Connections, raise_open_files};
 use crate::transport::shared_memory::SharedMemoryListener;
@@ -68,6 +70,9 @@ pub enum ServerError {
         /// The operating system's error.
         source: io::Error,
     },
+    /// Traces cannot be handed in where it was asked for.
+    #[error(transparent)]
+    Traces(#[from] TracesError),
     /// Signals cannot be listened to.
     #[error("cannot listen to signals: {0}")]
     Signals(io::Error),
@@ -158,7 +163,7 @@ impl Server {
             }
         };
         let store = match &config.results {
-            Some(folder) => open_results(folder, &*ledger).await?,
+            Some(place) => open_results(place, &*ledger).await?,
             None => Store::in_memory(),
         };
         let who = CoordinatorId::new(format!("coordinator-{}", uuid::Uuid::new_v4()))
@@ -168,7 +173,19 @@ impl Server {
             database.measure(Arc::clone(&measures));
         }
         let store = store.measured(Arc::clone(&measures));
-        let mut running = Self::serve(page, security, ledger, store, who, config.rules).await;
+        let (traces, collector) = match &config.traces {
+            None => (Traces::default(), None),
+            Some(address) => {
+                let (traces, collector) = Traces::to(address, who.as_str())?;
+                (traces, Some(collector))
+            }
+        };
+        let mut running =
+            Self::serve(page, security, ledger, store, who, config.rules, traces).await;
+        if let Some(collector) = collector {
+            let stopping = running.stopping();
+            running.tasks.spawn(collector.collect(stopping));
+        }
         for listener in listeners {
             running.listen(listener);
         }
@@ -196,6 +213,7 @@ impl Server {
         store: Store,
         who: CoordinatorId,
         rules: Rules,
+        traces: Traces,
     ) -> RunningServer {
         let coordinator = Coordinator::new(ledger, store, who, rules.policy.clone());
         let accounting = Accounting {
@@ -205,7 +223,13 @@ impl Server {
         let admission = Admission::new(rules.calls);
         let connections = Connections::new(rules.connections);
         let stopping = CancellationToken::new();
-        let context = Context::new(coordinator.clone(), rules, stopping.clone(), accounting);
+        let context = Context::new(
+            coordinator.clone(),
+            rules,
+            stopping.clone(),
+            accounting,
+            traces,
+        );
         let context = Arc::new(context);
         let (routes, health) = routes(&context).await;
         let mut tasks = JoinSet::new();
@@ -353,15 +377,16 @@ fn read_tokens_again(tokens: Option<&Tokens>) {
     }
 }
 
-/// The results in a folder. Where the ledger knows of jobs and the folder of nothing, one of them is not
+/// The results in a folder or bucket. Where the ledger knows of jobs and that place of nothing, one of them is not
 /// what was meant.
-async fn open_results(folder: &Path, ledger: &dyn Ledger) -> Result<Store, ServerError> {
+async fn open_results(place: &ResultsPlace, ledger: &dyn Ledger) -> Result<Store, ServerError> {
     let is_new = ledger.jobs(1).await?.is_empty();
-    if is_new && Store::has_results(folder) {
-        tracing::warn!(folder = %folder.display(), "the ledger knows of no job, and there are results: \
+    let store = Store::open(place, is_new).await?;
+    if is_new && store.has_results().await? {
+        tracing::warn!(%place, "the ledger knows of no job, and there are results: \
             is it the right ledger, and whole?");
     }
-    Ok(Store::folder(folder, is_new)?)
+    Ok(store)
 }
 
 fn make_folder(path: &Path) -> Result<(), ServerError> {

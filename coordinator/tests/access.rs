@@ -47,7 +47,7 @@ impl Service {
                 ..Security::default()
             },
             ledger: LedgerPlace::Sqlite(folder.path().join("ledger.db")),
-            results: Some(folder.path().join("results")),
+            results: Some(folder.path().join("results").into()),
             audit_log: Some(folder.path().join("audit.jsonl")),
             metrics: Some(metrics.clone()),
             shared_memory: None,

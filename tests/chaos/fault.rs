@@ -15,18 +15,21 @@ pub enum Fault {
     FreezeCoordinator,
     /// The server of the database is killed.
     KillDatabase,
+    /// The server of the results is killed.
+    KillStorage,
     /// The results of a chunk are damaged or lost.
     SpoilResults,
 }
 
 impl Fault {
     /// Every kind.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::KillWorker,
         Self::FreezeWorker,
         Self::KillCoordinator,
         Self::FreezeCoordinator,
         Self::KillDatabase,
+        Self::KillStorage,
         Self::SpoilResults,
     ];
 }
@@ -39,6 +42,7 @@ impl fmt::Display for Fault {
             Self::KillCoordinator => "a coordinator killed (-9)",
             Self::FreezeCoordinator => "a coordinator stopped for a while",
             Self::KillDatabase => "the database server killed (-9)",
+            Self::KillStorage => "the server of the results killed (-9)",
             Self::SpoilResults => "the results of a chunk damaged or lost",
         })
     }

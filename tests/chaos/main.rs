@@ -3,7 +3,7 @@
 //! one, bit for bit, and every worker that does evil must be named; a report says what it cost.
 //!
 //! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]
-//! [--coordinators 1] [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000] [--jobs N]
+//! [--results folder|s3] [--coordinators 1] [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000] [--jobs N]
 //! [--storage-faults yes] [--evil-workers yes]`: jobs in turn for so long, or so many, the last to its end.
 
 mod evil_worker;
@@ -21,6 +21,7 @@ use cognate_tests::client::{Answer, Submission, accepted, has_ended, total};
 use cognate_tests::cluster::Cluster;
 use cognate_tests::database::Database;
 use cognate_tests::dice::Dice;
+use cognate_tests::storage::Storage;
 use fault::Fault;
 use found::{Found, report};
 use scene::Scene;
@@ -64,6 +65,11 @@ fn main() -> ExitCode {
         None => None,
     };
     let database = database.as_ref();
+    let storage = match wanted.bucket.then(Storage::start) {
+        Some(None) => return ExitCode::SUCCESS,
+        Some(Some(storage)) => Some(storage),
+        None => None,
+    };
     let began = Instant::now();
     let quiet = quiet_answer(&problem(&wanted));
     println!(
@@ -71,7 +77,7 @@ fn main() -> ExitCode {
         quiet.counts.paths_total,
         began.elapsed().as_secs_f64()
     );
-    let mut scene = Scene::start(&wanted, database);
+    let mut scene = Scene::start(&wanted, database, storage);
     let mut dice = Dice(wanted.seed);
     let (mut jobs, mut paths, mut without_paths) = (0, 0, 0);
     let mut faults: Vec<(Fault, Duration)> = Vec::new();
@@ -97,9 +103,10 @@ fn main() -> ExitCode {
                 break;
             }
             let fault = loop {
-                let fault = Fault::ALL[dice.below(6) as usize];
+                let fault = Fault::ALL[dice.below(Fault::ALL.len() as u64) as usize];
                 let possible = match fault {
                     Fault::KillDatabase => database.is_some(),
+                    Fault::KillStorage => wanted.bucket,
                     Fault::SpoilResults => wanted.storage_faults,
                     _ => true,
                 };

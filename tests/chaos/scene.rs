@@ -9,6 +9,7 @@ use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::database::Database;
 use cognate_tests::dice::Dice;
 use cognate_tests::processes::{Process, until};
+use cognate_tests::storage::Storage;
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
@@ -17,13 +18,24 @@ use std::time::{Duration, Instant};
 pub const PROMISED: Duration = Duration::from_secs(3);
 /// One of several coordinators stands still for longer than its right to drive a job, 5 s.
 const STANDSTILL: Duration = Duration::from_secs(6);
+/// The server of the results is away for this time.
+const STORAGE_AWAY: Duration = Duration::from_secs(2);
 /// Paths of a chunk.
 pub const CHUNK: u64 = 32;
 /// Workers that are kept alive.
 pub const WORKERS: usize = 3;
 
-fn options(wanted: &Wanted, ledger: Option<String>) -> CoordinatorOptions {
+/// What results in a bucket begin with.
+const PREFIX: &str = "chaos";
+
+fn options(
+    wanted: &Wanted,
+    ledger: Option<String>,
+    storage: Option<&Storage>,
+) -> CoordinatorOptions {
     CoordinatorOptions {
+        results: storage.map(|storage| storage.address(PREFIX)),
+        environment: storage.map(Storage::environment).unwrap_or_default(),
         lease: Some(wanted.lease),
         chunk_paths: Some(CHUNK),
         audit_percent: u32::from(wanted.evil_workers),
@@ -36,6 +48,7 @@ fn options(wanted: &Wanted, ledger: Option<String>) -> CoordinatorOptions {
 pub struct Scene {
     cluster: Cluster,
     second: Option<(Process, String)>,
+    storage: Option<Storage>,
     lease: Duration,
     /// Workers that do evil, of which one of each kind is there.
     pub evil: Vec<(Evil, Process)>,
@@ -47,12 +60,14 @@ pub struct Scene {
 
 impl Scene {
     /// Starts them, with as many workers as are kept alive.
-    pub fn start(wanted: &Wanted, database: Option<&Database>) -> Self {
-        let cluster = Cluster::start(options(wanted, database.map(Database::url)));
+    pub fn start(wanted: &Wanted, database: Option<&Database>, storage: Option<Storage>) -> Self {
+        let ledger = database.map(Database::url);
+        let cluster = Cluster::start(options(wanted, ledger, storage.as_ref()));
         let second = (wanted.coordinators == 2).then(|| cluster.second_coordinator());
         let mut scene = Self {
             cluster,
             second,
+            storage,
             lease: wanted.lease,
             evil: Vec::new(),
             spoilt: Vec::new(),
@@ -205,8 +220,18 @@ impl Scene {
                     since = Instant::now();
                 }
             }
+            Fault::KillStorage => {
+                if let Some(storage) = &self.storage {
+                    storage.kill();
+                    std::thread::sleep(STORAGE_AWAY);
+                    storage.start_again();
+                    since = Instant::now();
+                }
+            }
             Fault::SpoilResults => {
-                let results = self.cluster.folder().join("results");
+                let folder = || self.cluster.folder().join("results");
+                let files = self.storage.as_ref().map(|storage| storage.files(PREFIX));
+                let results = files.unwrap_or_else(folder);
                 let (said, name) = spoil(&results, job, dice);
                 println!("  {said}");
                 self.spoilt.extend(name.map(|name| format!("{job}/{name}")));

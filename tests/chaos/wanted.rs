@@ -11,6 +11,8 @@ pub struct Wanted {
     pub seed: u64,
     /// The ledger is a database.
     pub postgres: bool,
+    /// The results are in a bucket of S3, not in a folder.
+    pub bucket: bool,
     /// One, or two over one database.
     pub coordinators: usize,
     /// The end after so many jobs.
@@ -35,6 +37,7 @@ pub fn wanted() -> Result<Wanted, String> {
         seconds: 30,
         seed: 1,
         postgres: false,
+        bucket: false,
         coordinators: 1,
         jobs: u64::MAX,
         katsura: 11,
@@ -50,6 +53,8 @@ pub fn wanted() -> Result<Wanted, String> {
             "--seed" => wanted.seed = number(&word, &value)?,
             "--ledger" if value == "sqlite" => wanted.postgres = false,
             "--ledger" if value == "postgres" => wanted.postgres = true,
+            "--results" if value == "folder" => wanted.bucket = false,
+            "--results" if value == "s3" => wanted.bucket = true,
             "--coordinators" => wanted.coordinators = number(&word, &value)?,
             "--jobs" => wanted.jobs = number(&word, &value)?,
             "--katsura" => wanted.katsura = number(&word, &value)?,
@@ -61,6 +66,7 @@ pub fn wanted() -> Result<Wanted, String> {
             _ => {
                 return Err(format!(
                     "{word} {value}: expected --seconds N, --seed N, --ledger sqlite|postgres, \
+                     --results folder|s3, \
                      --coordinators N, --jobs N, --katsura N, --bits N, --pause-ms LEAST-GREATEST, \
                      --lease-ms N, --storage-faults yes|no or --evil-workers yes|no"
                 ));

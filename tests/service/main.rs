@@ -3,6 +3,7 @@
 mod any_split_same_answer;
 mod bad_input;
 mod body_guidance;
+mod bucket;
 mod certificates;
 mod coordinator_restarted;
 mod decomposition_killed;

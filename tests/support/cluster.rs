@@ -16,10 +16,16 @@ pub struct CoordinatorOptions {
     pub chunk_paths: Option<u64>,
     /// Where the ledger is; else in a file of the test's folder.
     pub ledger: Option<String>,
+    /// Where the results are; else in the same folder.
+    pub results: Option<String>,
+    /// Names and values in the environment of coordinators and of what [`Cluster::command`] runs.
+    pub environment: Vec<(String, String)>,
     /// The folder of ledger and results; else the test's.
     pub data: Option<PathBuf>,
     /// More addresses to listen on, without asking who calls.
     pub listen: Vec<String>,
+    /// Where metrics are served: host and port.
+    pub metrics: Option<String>,
     /// Words before the command (see `namespaces`).
     pub within: Vec<String>,
     /// So many MiB must be free in /dev/shm for workers to use it.
@@ -169,7 +175,7 @@ impl Cluster {
             arguments.extend(["--transport".to_owned(), transport.to_owned()]);
         }
         let name = format!("worker-{}", self.workers_started);
-        Process::start_within(&options.within, self.folder.path(), &name, &arguments)
+        Process::start_within(&options.within, &[], self.folder.path(), &name, &arguments)
     }
 
     /// `kill -9` for the coordinator.
@@ -221,6 +227,7 @@ impl Cluster {
         Command::new(crate::processes::cognate())
             .args(arguments)
             .env("COGNATE_COORDINATOR", self.address())
+            .envs(self.options.environment.iter().cloned())
             .current_dir(self.folder.path())
             .output()
             .expect("cognate can be started")
@@ -249,6 +256,7 @@ fn address(folder: &Path, name: &str) -> String {
 fn start_coordinator(folder: &Path, name: &str, options: &CoordinatorOptions) -> Process {
     let data = options.data.as_deref().unwrap_or(folder);
     let file = || format!("sqlite:{}", data.join("ledger.db").display());
+    let results = || data.join("results").display().to_string();
     let mut arguments = vec![
         "coordinator".to_owned(),
         "--listen".to_owned(),
@@ -256,10 +264,13 @@ fn start_coordinator(folder: &Path, name: &str, options: &CoordinatorOptions) ->
         "--ledger".to_owned(),
         options.ledger.clone().unwrap_or_else(file),
         "--results".to_owned(),
-        data.join("results").display().to_string(),
+        options.results.clone().unwrap_or_else(results),
     ];
     for address in &options.listen {
         arguments.extend(["--listen".to_owned(), address.clone()]);
+    }
+    if let Some(address) = &options.metrics {
+        arguments.extend(["--metrics".to_owned(), address.clone()]);
     }
     if !options.listen.is_empty() {
         arguments.push("--insecure".to_owned());
@@ -267,5 +278,6 @@ fn start_coordinator(folder: &Path, name: &str, options: &CoordinatorOptions) ->
     let config = folder.join(format!("{name}.toml"));
     std::fs::write(&config, options.config()).expect("the test's folder is writable");
     arguments.extend(["--config".to_owned(), config.display().to_string()]);
-    Process::start_within(&options.within, folder, name, &arguments)
+    let (within, environment) = (&options.within, &options.environment);
+    Process::start_within(within, environment, folder, name, &arguments)
 }

@@ -1,6 +1,7 @@
 //! What the tests share.
 #![forbid(unsafe_code)]
 
+pub mod any_bytes;
 pub mod arguments;
 pub mod builders;
 pub mod client;
@@ -16,6 +17,7 @@ pub mod planted;
 pub mod processes;
 pub mod six_revolute;
 pub mod skip;
+pub mod storage;
 pub mod subjects;
 pub mod systems;
 pub mod tally;

@@ -75,20 +75,22 @@ impl Process {
     /// # Panics
     /// When it cannot be started.
     pub fn start(folder: &Path, name: &str, arguments: &[String]) -> Self {
-        Self::start_within(&[], folder, name, arguments)
+        Self::start_within(&[], &[], folder, name, arguments)
     }
 
-    /// The same behind these words: a command that becomes the one that follows it (`nsenter`).
+    /// The same behind these words, a command that becomes the one that follows it (`nsenter`), and with these names and
+    /// values in its environment.
     ///
     /// # Panics
     /// When it cannot be started.
     pub fn start_within(
         within: &[String],
+        environment: &[(String, String)],
         folder: &Path,
         name: &str,
         arguments: &[String],
     ) -> Self {
-        let command = match within {
+        let mut command = match within {
             [] => Command::new(cognate()),
             [first, words @ ..] => {
                 let mut command = Command::new(first);
@@ -96,6 +98,7 @@ impl Process {
                 command
             }
         };
+        command.envs(environment.iter().cloned());
         Self::start_command(command, folder, name, arguments)
     }
 

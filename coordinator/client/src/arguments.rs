@@ -733,8 +733,9 @@ pub struct Coordinator {
     /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
     #[arg(long, value_name = "URL")]
     pub ledger: Option<String>,
-    /// Where results are kept [default: cognate-data/results]
-    #[arg(long, value_name = "DIR")]
+    /// Where results are kept: a folder, or s3://BUCKET/PREFIX with keys in the environment [default:
+    /// cognate-data/results]
+    #[arg(long, value_name = "PLACE")]
     pub results: Option<String>,
     /// Settings as a file; options on the command line win
     #[arg(long, value_name = "FILE")]
@@ -745,6 +746,9 @@ pub struct Coordinator {
     /// Where Prometheus reads metrics, and probes ask /live and /ready, by plain HTTP: HOST:PORT [default: nowhere]
     #[arg(long, value_name = "ADDR")]
     pub metrics: Option<String>,
+    /// A collector of OpenTelemetry that traces of jobs are handed to: http://HOST:PORT [default: none]
+    #[arg(long, value_name = "URL")]
+    pub traces: Option<String>,
     /// How the log is written to standard error
     #[arg(long, value_enum, default_value_t)]
     pub log_format: cognate_worker::log::LogFormat,
@@ -923,9 +927,9 @@ pub struct DataArguments {
         default_value = "sqlite:cognate-data/ledger.db"
     )]
     pub ledger: String,
-    /// Where results are kept
-    #[arg(long, value_name = "DIR", default_value = "cognate-data/results")]
-    pub results: PathBuf,
+    /// Where results are kept: a folder, or s3://BUCKET/PREFIX
+    #[arg(long, value_name = "PLACE", default_value = "cognate-data/results")]
+    pub results: String,
 }
 
 /// `cognate fsck`.

@@ -37,6 +37,8 @@ pub struct ConfigFile {
     pub tls_client_ca: Option<PathBuf>,
     /// Address at which metrics are served.
     pub metrics: Option<String>,
+    /// Collector of traces.
+    pub traces: Option<String>,
     /// File of who submitted, cancelled, deleted and was refused.
     pub audit_log: Option<PathBuf>,
     /// Address of the page for browsers.
@@ -272,6 +274,7 @@ mod tests {
             "tls_key",
             "tls_client_ca",
             "metrics",
+            "traces",
             "audit_log",
             "page",
         ];
@@ -294,7 +297,8 @@ mod tests {
             file.ledger.as_deref().map(str::parse),
             Some(Ok(default.ledger))
         );
-        assert_eq!(file.results.as_deref().map(Into::into), default.results);
+        let results = file.results.as_deref().and_then(|place| place.parse().ok());
+        assert_eq!(results, default.results);
         assert_eq!(file.shared_memory_least_free(), default.shared_memory);
         let rules = file.rules().expect("the shipped rules make sense");
         assert_eq!(format!("{rules:?}"), format!("{:?}", Rules::default()));

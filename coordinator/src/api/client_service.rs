@@ -25,7 +25,7 @@ use futures::future::ready;
 use futures::{StreamExt, stream};
 use prost::Message;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 use tokio::sync::mpsc::Receiver;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Code, Request, Response, Status, Streaming};
@@ -340,9 +340,12 @@ impl ClientApi for ClientService {
         &self,
         request: Request<v1::SubmitRequest>,
     ) -> Result<Response<v1::SubmitResponse>, Status> {
-        let caller = Caller::of(&request);
+        let (caller, began) = (Caller::of(&request), SystemTime::now());
         let made = self.make_job(&caller, request.into_inner()).await;
         let job = made.as_ref().ok().map(|made| made.job.as_str());
+        if let Some(job) = job.and_then(|job| job.parse().ok()) {
+            self.context.traces.submitted(job, began);
+        }
         self.record(&caller, "Submit", job, &made);
         made.map(Response::new)
     }

@@ -130,7 +130,10 @@ fn code(error: &CoordinatorError) -> Code {
             LedgerError::Storage(_) | LedgerError::Unreachable(_) | LedgerError::Closed,
         )
         | CoordinatorError::Store(
-            StoreError::Storage(_) | StoreError::Folder { .. } | StoreError::Away(_),
+            StoreError::Storage(_)
+            | StoreError::Folder { .. }
+            | StoreError::Bucket { .. }
+            | StoreError::Away(_),
         ) => Code::Unavailable,
         CoordinatorError::Plan(_)
         | CoordinatorError::Ledger(LedgerError::Damaged(_))

@@ -10,6 +10,7 @@ pub mod held_stream;
 pub mod middleware;
 pub mod quota;
 pub mod security;
+pub mod traces;
 pub mod visible;
 pub mod worker_service;
 
@@ -34,6 +35,7 @@ use tokio_stream::wrappers::ReceiverStream;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
 use tonic::Status;
+use traces::Traces;
 
 /// Workers whose refusal is remembered.
 const REFUSALS: usize = 1000;
@@ -52,6 +54,8 @@ pub struct Context {
     pub streams: HeldStreams,
     /// Who used how much, and where it is written who did what.
     pub accounting: Accounting,
+    /// Where it is noted what became of jobs.
+    pub traces: Traces,
     /// Workers that get no work, and why.
     refused: Mutex<HashMap<WorkerId, String>>,
 }
@@ -63,6 +67,7 @@ impl Context {
         rules: Rules,
         stopping: CancellationToken,
         accounting: Accounting,
+        traces: Traces,
     ) -> Self {
         Self {
             coordinator,
@@ -71,6 +76,7 @@ impl Context {
             stopping,
             shared_memory: OnceLock::new(),
             accounting,
+            traces,
             refused: Mutex::default(),
         }
     }

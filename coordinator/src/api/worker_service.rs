@@ -18,7 +18,7 @@ use cognate_protocol::v1::worker_api_server::WorkerApi;
 use cognate_protocol::{from_proto, to_proto, v1};
 use futures::{StreamExt, TryStreamExt};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 use tonic::{Request, Response, Status};
 
 /// Reports of one call that are written at once: the ledger groups them into one commit.
@@ -235,6 +235,11 @@ impl WorkerApi for WorkerService {
             // Whatever was leased in this moment, the same question gets it again.
             () = stopping.cancelled() => return Ok(draining()),
         };
+        for lease in &leases {
+            // How long the worker had waited for work says nothing about the job.
+            let now = SystemTime::now();
+            self.context.traces.leased(lease, &worker, now);
+        }
         let now = self.context.now().await?;
         Ok(Response::new(v1::PullResponse {
             leases: leases.into_iter().map(|l| lease(l, now)).collect(),
@@ -269,9 +274,17 @@ impl WorkerApi for WorkerService {
         request: Request<v1::ReportRequest>,
     ) -> Result<Response<v1::ReportResponse>, Status> {
         let m = request.into_inner();
-        let by = speaker(m.identity)?;
+        let (by, began) = (speaker(m.identity)?, SystemTime::now());
         within_limit("chunks", m.chunks.len(), CHUNKS_PER_CALL).map_err(ApiError::from)?;
-        let verdicts = futures::stream::iter(m.chunks)
+        let wanted = self.context.traces.are_wanted();
+        let reported: Vec<_> = m
+            .chunks
+            .iter()
+            .filter(|_| wanted)
+            .map(|chunk| chunk.lease.clone())
+            .collect();
+        let worker = by.worker.clone();
+        let verdicts: Vec<v1::ReportVerdict> = futures::stream::iter(m.chunks)
             .map(|chunk| {
                 let (coordinator, by) = (self.context.coordinator.clone(), by.clone());
                 // What is wrong with one chunk says nothing about the others.
@@ -284,6 +297,12 @@ impl WorkerApi for WorkerService {
             .map(verdict)
             .try_collect()
             .await?;
+        for (lease, verdict) in reported.iter().zip(&verdicts) {
+            if let Ok(lease) = lease_id("lease", lease.as_ref()) {
+                let said = verdict.verdict().as_str_name();
+                self.context.traces.reported(lease, &worker, said, began);
+            }
+        }
         Ok(Response::new(v1::ReportResponse { verdicts }))
     }
 

@@ -153,12 +153,12 @@ impl Coordinator {
     /// that it never had.
     pub(super) async fn claim_results(&self, unknown: u64) -> Result<(), CoordinatorError> {
         let identity = self.ledger.identity().await?;
-        let is_first = self.store.belongs_to(identity.as_deref())?;
+        let is_first = self.store.belongs_to(identity.as_deref()).await?;
         if unknown > 0 {
             return Err(CoordinatorError::ForeignResults(unknown));
         }
         if let Some(identity) = identity.filter(|_| is_first) {
-            self.store.give_to(&identity)?;
+            self.store.give_to(&identity).await?;
         }
         Ok(())
     }
@@ -260,11 +260,10 @@ impl Coordinator {
         let there = there.chain(trash.iter().map(|trashed| trashed.digest));
         let unnamed = self.unnamed(there.collect()).await?;
         for trashed in &trash {
+            let is_old = now.since_ms(trashed.since) >= self.policy.retention.grace_ms;
             if !unnamed.contains(&trashed.digest) {
-                collected.taken_back += u64::from(self.store.take_back(trashed).await?);
-            } else if now.since_ms(trashed.since) >= self.policy.retention.grace_ms
-                && self.store.remove_from_trash(trashed).await?
-            {
+                collected.taken_back += u64::from(self.store.take_back(trashed, is_old).await?);
+            } else if is_old && self.store.remove_from_trash(trashed).await? {
                 collected.removed += Amount::one(trashed.bytes);
             }
         }

@@ -17,15 +17,15 @@ use cognate_continuation::work::{Stage, Work};
 use cognate_protocol::v1;
 use cognate_protocol::{digest, from_proto, records, to_proto};
 use cognate_systems::system::System;
-use object_store::local::LocalFileSystem;
 use object_store::memory::InMemory;
 use object_store::path::Path as Address;
 use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions};
 use prost::Message;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::fmt;
 use std::io::{self, BufWriter, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -46,12 +46,20 @@ pub enum StoreError {
     /// Another execution of the same lease wrote other results there.
     #[error("object {0} holds other results for the same lease")]
     Differs(String),
-    /// The folder of all results is not there, or is another: nothing is missing from it.
+    /// The folder or bucket of all results is not there, or is another: nothing is missing from it.
     #[error(
-        "the folder `{0}` of the results is not there (it has no file `{MARKER}`): is it mounted?"
+        "the place `{0}` of the results is not there (it has no `cognate-results`): is it mounted? Is it the right one?"
     )]
     Away(String),
-    /// The folder holds results of another ledger.
+    /// The bucket of all results cannot be used, or not now.
+    #[error("cannot use {bucket} for results: {what}")]
+    Bucket {
+        /// Address of the bucket.
+        bucket: String,
+        /// What the environment lacks, or why a request failed.
+        what: String,
+    },
+    /// The folder or bucket holds results of another ledger.
     #[error("{0}: nothing is removed from it")]
     Foreign(String),
     /// The storage failed.
@@ -70,7 +78,10 @@ pub enum StoreError {
 impl StoreError {
     /// True where trying again later cannot help.
     pub fn is_permanent(&self) -> bool {
-        !matches!(self, Self::Storage(_) | Self::Folder { .. } | Self::Away(_))
+        !matches!(
+            self,
+            Self::Storage(_) | Self::Folder { .. } | Self::Away(_) | Self::Bucket { .. }
+        )
     }
 
     /// True where an object is lost for good: there is none, or another one.
@@ -92,6 +103,9 @@ const LEVEL: i32 = 1;
 const LONGEST_RECORDS: u64 = 1 << 32;
 /// Plain bytes of a record that are compressed at once.
 const PIECE: usize = 256 << 10;
+/// Larger objects are written to a bucket in parts of this many bytes; a part has at least 5 MiB, and an object at
+/// most 10,000 of them (Amazon S3 user guide, "Multipart upload limits").
+pub(super) const PART: usize = 16 << 20;
 /// Chunks above this size leave the runtime's thread for compression.
 const SMALL: usize = 256 << 10;
 
@@ -99,103 +113,42 @@ const SMALL: usize = 256 << 10;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordKind(pub &'static [u8; 8]);
 
-/// File that says that a folder holds results. A folder that is mounted too late has none, and what is
-/// not found there is not lost.
-pub const MARKER: &str = "cognate-results";
-/// Text of the marker file.
-const MARKED: &str = "Results of cognate. This file stays as long as they do: a coordinator takes a \
-                      folder without it for one that is not mounted.\n";
+/// Where a store keeps its objects.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// In this process.
+    Memory,
+    /// In a folder.
+    Folder(PathBuf),
+    /// In a bucket, by its address.
+    Bucket(String),
+}
 
-/// The marker's line that says whose results these are.
-const OWNER: &str = "ledger ";
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Memory => f.write_str("memory"),
+            Self::Folder(folder) => folder.display().fmt(f),
+            Self::Bucket(address) => f.write_str(address),
+        }
+    }
+}
 
 /// The objects of all jobs.
 #[derive(Clone, Debug)]
 pub struct Store {
     pub(super) objects: Arc<dyn ObjectStore>,
-    /// The folder with the marker; `None` in memory.
-    pub(super) folder: Option<PathBuf>,
+    pub(super) place: Place,
     measures: Arc<StorageMeasures>,
 }
 
 impl Store {
-    /// Objects in this folder, which is made where it is missing and `is_new`: nobody knows of results in
-    /// it. Otherwise it must have its marker, or results from before there were markers.
-    pub fn folder(folder: &Path, is_new: bool) -> Result<Self, StoreError> {
-        let failed = |error| StoreError::Folder {
-            folder: folder.display().to_string(),
-            error,
-        };
-        let marker = folder.join(MARKER);
-        if !marker.exists() {
-            let has_results = folder.join("objects").is_dir() || folder.join("jobs").is_dir();
-            if !is_new && !has_results {
-                return Err(StoreError::Away(folder.display().to_string()));
-            }
-            std::fs::create_dir_all(folder).map_err(failed)?;
-            std::fs::write(&marker, MARKED).map_err(failed)?;
-        }
-        // A row in the ledger may name an object only once the object is on the disk.
-        let local = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
-        Ok(Self {
-            objects: Arc::new(local),
-            folder: Some(folder.to_owned()),
+    pub(super) fn at(place: Place, objects: Arc<dyn ObjectStore>) -> Self {
+        Self {
+            objects,
+            place,
             measures: Arc::default(),
-        })
-    }
-
-    /// Whether there are results in a folder.
-    pub fn has_results(folder: &Path) -> bool {
-        folder.join("jobs").is_dir()
-    }
-
-    /// An error where the folder of the results is not there.
-    pub fn is_there(&self) -> Result<(), StoreError> {
-        match &self.folder {
-            Some(folder) if !folder.join(MARKER).exists() => {
-                Err(StoreError::Away(folder.display().to_string()))
-            }
-            _ => Ok(()),
         }
-    }
-
-    /// Whether nobody has said yet whose results these are; an error where they are not those of the ledger of
-    /// this name. What lives in memory is its process's.
-    pub fn belongs_to(&self, ledger: Option<&str>) -> Result<bool, StoreError> {
-        let Some(folder) = &self.folder else {
-            return Ok(false);
-        };
-        let foreign = |why: &str| StoreError::Foreign(format!("{} {why}", folder.display()));
-        let Some(ledger) = ledger else {
-            return Err(foreign("outlives this ledger, which ends with its process"));
-        };
-        self.is_there()?;
-        let failed = |error| StoreError::Folder {
-            folder: folder.display().to_string(),
-            error,
-        };
-        let text = std::fs::read_to_string(folder.join(MARKER)).map_err(failed)?;
-        match text.lines().find_map(|line| line.strip_prefix(OWNER)) {
-            None => Ok(true),
-            Some(owner) if owner == ledger => Ok(false),
-            Some(owner) => Err(foreign(&format!(
-                "holds the results of the ledger {owner}, and this one is {ledger}"
-            ))),
-        }
-    }
-
-    /// Says whose results these are, for good.
-    pub fn give_to(&self, ledger: &str) -> Result<(), StoreError> {
-        let Some(folder) = &self.folder else {
-            return Ok(());
-        };
-        let fresh = folder.join(format!("{MARKER}.{}", uuid::Uuid::new_v4().simple()));
-        let written = std::fs::write(&fresh, format!("{MARKED}{OWNER}{ledger}\n"));
-        let named = written.and_then(|()| std::fs::rename(&fresh, folder.join(MARKER)));
-        named.map_err(|error| StoreError::Folder {
-            folder: folder.display().to_string(),
-            error,
-        })
     }
 
     /// Counts its operations in these.
@@ -206,20 +159,12 @@ impl Store {
     /// Objects somewhere else.
     #[cfg(test)]
     pub(crate) fn on(objects: Arc<dyn ObjectStore>) -> Self {
-        Self {
-            objects,
-            folder: None,
-            measures: Arc::default(),
-        }
+        Self::at(Place::Memory, objects)
     }
 
     /// Objects that live as long as this process.
     pub fn in_memory() -> Self {
-        Self {
-            objects: Arc::new(InMemory::new()),
-            folder: None,
-            measures: Arc::default(),
-        }
+        Self::at(Place::Memory, Arc::new(InMemory::new()))
     }
 
     /// Loses an object, as a broken disk does.
@@ -230,19 +175,42 @@ impl Store {
 
     /// Writes an object unless it is there; true if it was not.
     async fn create(&self, address: &Address, bytes: Bytes) -> Result<bool, StoreError> {
-        // It would make the folder where another is to be mounted.
-        self.is_there()?;
-        let mode = PutOptions::from(PutMode::Create);
+        self.is_mounted()?;
         let begin = Instant::now();
+        let mode = PutOptions::from(PutMode::Create);
         let put = self.objects.put_opts(address, bytes.into(), mode).await;
         let failed = matches!(&put, Err(error) if !is_there_already(error));
         self.measures.writes.observe(begin.elapsed(), failed);
         match put {
             // Where the folder went away meanwhile, the write made another one, which is none of ours.
-            Ok(_) => self.is_there().map(|()| true),
+            Ok(_) => self.is_mounted().map(|()| true),
             Err(object_store::Error::AlreadyExists { .. }) => Ok(false),
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// Writes an object that is named by its digest in parts, so that a connection that breaks costs one of them.
+    /// Whoever writes it at the same time writes the same.
+    async fn write_in_parts(&self, address: &Address, bytes: Bytes) -> Result<(), StoreError> {
+        let begin = Instant::now();
+        let written = self.upload(address, bytes).await;
+        self.measures
+            .writes
+            .observe(begin.elapsed(), written.is_err());
+        Ok(written?)
+    }
+
+    async fn upload(&self, address: &Address, mut bytes: Bytes) -> Result<(), object_store::Error> {
+        let mut upload = self.objects.put_multipart(address).await?;
+        while !bytes.is_empty() {
+            let part = bytes.split_to(bytes.len().min(PART));
+            if let Err(error) = upload.put_part(part.into()).await {
+                // Parts that stay cost money.
+                let _ = upload.abort().await;
+                return Err(error);
+            }
+        }
+        upload.complete().await.map(drop)
     }
 
     async fn read(&self, address: &Address) -> Result<Bytes, StoreError> {
@@ -255,7 +223,7 @@ impl Store {
         match got {
             Ok(bytes) => Ok(bytes),
             Err(object_store::Error::NotFound { .. }) => {
-                self.is_there()?;
+                self.is_there().await?;
                 self.read_trashed(address).await
             }
             Err(error) => Err(error.into()),
@@ -268,7 +236,12 @@ impl Store {
         let address = object_address(digest);
         // Many jobs share their system: to look is cheaper than to write and be refused.
         if self.objects.head(&address).await.is_err() {
-            self.create(&address, bytes).await?;
+            match self.place {
+                Place::Bucket(_) if bytes.len() > PART => {
+                    self.write_in_parts(&address, bytes).await?;
+                }
+                _ => drop(self.create(&address, bytes).await?),
+            }
         }
         Ok(digest)
     }
@@ -607,143 +580,4 @@ fn unpack(address: &Address, bytes: &[u8]) -> Result<(Digest, Vec<u8>), StoreErr
         return Err(damaged(address, "its records have another hash"));
     }
     Ok((hash, records))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ledger::identity::{ChunkId, Epoch, JobId};
-    use cognate_continuation::tracker::outcome::PathOutcome;
-    use cognate_continuation::work::StageId;
-    use num_complex::Complex64;
-
-    fn results(count: u64, value: f64) -> Vec<ItemResult> {
-        let point = |k| vec![Complex64::new(value, k as f64); 3];
-        let result = |k| {
-            ItemResult::Track(PathResult {
-                residual: 1e-16,
-                accuracy: 1e-15,
-                ..PathResult::untracked(k, 0, PathOutcome::Regular, point(k))
-            })
-        };
-        (0..count).map(result).collect()
-    }
-
-    fn lease(epoch: u64) -> LeaseId {
-        LeaseId {
-            chunk: ChunkId {
-                job: JobId(1),
-                stage: StageId(0),
-                first: 0,
-            },
-            epoch: Epoch(epoch),
-        }
-    }
-
-    const ITEMS: ItemRange = ItemRange { first: 0, last: 5 };
-
-    #[tokio::test]
-    async fn results_come_back_and_are_kept_once() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::folder(folder.path(), true).unwrap();
-        let put = |epoch, value| store.put_results(lease(epoch), ITEMS, results(5, value), 7);
-        let object = put(1, 0.5).await.unwrap();
-        assert_eq!(object.outcomes.regular, 5);
-        assert_eq!(
-            store.results(&object, Work::Track).await.unwrap(),
-            results(5, 0.5)
-        );
-        assert_eq!(put(1, 0.5).await.unwrap(), object);
-        let other = put(1, 0.25).await;
-        assert!(matches!(other, Err(StoreError::Differs(_))));
-        // Another execution is another object with the same hash.
-        let again = put(2, 0.5).await.unwrap();
-        assert_ne!(again.address, object.address);
-        assert_eq!(again.hash, object.hash);
-        // It may go, where the ledger names the other.
-        store.remove_results(&again.address).await.unwrap();
-        // Two may remove at the same time.
-        store.remove_results(&again.address).await.unwrap();
-        let gone = store.results(&again, Work::Track).await;
-        assert!(matches!(gone, Err(StoreError::Missing(_))));
-        assert_eq!(
-            store.results(&object, Work::Track).await.unwrap(),
-            results(5, 0.5)
-        );
-    }
-
-    #[tokio::test]
-    async fn every_damage_is_seen() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::folder(folder.path(), true).unwrap();
-        let object = store
-            .put_results(lease(1), ITEMS, results(5, 0.5), 7)
-            .await
-            .unwrap();
-        let path = folder.path().join(&object.address);
-        let good = std::fs::read(&path).unwrap();
-        for at in 0..good.len() {
-            let mut bad = good.clone();
-            bad[at] ^= 0x41;
-            std::fs::write(&path, &bad).unwrap();
-            let error = store
-                .results(&object, Work::Track)
-                .await
-                .expect_err("damage is seen");
-            assert!(matches!(error, StoreError::Damaged { .. }), "byte {at}");
-            std::fs::write(&path, &good[..at]).unwrap();
-            assert!(
-                store.results(&object, Work::Track).await.is_err(),
-                "cut at {at}"
-            );
-        }
-        std::fs::remove_file(&path).unwrap();
-        let error = store
-            .results(&object, Work::Track)
-            .await
-            .expect_err("it is gone");
-        assert!(matches!(error, StoreError::Missing(_)));
-    }
-
-    #[tokio::test]
-    async fn bytes_of_a_record_are_read_without_a_copy() {
-        const KIND: RecordKind = RecordKind(b"CGNTST01");
-        let store = Store::in_memory();
-        // Longer than what is compressed at once; and one whose number of bytes takes one byte.
-        for length in [0, 100, 3 * PIECE + 7] {
-            let bytes: Vec<u8> = (0..length).map(|i| (i * i % 251) as u8).collect();
-            let kept = store.put_record(&KIND, bytes.clone()).await.unwrap();
-            assert_eq!(store.bytes_record(&KIND, kept).await.unwrap(), bytes);
-            let read: Vec<u8> = store.record(&KIND, kept).await.unwrap();
-            assert_eq!(read, bytes);
-        }
-        let other = store.put_record(&KIND, (5usize, [1u8, 2])).await.unwrap();
-        let refused = store.bytes_record(&KIND, other).await;
-        assert!(matches!(refused, Err(StoreError::Damaged { .. })));
-    }
-
-    #[tokio::test]
-    async fn objects_and_problems_are_checked_when_read() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::folder(folder.path(), true).unwrap();
-        let digest = store.put(Bytes::from_static(b"start")).await.unwrap();
-        assert_eq!(
-            store.put(Bytes::from_static(b"start")).await.unwrap(),
-            digest
-        );
-        assert_eq!(&store.get(digest).await.unwrap()[..], b"start");
-        let path = folder.path().join(object_address(digest).to_string());
-        std::fs::write(&path, b"stare").unwrap();
-        assert!(store.get(digest).await.is_err());
-        let content = b"variable_group x;\nfunction f;\nf = x^2 - 2;\n";
-        let system = cognate_systems::formats::read("test", content)
-            .unwrap()
-            .system;
-        let digest = store.put_problem(&system).await.unwrap();
-        assert_eq!(store.problem(digest).await.unwrap(), system);
-        let path = folder.path().join(object_address(digest).to_string());
-        std::fs::write(&path, b"nonsense").unwrap();
-        let error = store.problem(digest).await.expect_err("damage is seen");
-        assert!(matches!(error, StoreError::Damaged { .. }));
-    }
 }

@@ -3,9 +3,9 @@
 //! An object that is written is named by the ledger a moment later, and an object that is there already is not
 //! written again. So nothing goes at once: it is put into the trash, where it is still read, and is written anew
 //! by whoever wants to name it. What is named after all is taken back; the rest goes after a grace period. Each
-//! step is one renaming or one removal, so that a coordinator may be killed between any two.
+//! step is one renaming or one removal, so that a coordinator may be killed between any two. In a bucket a renaming is a copy and a removal.
 
-use super::store::{Store, StoreError, object_address};
+use super::store::{Place, Store, StoreError, object_address};
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{JobId, parse_digest};
 use bytes::Bytes;
@@ -14,7 +14,7 @@ use futures::TryStreamExt;
 use object_store::path::Path as Address;
 use object_store::{ObjectStore, ObjectStoreExt};
 use std::ops::AddAssign;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Folder of the objects by digest.
 pub(super) const OBJECTS: &str = "objects";
@@ -81,7 +81,7 @@ impl Store {
     }
 
     async fn list(&self, folder: &str) -> Result<Vec<(Address, u64)>, StoreError> {
-        self.is_there()?;
+        self.is_there().await?;
         let found = self.objects.list(Some(&folder.into()));
         Ok(found
             .map_ok(|object| (object.location, object.size))
@@ -119,19 +119,22 @@ impl Store {
 
     /// Puts an object into the trash; false where somebody else did.
     pub async fn trash(&self, digest: Digest, now: LedgerTime) -> Result<bool, StoreError> {
-        self.is_there()?;
+        self.is_there().await?;
         let address = object_address(digest);
         let to = Address::from(format!("{TRASH}/{}/{digest}", now.0));
         done(self.objects.rename(&address, &to).await)
     }
 
-    /// Takes an object back from the trash; false where somebody else did, or it is gone.
-    pub async fn take_back(&self, trashed: &Trashed) -> Result<bool, StoreError> {
-        self.is_there()?;
+    /// Takes an object back from the trash; false where somebody else did, or it is gone. `is_old`: it was put there
+    /// longer ago than whoever did so may have stood still since.
+    pub async fn take_back(&self, trashed: &Trashed, is_old: bool) -> Result<bool, StoreError> {
+        self.is_there().await?;
         let address = object_address(trashed.digest);
         if self.objects.head(&address).await.is_ok() {
-            // It was written anew.
-            self.remove_from_trash(trashed).await?;
+            // It was written anew, or is being put into the trash, which in a bucket is to copy and then to remove.
+            if is_old {
+                self.remove_from_trash(trashed).await?;
+            }
             return Ok(false);
         }
         done(self.objects.rename(&trashed.address, &address).await)
@@ -139,7 +142,7 @@ impl Store {
 
     /// Removes an object in the trash for good; false where somebody else did, or took it back.
     pub async fn remove_from_trash(&self, trashed: &Trashed) -> Result<bool, StoreError> {
-        self.is_there()?;
+        self.is_there().await?;
         let removed = done(self.objects.delete(&trashed.address).await)?;
         self.remove_empty_folder(&format!("{TRASH}/{}", trashed.since.0));
         Ok(removed)
@@ -166,7 +169,7 @@ impl Store {
     /// Files that writers left which were killed, with their sizes in bytes, if they are older than this.
     pub fn unfinished_files(&self, older: std::time::Duration) -> Vec<(PathBuf, u64)> {
         let mut found = Vec::new();
-        let mut folders: Vec<PathBuf> = self.folder.iter().cloned().collect();
+        let mut folders: Vec<PathBuf> = self.own_folder().map(Into::into).into_iter().collect();
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
                 let Ok(about) = entry.metadata() else {
@@ -189,9 +192,16 @@ impl Store {
         found
     }
 
+    fn own_folder(&self) -> Option<&Path> {
+        match &self.place {
+            Place::Folder(folder) => Some(folder),
+            Place::Memory | Place::Bucket(_) => None,
+        }
+    }
+
     /// A folder that is not empty stays; whoever writes into one that has gone makes it again.
     fn remove_empty_folder(&self, folder: &str) {
-        if let Some(all) = &self.folder {
+        if let Some(all) = self.own_folder() {
             let _ = std::fs::remove_dir(all.join(folder));
         }
     }

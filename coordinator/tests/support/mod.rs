@@ -42,7 +42,7 @@ pub fn durable_config(folder: &std::path::Path) -> Config {
             ListenAddress::Tcp("127.0.0.1:0".to_owned()),
         ],
         ledger: LedgerPlace::Sqlite(at("data/ledger.db")),
-        results: Some(at("data/results")),
+        results: Some(at("data/results").into()),
         // Tests run where little is free, too.
         shared_memory: Some(16 << 20),
         ..Config::default()

@@ -1,12 +1,13 @@
 //! `cognate backup`: the ledger as of one moment, then the objects that it names.
 
-use super::fsck::{failed, open, place};
+use super::fsck::{failed, open, place, results};
 use crate::arguments::Backup;
 use crate::error::{ClientError, Exit};
 use crate::output;
 use crate::output::text::count;
 use cognate_coordinator::config::LedgerPlace;
 use cognate_coordinator::ledger::sql::copy::copy;
+use cognate_coordinator::results::place::ResultsPlace;
 use std::fs::File;
 use std::io;
 use std::path::Path;
@@ -21,6 +22,12 @@ pub async fn run(a: &Backup) -> Result<Exit, ClientError> {
                 .into(),
         });
     };
+    let ResultsPlace::Folder(folder) = results(&a.data)? else {
+        return Err(ClientError::Input {
+            origin: "--results".into(),
+            message: "results in a bucket are copied by its own tools, after the ledger".into(),
+        });
+    };
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let wrong = |path: &Path, source| ClientError::File {
         action: "cannot write",
@@ -29,11 +36,11 @@ pub async fn run(a: &Backup) -> Result<Exit, ClientError> {
     };
     // A folder that is there may hold another copy.
     std::fs::create_dir(&a.folder).map_err(|e| wrong(&a.folder, e))?;
-    let (copied, results) = (a.folder.join("ledger.db"), a.folder.join("results"));
+    let (copied, to) = (a.folder.join("ledger.db"), a.folder.join("results"));
     // The ledger first: objects are written before their rows, and never change.
     copy(ledger, &copied).await.map_err(|e| failed(&e.into()))?;
-    let files = copy_folder(&a.data.results, &results).map_err(|e| wrong(&results, e))?;
-    let copy = open(&LedgerPlace::Sqlite(copied), &results).await?;
+    let files = copy_folder(&folder, &to).map_err(|e| wrong(&to, e))?;
+    let copy = open(&LedgerPlace::Sqlite(copied), &to.into()).await?;
     let found = copy.inspect().await.map_err(|e| failed(&e))?;
     output::print(&format!(
         "{} files of {} jobs are copied to {}; {} objects are missing or damaged there\n",

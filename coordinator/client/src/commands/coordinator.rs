@@ -67,12 +67,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
         config.ledger = ledger.parse().map_err(|e| wrong("--ledger", &e))?;
     }
     if let Some(results) = a.results.clone().or(file.results) {
-        if results.contains("://") && !results.starts_with("file://") {
-            return Err(ClientError::NotInThisVersion {
-                what: format!("--results {results} (only local folders)"),
-            });
-        }
-        config.results = Some(results.trim_start_matches("file://").into());
+        config.results = Some(results.parse().map_err(|e| wrong("--results", &e))?);
     }
     let failed = |error: CredentialError| ClientError::Input {
         origin: error.file,
@@ -100,6 +95,7 @@ fn config(a: &Coordinator) -> Result<Config, ClientError> {
         config.rules.policy.retention.keep_ms = keep.map_err(|e| wrong("--retain-days", &e))?;
     }
     config.metrics = a.metrics.clone().or(file.metrics);
+    config.traces = a.traces.clone().or(file.traces);
     config.audit_log = a.audit_log.clone().or(file.audit_log);
     config.page = a.page.clone().or(file.page);
     config.mechanisms = Some(Arc::new(PageMechanisms));

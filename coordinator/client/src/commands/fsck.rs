@@ -12,11 +12,11 @@ use cognate_coordinator::ledger::Ledger;
 use cognate_coordinator::ledger::clock::SystemClock;
 use cognate_coordinator::ledger::identity::{CoordinatorId, JobId};
 use cognate_coordinator::ledger::sql::SqlLedger;
+use cognate_coordinator::results::place::ResultsPlace;
 use cognate_coordinator::results::store::Store;
 use cognate_coordinator::results::trash::Amount;
 use serde_json::json;
 use std::fmt::Write;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Faults that are listed in a table; all of them are in the JSON.
@@ -25,7 +25,7 @@ const LISTED: usize = 20;
 /// Inspects, and repairs if asked.
 pub async fn run(a: &Fsck) -> Result<Exit, ClientError> {
     let place = place(&a.data)?;
-    let data = open(&place, &a.data.results).await?;
+    let data = open(&place, &results(&a.data)?).await?;
     let found = data.inspect().await.map_err(|e| failed(&e))?;
     let removed = match a.repair {
         true => Some(data.repair(&found).await.map_err(|e| failed(&e))?),
@@ -58,8 +58,19 @@ pub fn place(data: &DataArguments) -> Result<LedgerPlace, ClientError> {
     }
 }
 
+/// The results that are meant.
+pub fn results(data: &DataArguments) -> Result<ResultsPlace, ClientError> {
+    data.results.parse().map_err(|e| ClientError::Input {
+        origin: "--results".into(),
+        message: format!("{e}"),
+    })
+}
+
 /// A coordinator that serves nobody: what can be asked of ledger and results.
-pub async fn open(place: &LedgerPlace, results: &Path) -> Result<Arc<Coordinator>, ClientError> {
+pub async fn open(
+    place: &LedgerPlace,
+    results: &ResultsPlace,
+) -> Result<Arc<Coordinator>, ClientError> {
     let ledger = match place {
         LedgerPlace::Sqlite(path) => {
             SqlLedger::sqlite(path, Arc::new(SystemClock::default())).await
@@ -68,7 +79,8 @@ pub async fn open(place: &LedgerPlace, results: &Path) -> Result<Arc<Coordinator
         LedgerPlace::Memory => unreachable!("no command is given one"),
     };
     let ledger: Arc<dyn Ledger> = Arc::new(ledger.map_err(|e| failed(&e.into()))?);
-    let store = Store::folder(results, false).map_err(|e| failed(&e.into()))?;
+    let store = Store::open(results, false).await;
+    let store = store.map_err(|e| failed(&e.into()))?;
     let who = CoordinatorId::new("inspection").expect("it is a name");
     Ok(Coordinator::new(ledger, store, who, Policy::default()))
 }
