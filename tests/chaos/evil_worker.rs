@@ -49,8 +49,10 @@ impl Evil {
         }
     }
 
-    /// What a squatter says where a forged report was accepted.
-    pub const BELIEVED: &str = "forged reports were accepted";
+    /// What a squatter says where a forged report was accepted, before the lease.
+    pub const BELIEVED: &str = "a forged report was accepted: ";
+    /// What it says of a lease that it was given, before the lease.
+    pub const LEASED: &str = "leased ";
 }
 
 impl fmt::Display for Evil {
@@ -94,17 +96,15 @@ impl EvilCalls {
 
     async fn squat(&self, lease: &LeaseId, chunk: &TrackedChunk) -> Result<(), TransportError> {
         let others = self.of_others(lease, chunk.results.len() as u64);
-        // One may be its own by now, which a pull that waits has not said yet: what became of these two is not counted.
+        // One may be its own by now, which a pull that waits has not said yet: it is no forgery where that says it later.
         self.honest.renew(&others).await?;
         let lie = GiveBack::Failed("another one says so".into());
         self.honest.give_back(&others, &lie).await?;
-        let mut believed = 0;
         for other in &others {
             let receipt = self.honest.report(other, &spoilt(chunk)).await?;
-            believed += usize::from(receipt == Receipt::Accepted);
-        }
-        if believed > 0 {
-            println!("{}: {believed}", Evil::BELIEVED);
+            if receipt == Receipt::Accepted {
+                println!("{}{other}", Evil::BELIEVED);
+            }
         }
         Ok(())
     }
@@ -134,7 +134,7 @@ impl Transport for EvilCalls {
         let pulled = self.honest.pull(sequence, free, wait).await?;
         let mut own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
         for lease in &pulled.leases {
-            println!("leased {}", lease.id);
+            println!("{}{}", Evil::LEASED, lease.id);
             own.insert(lease.id.clone());
         }
         Ok(pulled)

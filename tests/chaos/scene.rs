@@ -11,6 +11,7 @@ use cognate_tests::dice::Dice;
 use cognate_tests::processes::{Process, until};
 use cognate_tests::storage::Storage;
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 /// What is promised: work goes on no longer than this after a fault and the length of a lease. A machine with
@@ -124,13 +125,18 @@ impl Scene {
         let mut wrong = Vec::new();
         for (kind, process) in &self.evil {
             let (name, log) = (evil_worker::name(*kind, process.id()), process.log());
-            let chunks = log.matches("leased ").count();
+            let said = |what: &str| {
+                let lines = log.lines().filter_map(|line| line.strip_prefix(what));
+                lines.map(str::to_owned).collect::<BTreeSet<String>>()
+            };
+            let own = said(Evil::LEASED);
+            let chunks = own.len();
             if chunks >= kind.found_out_after() && !warnings.iter().any(|line| line.contains(&name))
             {
                 wrong.push(format!("{name} is not named"));
             }
-            if log.contains(Evil::BELIEVED) {
-                wrong.push(format!("{name}: {}", Evil::BELIEVED));
+            for lease in said(Evil::BELIEVED).difference(&own) {
+                wrong.push(format!("{name}: {}{lease}", Evil::BELIEVED));
             }
         }
         wrong

@@ -293,6 +293,8 @@ impl Coordinator {
                 self.failed(worker, "it reports chunks that others have");
                 return Ok(Completion::Stale);
             }
+            // Whoever invents a lease must not have it become somebody's meanwhile.
+            Standing::Never => return Ok(Completion::Stale),
             Standing::Ended => {
                 if checked.is_err() {
                     return Ok(Completion::Stale);

@@ -401,7 +401,13 @@ impl Ledger for MemoryLedger {
     async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
         let mut tables = self.tables();
         let Some(holder) = tables.holder(lease) else {
-            return Ok(Standing::Ended);
+            let chunk = tables.chunk(lease.chunk);
+            return Ok(
+                match chunk.is_some_and(|chunk| chunk.row.epoch >= lease.epoch) {
+                    true => Standing::Ended,
+                    false => Standing::Never,
+                },
+            );
         };
         let chunk = tables.chunk(lease.chunk).filter(|_| !holder.is_elder);
         Ok(Standing::Held {

@@ -452,8 +452,10 @@ pub enum Standing {
         /// The question that it was leased for, where that is remembered: its session has the lease.
         request: Option<RequestId>,
     },
-    /// It has ended, or there was none.
+    /// It has ended. A lease that has ended never stands again.
     Ended,
+    /// There was none yet, and there may be one in the next moment, which is somebody else's.
+    Never,
 }
 
 impl Standing {

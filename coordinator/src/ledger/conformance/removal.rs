@@ -44,7 +44,7 @@ pub async fn a_job_that_has_ended_is_deleted_once(ledger: &dyn Ledger, _: &Manua
     let late = ledger.complete(first, object).await.unwrap();
     assert_eq!(late, Completion::Stale);
     assert_eq!(ledger.renew(&[first], 10).await.unwrap(), [Renewal::Lost]);
-    assert_eq!(ledger.standing(first).await.unwrap(), Standing::Ended);
+    assert_eq!(ledger.standing(first).await.unwrap(), Standing::Never);
     ledger.give_back(first, GiveBack::Drained).await.unwrap();
     let late = ledger.advance(job, epoch, Advance::default()).await;
     assert!(matches!(late, Err(LedgerError::UnknownJob(_))), "{late:?}");

@@ -122,10 +122,14 @@ pub async fn a_lease_stands_with_who_has_it(ledger: &dyn Ledger, clock: &ManualC
     assert!(!standing.is_of(&by("v", "s")));
     let mut ahead = lease.lease;
     ahead.epoch.0 += 1;
-    assert_eq!(ledger.standing(ahead).await.unwrap(), Standing::Ended);
+    assert_eq!(ledger.standing(ahead).await.unwrap(), Standing::Never);
     clock.advance_ms(1000);
     ledger.expire().await.unwrap();
     assert_eq!(ledger.standing(lease.lease).await.unwrap(), Standing::Ended);
+    assert_eq!(ledger.standing(ahead).await.unwrap(), Standing::Never);
+    let mut elsewhere = lease.lease;
+    elsewhere.chunk.first += 1;
+    assert_eq!(ledger.standing(elsewhere).await.unwrap(), Standing::Never);
 }
 
 pub async fn jobs_that_only_wait_want_no_look(ledger: &dyn Ledger, clock: &ManualClock) {

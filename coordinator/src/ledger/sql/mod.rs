@@ -326,33 +326,33 @@ impl Ledger for SqlLedger {
     }
 
     async fn standing(&self, lease: LeaseId) -> Result<Standing, LedgerError> {
-        // The younger of two leases stands in the chunk's row, the elder beside it.
+        // The younger of two leases stands in the chunk's row, the elder beside it. One look at both: between two the
+        // chunk may be leased.
         let rows = query(
-            "SELECT worker, request FROM chunks WHERE job = ? AND stage = ? AND first = ?
-             AND epoch = ? AND state = 'leased'
+            "SELECT worker, request, epoch, state FROM chunks WHERE job = ? AND stage = ? AND first = ?
              UNION ALL
-             SELECT worker, NULL FROM elders WHERE job = ? AND stage = ? AND first = ?
+             SELECT worker, NULL, epoch, 'leased' FROM elders WHERE job = ? AND stage = ? AND first = ?
              AND epoch = ? AND lease_until IS NOT NULL",
         );
         let job = lease.chunk.job.to_string();
         let (stage, first) = (lease.chunk.stage.0, signed(lease.chunk.first));
-        let rows = rows
-            .bind(&job)
-            .bind(stage)
-            .bind(first)
-            .bind(signed(lease.epoch.0));
-        let rows = rows
-            .bind(&job)
-            .bind(stage)
-            .bind(first)
-            .bind(signed(lease.epoch.0));
-        match rows.read_all(&self.readers).await?.first() {
-            Some(row) => Ok(Standing::Held {
-                worker: worker(row)?,
-                request: request_of(row)?,
-            }),
-            None => Ok(Standing::Ended),
+        let rows = rows.bind(&job).bind(stage).bind(first);
+        let rows = rows.bind(&job).bind(stage).bind(first);
+        let rows = rows.bind(signed(lease.epoch.0));
+        let mut standing = Standing::Never;
+        for row in rows.read_all(&self.readers).await? {
+            let epoch = number(&row, "epoch")?;
+            if epoch == lease.epoch.0 && text(&row, "state")? == "leased" {
+                return Ok(Standing::Held {
+                    worker: worker(&row)?,
+                    request: request_of(&row)?,
+                });
+            }
+            if epoch >= lease.epoch.0 {
+                standing = Standing::Ended;
+            }
         }
+        Ok(standing)
     }
 
     async fn finish(&self, job: JobId, epoch: Epoch, end: JobEnd) -> Result<(), LedgerError> {
