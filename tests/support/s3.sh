@@ -56,6 +56,8 @@ case $verb in
     cargo install --quiet --debug --locked s3s-fs --version 0.14.1 --features binary --root "$root/target/s3"
     ;;
   start)
+    of=$(pid)
+    if [ -n "$of" ] && kill -0 "$of" 2>/dev/null; then exit 0; fi
     mkdir -p "$folder/data/tests"
     if [ ! -f "$folder/keys" ]; then
       (umask 077 && printf 'key=%s\nsecret=%s\n' "$(cat /proc/sys/kernel/random/uuid)" \
