@@ -12,7 +12,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 installed=$root/target/s3/bin/s3s-fs
 
 program=${COGNATE_S3_SERVER:-$(command -v s3s-fs || echo "$installed")}
-if [ "$verb" != install ] && [ ! -x "$program" ]; then
+if [ "$verb" = start ] && [ ! -x "$program" ]; then
   echo "s3s-fs is not installed" >&2
   exit 77
 fi

@@ -215,7 +215,7 @@ fn sets_of_components() {
             "witness_data" => path.clone(),
             _ => folder.path().to_owned(),
         };
-        read_any_bytes(name, &[good.clone()], |bytes| {
+        read_any_bytes(name, std::slice::from_ref(&good), |bytes| {
             std::fs::write(&path, bytes).expect("there is room");
             let read = KnownSet::read(&asked);
             read.is_ok_and(|set| set.check().is_ok())
