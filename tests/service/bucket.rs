@@ -1,8 +1,8 @@
 //! Results in a bucket of S3 whose server is killed in the middle: the service stands still, says why, loses nothing, and
 //! goes on when the server is there again.
 
-use crate::worker_lost::{nervous, problem, quiet_answer, slow_worker};
-use cognate_tests::client::{accepted, has_ended, total};
+use crate::worker_lost::{begun, nervous, quiet_answer, stuck};
+use cognate_tests::client::{accepted, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions};
 use cognate_tests::processes::until;
 use cognate_tests::storage::Storage;
@@ -20,12 +20,7 @@ fn a_killed_server_of_the_results_stops_nothing_for_good() {
         environment: storage.environment(),
         ..nervous()
     });
-    for _ in 0..2 {
-        cluster.add_worker(&slow_worker());
-    }
-    let client = cluster.client();
-    let job = client.submit(&problem());
-    client.progress_once(&job, "some chunks are done", |p| accepted(p) >= 100);
+    let (client, job) = begun(&mut cluster);
     storage.kill();
     let words = format!("cannot use {results} for results");
     let explained = until("the job's explanation says why it stands still", || {
@@ -35,13 +30,7 @@ fn a_killed_server_of_the_results_stops_nothing_for_good() {
     });
     assert!(explained.contains("nothing is given out"), "{explained}");
     assert!(cluster.coordinator.log().contains(&words));
-    // Longer than a lease: workers lose their chunks and keep what they have found.
-    std::thread::sleep(Duration::from_secs(4));
-    let stuck = client.progress(&job).expect("it still answers");
-    assert!(
-        !has_ended(&stuck) && accepted(&stuck) < total(&stuck),
-        "{stuck:?}"
-    );
+    let stuck = stuck(&client, &job);
     // A coordinator that begins now does not take absent results for none.
     cluster.kill_coordinator();
     storage.start_again();

@@ -1,7 +1,7 @@
 //! A disk that fills up in the middle: the service stays, says why, loses nothing, and goes on when there is
 //! room again. The same for the memory that workers share with a coordinator.
 
-use crate::worker_lost::{nervous, problem, quiet_answer, slow_worker};
+use crate::worker_lost::{begun, nervous, problem, quiet_answer, slow_worker, stuck};
 use cognate_tests::client::{accepted, has_ended, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::namespaces::SmallDisk;
@@ -21,24 +21,13 @@ fn a_full_disk_stops_nothing_for_good() {
         within: disk.within(),
         ..nervous()
     });
-    for _ in 0..2 {
-        cluster.add_worker(&slow_worker());
-    }
-    let client = cluster.client();
-    let job = client.submit(&problem());
-    client.progress_once(&job, "some chunks are done", |p| accepted(p) >= 100);
+    let (client, job) = begun(&mut cluster);
     disk.fill();
     let said = |what: &str| cluster.coordinator.log().to_lowercase().contains(what);
     until("the coordinator says what is wrong", || {
         (said("no space left") || said("disk is full")).then_some(())
     });
-    // Longer than a lease: workers lose their chunks and keep what they have found.
-    std::thread::sleep(Duration::from_secs(4));
-    let stuck = client.progress(&job).expect("it still answers");
-    assert!(
-        !has_ended(&stuck) && accepted(&stuck) < total(&stuck),
-        "{stuck:?}"
-    );
+    stuck(&client, &job);
     assert_eq!(client.workers().len(), 2);
     std::thread::sleep(Duration::from_secs(1));
     let still = client.progress(&job).expect("it still answers");

@@ -1,7 +1,8 @@
 //! A worker is killed in the middle: the same solutions, bit for bit.
 
+use cognate_protocol::v1::JobProgress;
 use cognate_tests::builders::katsura;
-use cognate_tests::client::{Answer, Submission, accepted, total};
+use cognate_tests::client::{Answer, Client, Submission, accepted, has_ended, total};
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::processes::PATIENCE;
 use std::sync::OnceLock;
@@ -28,6 +29,28 @@ pub fn nervous() -> CoordinatorOptions {
         chunk_paths: Some(32),
         ..CoordinatorOptions::default()
     }
+}
+
+/// The problem with two slow workers, some of whose chunks are done.
+pub fn begun(cluster: &mut Cluster) -> (Client, String) {
+    for _ in 0..2 {
+        cluster.add_worker(&slow_worker());
+    }
+    let client = cluster.client();
+    let job = client.submit(&problem());
+    client.progress_once(&job, "some chunks are done", |p| accepted(p) >= 100);
+    (client, job)
+}
+
+/// A job that does not go on for longer than a lease: workers lose their chunks and keep what they have found.
+pub fn stuck(client: &Client, job: &str) -> JobProgress {
+    std::thread::sleep(Duration::from_secs(4));
+    let stuck = client.progress(job).expect("it still answers");
+    assert!(
+        !has_ended(&stuck) && accepted(&stuck) < total(&stuck),
+        "{stuck:?}"
+    );
+    stuck
 }
 
 /// What the problem's answer is where nothing happens.

@@ -1,13 +1,9 @@
 //! Database: a PostgreSQL server of one test, which may be killed.
 
-use crate::skip::skip;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use crate::server::OwnServer;
 
 /// A server in a folder of its own; it ends with this value.
-pub struct Database {
-    folder: PathBuf,
-}
+pub struct Database(OwnServer);
 
 impl Database {
     /// Starts one; `None`, with a printed reason, where PostgreSQL is not installed.
@@ -15,29 +11,7 @@ impl Database {
     /// # Panics
     /// When it is installed and does not start.
     pub fn start() -> Option<Self> {
-        // Its user must be able to go there, and the path of a socket is short.
-        let name = format!("cognate-pg-{}", uuid::Uuid::new_v4().simple());
-        let database = Self {
-            folder: std::env::temp_dir().join(name),
-        };
-        match database.tell("start") {
-            Some(0) => Some(database),
-            Some(77) => {
-                skip("PostgreSQL is not installed; tests/run.sh installs it");
-                None
-            }
-            code => panic!("PostgreSQL did not start: {code:?}"),
-        }
-    }
-
-    fn tell(&self, verb: &str) -> Option<i32> {
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("support/postgres.sh");
-        let status = Command::new("bash")
-            .arg(script)
-            .arg(verb)
-            .arg(&self.folder)
-            .status();
-        status.expect("bash can be started").code()
+        OwnServer::start("postgres.sh", "cognate-pg", "PostgreSQL").map(Self)
     }
 
     /// `kill -9`.
@@ -45,7 +19,7 @@ impl Database {
     /// # Panics
     /// When it is not there.
     pub fn kill(&self) {
-        assert_eq!(self.tell("kill"), Some(0));
+        self.0.kill();
     }
 
     /// `kill -9`, then a new server on the same data.
@@ -62,18 +36,12 @@ impl Database {
     /// # Panics
     /// When it does not come up.
     pub fn start_again(&self) {
-        assert_eq!(self.tell("start"), Some(0));
+        self.0.start_again();
     }
 
     /// As a coordinator wants it.
     pub fn url(&self) -> String {
-        let folder = self.folder.display();
+        let folder = self.0.folder().display();
         format!("postgres:///postgres?host={folder}&user=cognate")
-    }
-}
-
-impl Drop for Database {
-    fn drop(&mut self) {
-        self.tell("stop");
     }
 }

@@ -15,6 +15,7 @@ pub mod measures;
 pub mod namespaces;
 pub mod planted;
 pub mod processes;
+pub mod server;
 pub mod six_revolute;
 pub mod skip;
 pub mod storage;

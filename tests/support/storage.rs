@@ -1,13 +1,10 @@
 //! Storage: a server of S3 of one test, which may be killed.
 
-use crate::skip::skip;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use crate::server::OwnServer;
+use std::path::PathBuf;
 
 /// A server in a folder of its own; it ends with this value.
-pub struct Storage {
-    folder: PathBuf,
-}
+pub struct Storage(OwnServer);
 
 impl Storage {
     /// Starts one; `None`, with a printed reason, where its program is not installed.
@@ -15,28 +12,7 @@ impl Storage {
     /// # Panics
     /// When it is installed and does not start.
     pub fn start() -> Option<Self> {
-        let name = format!("cognate-s3-{}", uuid::Uuid::new_v4().simple());
-        let storage = Self {
-            folder: std::env::temp_dir().join(name),
-        };
-        match storage.tell("start") {
-            Some(0) => Some(storage),
-            Some(77) => {
-                skip("the S3 server s3s-fs is not installed; tests/run.sh installs it");
-                None
-            }
-            code => panic!("the S3 server did not start: {code:?}"),
-        }
-    }
-
-    fn tell(&self, verb: &str) -> Option<i32> {
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("support/s3.sh");
-        let status = Command::new("bash")
-            .arg(script)
-            .arg(verb)
-            .arg(&self.folder)
-            .status();
-        status.expect("bash can be started").code()
+        OwnServer::start("s3.sh", "cognate-s3", "the S3 server s3s-fs").map(Self)
     }
 
     /// `kill -9`.
@@ -44,7 +20,7 @@ impl Storage {
     /// # Panics
     /// When it is not there.
     pub fn kill(&self) {
-        assert_eq!(self.tell("kill"), Some(0));
+        self.0.kill();
     }
 
     /// A new server on the same data, where the last was killed.
@@ -52,7 +28,7 @@ impl Storage {
     /// # Panics
     /// When it does not come up.
     pub fn start_again(&self) {
-        assert_eq!(self.tell("start"), Some(0));
+        self.0.start_again();
     }
 
     /// Where a coordinator keeps its results.
@@ -62,7 +38,7 @@ impl Storage {
 
     /// The folder in which the server keeps these results as files.
     pub fn files(&self, prefix: &str) -> PathBuf {
-        self.folder.join("data/tests").join(prefix)
+        self.0.folder().join("data/tests").join(prefix)
     }
 
     /// What a coordinator must have in its environment: name and value.
@@ -70,18 +46,12 @@ impl Storage {
     /// # Panics
     /// When the server has not started.
     pub fn environment(&self) -> Vec<(String, String)> {
-        let text = std::fs::read_to_string(self.folder.join("environment"));
+        let text = std::fs::read_to_string(self.0.folder().join("environment"));
         let text = text.expect("the server has started");
         let line = |line: &str| {
             let (name, value) = line.split_once('=')?;
             Some((name.to_owned(), value.to_owned()))
         };
         text.lines().filter_map(line).collect()
-    }
-}
-
-impl Drop for Storage {
-    fn drop(&mut self) {
-        self.tell("stop");
     }
 }
