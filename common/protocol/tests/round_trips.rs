@@ -203,6 +203,8 @@ fn questions_about_loci_come_back() {
             samples: 3,
             projection: Some(1),
             tolerance: Some(1e-3),
+            within: vec![[-1.0, 2.0], [0.5, 3.0]],
+            certify: true,
         }),
         Question::RealSurface { samples: 4 },
         Question::Intersect(second(Vec::new())),

@@ -189,6 +189,8 @@ fn counts(curve: &RealCurve) -> Value {
         "closed_loops": counts.closed_loops, "unbounded_arcs": counts.unbounded_arcs,
         "isolated_points": counts.isolated_points, "singular_points": counts.singular_points,
         "connected_components": counts.connected_components,
+        "arcs_across_box": counts.arcs_across_box,
+        "proved_slabs": curve.proved_slabs(), "slabs": curve.proved_slabs().map(|_| curve.proofs.len()),
         "vertices": curve.vertices.len(), "edges": curve.edges.len(),
         "settled": curve.doubts.is_empty(),
     })
@@ -236,9 +238,16 @@ fn graph(curve: &RealCurve) -> Value {
         let samples: Vec<Value> = e.samples.iter().map(point).collect();
         json!({ "ends": e.ends, "samples": samples })
     });
+    let proofs = curve.proofs.iter().map(|p| {
+        json!({
+            "value": p.value, "different": p.different, "real": p.real, "not_real": p.not_real,
+            "proved": p.is_complete(curve.degree),
+        })
+    });
     json!({
         "id": curve.id.to_string(), "form": curve.form,
         "vertices": vertices.collect::<Vec<_>>(), "edges": edges.collect::<Vec<_>>(),
+        "slabs": proofs.collect::<Vec<_>>(),
     })
 }
 

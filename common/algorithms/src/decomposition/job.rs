@@ -306,18 +306,32 @@ impl Job {
         )
     }
 
-    /// Whether these points on slices are proved to be near solutions.
+    /// Whether points on slices are proved to be near solutions: fibre by fibre, each with its slices and the same number
+    /// of points.
     pub fn certify(
         system: StageSystem,
-        slices: Vec<Complex64>,
-        points: &[Vec<Complex64>],
+        fibres: &[(Vec<Complex64>, Vec<Vec<Complex64>>)],
         with: &Tracking,
     ) -> Self {
+        let points = fibres.iter().flat_map(|(_, points)| points);
+        let points = stored(&points.cloned().collect::<Vec<_>>());
+        let count = points.len() as u64;
+        let each = count / fibres.len().max(1) as u64;
+        let place = |item: u64| item / each.max(1) * count + item;
+        let first = fibres.first().map(|(slices, _)| slices.clone());
         let homotopy = HomotopyKind::Parameter {
-            start: slices.clone(),
-            targets: vec![slices],
+            start: first.unwrap_or_default(),
+            targets: fibres.iter().map(|(slices, _)| slices.clone()).collect(),
         };
-        Self::ask(system, Work::Certify, homotopy, stored(points), with)
+        let selected = StartPoints::Selected {
+            base: Box::new(points.as_start()),
+            indices: (0..count).map(place).collect(),
+        };
+        let opening = Opening {
+            objects: vec![points],
+            ..stage(Work::Certify, homotopy, selected, with).into()
+        };
+        Self::asked(system, opening)
     }
 
     /// How these witness points move when the parameters go from the first to the second.
@@ -369,7 +383,10 @@ impl Job {
         points: Arc<StoredPoints>,
         with: &Tracking,
     ) -> Self {
-        let opening = opening(work, homotopy, points, with);
+        Self::asked(system, opening(work, homotopy, points, with))
+    }
+
+    fn asked(system: StageSystem, opening: Opening) -> Self {
         Self {
             system,
             work: Doing::Asked {

@@ -84,7 +84,11 @@ impl Proving {
                 let [slices, moved] = moving_slices(problem, dimension);
                 let velocity = moved.iter().zip(&slices).map(|(to, from)| to - from);
                 let parameters = slices.iter().copied().chain(velocity).collect();
-                return Some(Job::certify(system, parameters, &points, &problem.tracking));
+                return Some(Job::certify(
+                    system,
+                    &[(parameters, points)],
+                    &problem.tracking,
+                ));
             }
             Some(job) => {
                 let pairs = std::mem::take(&mut self.asked).into_iter();
@@ -117,7 +121,7 @@ impl Proving {
         let [slices, moved] = moving_slices(problem, dimension);
         let with = &problem.tracking;
         if dimension == 0 {
-            return Some(Job::certify(tracked, slices, &points, with));
+            return Some(Job::certify(tracked, &[(slices, points)], with));
         }
         self.bending = true;
         Some(Job::bend(tracked, [slices, moved], &points, with))

@@ -7,7 +7,7 @@ use super::Context;
 use crate::decomposition::job::Job;
 use cognate_continuation::certification::Certificate;
 use cognate_continuation::item_result::ItemResult;
-use cognate_numeric::rational::Rational;
+use cognate_solutions::certificates::{Distinctness, Groups, judge};
 use cognate_solutions::witness::answer::CertifiedComponent;
 use serde::{Deserialize, Serialize};
 
@@ -27,18 +27,13 @@ impl Certify {
                 id: operand.id,
                 points: operand.degree() as u64,
                 certified: proved.len() as u64,
-                distinct: are_different(&proved),
+                distinct: are_different(&proved, with),
             });
         }
         let operand = with.operands.get(self.found.len())?;
-        let (slices, points) = (operand.slices.concat(), operand.set.doubles());
+        let fibre = (operand.slices.concat(), operand.set.doubles());
         let tracking = &with.problem.tracking;
-        Some(Job::certify(
-            operand.set.tracked(),
-            slices,
-            &points,
-            tracking,
-        ))
+        Some(Job::certify(operand.set.tracked(), &[fibre], tracking))
     }
 
     pub fn take(&mut self) -> Vec<CertifiedComponent> {
@@ -46,36 +41,27 @@ impl Certify {
     }
 }
 
-fn certificate(result: &ItemResult) -> Option<&Certificate> {
+/// The proof of a point, where there is one.
+pub(super) fn certificate(result: &ItemResult) -> Option<&Certificate> {
     match result {
         ItemResult::Certify(result) => result.fact().and_then(|fact| fact.certificate()),
         _ => None,
     }
 }
 
-/// Whether no two solutions can be the same: in some coordinate their centres are farther apart than their errors.
-fn are_different(proved: &[&Certificate]) -> bool {
-    let exact = |x: f64| Rational::from_f64(x).unwrap_or_default();
-    let apart = |a: &Certificate, b: &Certificate, v: usize| {
-        let errors = exact(a.error[v]) + exact(b.error[v]);
-        let (a, b) = (&a.centre[v], &b.centre[v]);
-        let re = Rational::from(&a.re - &b.re).abs();
-        let im = Rational::from(&a.im - &b.im).abs();
-        re > errors || im > errors
-    };
-    let mut order: Vec<&&Certificate> = proved.iter().collect();
-    order.sort_by(|a, b| a.centre[0].re.cmp(&b.centre[0].re));
-    let widest = proved.iter().map(|c| c.error[0]).fold(0.0, f64::max);
-    for (k, a) in order.iter().enumerate() {
-        for b in &order[k + 1..] {
-            let ahead = Rational::from(&b.centre[0].re - &a.centre[0].re);
-            if ahead > exact(2.0 * widest) {
-                break;
-            }
-            if !(0..a.dimension()).any(|v| apart(a, b, v)) {
-                return false;
-            }
-        }
+/// The unknowns of what is proved: all are affine.
+pub(super) fn affine(proved: &[&Certificate]) -> Groups {
+    let count = proved.first().map_or(0, |first| first.dimension());
+    Groups {
+        homogeneous: Vec::new(),
+        affine: (0..count).collect(),
     }
-    true
+}
+
+/// Whether no two solutions can be the same.
+fn are_different(proved: &[&Certificate], with: &Context<'_>) -> bool {
+    let verdicts = judge(proved, &affine(proved), with.problem.seed());
+    verdicts
+        .iter()
+        .all(|&verdict| verdict == Distinctness::Proved)
 }

@@ -12,6 +12,7 @@ mod member;
 mod mobility;
 mod multidegree;
 mod project;
+mod real_box;
 mod real_curve;
 mod real_points;
 mod real_surface;
@@ -20,6 +21,8 @@ mod sample;
 mod tests;
 #[cfg(test)]
 mod tests_of_loci;
+#[cfg(test)]
+mod tests_of_real_curves;
 
 use crate::answer::AnsweredQuestion;
 use crate::decomposition::deflated::Deflations;
@@ -274,7 +277,8 @@ impl QuestionSolve {
                         expected: format!("the place of one of {count} variables"),
                     });
                 }
-                Asking::RealCurve(Box::new(RealCurves::wished(*wish)))
+                real_box::checked(&wish.within, count)?;
+                Asking::RealCurve(Box::new(RealCurves::wished(wish.clone())))
             }
             Question::Intersect(with) => {
                 let all = system.equations.len();

@@ -6,10 +6,13 @@
 //! Wampler: Finding all real points of a complex curve, Contemp. Math. 448, 2007).
 
 mod assembled;
+mod boxed;
 mod finer;
+mod proofs;
 mod traced;
 
 use super::levels::{Change, levels, range_of};
+use super::real_box::RealBox;
 use super::{Context, Operand};
 use crate::decomposition::DecompositionOptions;
 use crate::decomposition::deflated::{Deflations, equal_ones_merged};
@@ -17,10 +20,11 @@ use crate::decomposition::job::{Job, StageSystem, Tracking};
 use crate::decomposition::problem::Problem;
 use crate::decomposition::superset::SingularEnd;
 use assembled::assemble;
-use cognate_continuation::bend::{SlicedEquations, doubles_of, exactly};
+use cognate_continuation::bend::{RefinedPoint, SlicedEquations, doubles_of, exactly};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
+use cognate_solutions::involution::Involution;
 use cognate_solutions::witness::question::CurveWish;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_systems::system::System;
@@ -64,7 +68,11 @@ enum Phase {
     MoveSlice,
     /// From the product of the forms to the equation whose solutions are the critical points.
     CriticalPoints,
+    /// Witness points go to the faces of the box that was asked for.
+    Window,
     Fibres,
+    /// Points of all fibres are proved.
+    Proofs,
     /// Tasks by place.
     Slabs(usize),
 }
@@ -130,7 +138,9 @@ impl RealCurves {
                 (Phase::Start, Some(job)) => self.started(with, job),
                 (Phase::MoveSlice, Some(job)) => self.slice_moved(with, job),
                 (Phase::CriticalPoints, Some(job)) => self.critical_points(with, operand, job),
+                (Phase::Window, Some(job)) => self.windowed(with, operand, job),
                 (Phase::Fibres, Some(job)) => self.fibred(with, operand, job),
+                (Phase::Proofs, Some(job)) => self.proved(with, operand, job),
                 (Phase::Slabs(place), Some(job)) => self.connected(with, place, job),
                 (_, None) => unreachable!("every phase after the first waits for a stage"),
             };
@@ -146,7 +156,9 @@ impl RealCurves {
         let now = std::mem::take(&mut self.now);
         let begun = !matches!(self.phase, Phase::Begin | Phase::Mirror);
         self.phase = Phase::Begin;
-        let mut curve = assemble(with, operand, &now);
+        let involution = with.problem.involution.as_ref();
+        let within = involution.and_then(|i| RealBox::new(&self.wish.within, i));
+        let mut curve = assemble(with, operand, &now, within);
         if begun && now.doubts.is_empty() {
             curve.check();
         }
@@ -288,7 +300,7 @@ impl RealCurves {
             return None;
         }
         let operand = &with.operands[self.found.len()];
-        self.slabs(with, operand)
+        self.window(with, operand)
     }
 
     fn critical_points(
@@ -358,9 +370,7 @@ impl RealCurves {
             if apart > within {
                 return self.doubt("a critical point is neither clearly real nor clearly not");
             }
-            for (own, image) in point.point.iter_mut().zip(&image) {
-                *own = 0.5 * (*own + image);
-            }
+            make_real(&mut point.point, involution);
             point.value = value(&self.now.form, &point.point);
             let same = |known: &Critical| distance(&known.point, &point.point) < SAME_SINGULAR;
             if !self.now.critical.iter().any(same) {
@@ -368,16 +378,21 @@ impl RealCurves {
             }
         }
         if self.now.apart {
+            if self.wish.certify {
+                let unproved = "it is not its own conjugate: its real points are not proved";
+                self.now.unproved.push(unproved.to_owned());
+            }
             return None;
         }
-        self.slabs(with, operand)
+        self.window(with, operand)
     }
 
     /// The stage of fibres in the middle of all slabs.
     fn slabs(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
         let now = &mut self.now;
         now.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let changes = now.critical.iter().map(|critical| Change {
+        let all = now.critical.iter().chain(&now.window);
+        let changes = all.map(|critical| Change {
             value: critical.value,
             exact: critical.exact,
         });
@@ -444,13 +459,18 @@ impl RealCurves {
             let mut fibre = Vec::new();
             for refined in refined {
                 let point = doubles_of(&refined.point);
-                let apart = distance(&point, &involution.image(&point));
-                let limit = REAL * refined.condition.clamp(1.0, 1e4);
-                if apart > limit && apart <= limit * CLEAR {
+                let Some(real) = is_real(&refined, &point, involution) else {
                     return self.doubt("a point is neither clearly real nor clearly not");
-                }
-                let real = apart <= limit;
-                fibre.push(FibrePoint { point, real });
+                };
+                let Some(inside) = self.inside(with, &point) else {
+                    return self.doubt(format!("at {middle:.6} the curve is on a face of the box"));
+                };
+                let wanted = real && inside;
+                fibre.push(FibrePoint {
+                    point,
+                    real,
+                    wanted,
+                });
             }
             if slab < slabs {
                 self.now.fibres.push(fibre);
@@ -470,6 +490,14 @@ impl RealCurves {
                 ));
             }
         }
+        match self.wish.certify {
+            true => self.prove(with, operand),
+            false => self.follow(with),
+        }
+    }
+
+    /// Begins with the paths between fibres.
+    fn follow(&mut self, with: &mut Context<'_>) -> Option<Job> {
         self.plan_tasks();
         let stages = self.now.tasks.len();
         if stages > MOST_STAGES {
@@ -502,7 +530,7 @@ impl RealCurves {
                     level: Some(level),
                     needed: true,
                 }));
-                if now.fibres[slab].iter().any(|p| p.real) {
+                if now.fibres[slab].iter().any(|p| p.wanted) {
                     let sample = |(place, to): (usize, f64)| Task {
                         slab,
                         to,
@@ -528,11 +556,11 @@ impl RealCurves {
         Some(Job::along((wanted, &*system), &points, tracking).ends_only())
     }
 
-    /// The points of a task: all of the fibre to the end of a slab, real ones to samples.
+    /// The points of a task: all of the fibre to the end of a slab, wanted ones to samples.
     fn travellers(&self, task: &Task) -> impl Iterator<Item = &FibrePoint> {
         let all = task.level.is_some();
         let fibre = self.now.fibres[task.slab].iter();
-        fibre.filter(move |p| all || p.real)
+        fibre.filter(move |p| all || p.wanted)
     }
 
     fn connected(&mut self, with: &mut Context<'_>, place: usize, job: &Job) -> Option<Job> {
@@ -560,6 +588,25 @@ impl RealCurves {
             self.now.tasks.extend(finer);
         }
         self.next_task(with, place + 1)
+    }
+}
+
+/// Whether a refined point is real; `None` where that is not clear.
+fn is_real(refined: &RefinedPoint, point: &[Complex64], involution: &Involution) -> Option<bool> {
+    let apart = distance(point, &involution.image(point));
+    let limit = REAL * refined.condition.clamp(1.0, 1e4);
+    match (apart <= limit, apart > limit * CLEAR) {
+        (true, _) => Some(true),
+        (_, true) => Some(false),
+        _ => None,
+    }
+}
+
+/// Moves a point that is real but for rounding errors to the middle between it and its image.
+fn make_real(point: &mut [Complex64], involution: &Involution) {
+    let image = involution.image(point);
+    for (own, image) in point.iter_mut().zip(image) {
+        *own = 0.5 * (*own + image);
     }
 }
 

@@ -1,12 +1,14 @@
 //! Sample: points of each component, by moving its slices: at random, near a point, or through real points of a box.
 
 use super::member::checked;
+use super::real_box::{self, Place, RealBox};
 use super::{Context, MOST_SAMPLES, Operand, QuestionError};
 use crate::decomposition::job::Job;
 use crate::decomposition::problem::Known;
 use cognate_continuation::bend::exactly;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
+use cognate_solutions::involution::Involution;
 use cognate_solutions::witness::answer::Samples;
 use cognate_solutions::witness::question::SampleWish;
 use cognate_systems::system::System;
@@ -55,17 +57,7 @@ impl Sample {
         if let Some(near) = &wish.near {
             checked(system, std::slice::from_ref(near))?;
         }
-        let n = system.variables.len();
-        if !wish.within.is_empty() && wish.within.len() != n {
-            let found = format!("{} pairs", wish.within.len());
-            return wrong("box", found, format!("{n}, one for each variable"));
-        }
-        for [low, high] in &wish.within {
-            if !(low.is_finite() && high.is_finite() && low < high) {
-                let expected = "two finite numbers, the lower first".into();
-                return wrong("box", format!("{low} to {high}"), expected);
-            }
-        }
+        real_box::checked(&wish.within, system.variables.len())?;
         Ok(Self {
             wish: wish.clone(),
             found: Vec::new(),
@@ -167,14 +159,11 @@ impl Sample {
                 problem.to_unknowns(&moved.collect::<Vec<_>>())
             }
             (None, false) => {
-                let each = self.wish.within.iter();
-                let point: Vec<Complex64> = each
-                    .map(|[low, high]| {
-                        let part = 0.5 * (1.0 + complex(1.0).re);
-                        Complex64::new(low + (high - low) * part, 0.0)
-                    })
-                    .collect();
-                problem.to_unknowns(&point)
+                let parts: Vec<f64> = (0..n).map(|_| 0.5 * (1.0 + complex(1.0).re)).collect();
+                let involution = conjugation(with);
+                let wanted = RealBox::new(&self.wish.within, &involution);
+                let point = wanted.map(|wanted| wanted.point(&parts));
+                problem.to_unknowns(&point.unwrap_or_default())
             }
             (None, true) => {
                 let size = spread(operand);
@@ -264,22 +253,25 @@ impl Sample {
         }
         let size = length(values).max(1.0);
         // In isotropic coordinates a point is real where conjugates are each other's.
-        let image = match &with.problem.involution {
-            Some(involution) => involution.image(values),
-            None => values.iter().map(|z| z.conj()).collect(),
-        };
-        let pairs = values.iter().zip(&image);
-        let real = pairs
-            .clone()
-            .all(|(a, b)| (a - b).norm_sqr().sqrt() <= REAL * size);
-        let bounds = self.wish.within.iter().zip(values);
-        let mut inside = bounds.map(|([low, high], z)| (*low..=*high).contains(&z.re));
-        real && inside.all(|inside| inside)
+        let involution = conjugation(with);
+        let image = involution.image(values);
+        let mut pairs = values.iter().zip(&image);
+        let real = pairs.all(|(a, b)| (a - b).norm_sqr().sqrt() <= REAL * size);
+        let wanted = RealBox::new(&self.wish.within, &involution);
+        real && wanted.is_none_or(|wanted| wanted.place(values, 0.0, None) != Place::Outside)
     }
 
     pub fn take(&mut self) -> Vec<Samples> {
         std::mem::take(&mut self.found)
     }
+}
+
+/// What real points are fixed by: conjugation in the variables, and those that it exchanges.
+fn conjugation(with: &Context<'_>) -> Involution {
+    let own = || Involution {
+        partner: (0..with.problem.variables()).collect(),
+    };
+    with.problem.involution.clone().unwrap_or_else(own)
 }
 
 /// How far the witness points spread, at least 1.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::decomposition::{DecompositionSolve, run_locally as decompose};
 use cognate_solutions::witness::answer::{Membership, Samples};
-use cognate_solutions::witness::question::{CurveWish, GivenPoint, SampleWish};
+use cognate_solutions::witness::question::{GivenPoint, SampleWish};
 use cognate_solutions::witness::{ComponentId, Decomposition};
 use cognate_systems::formats;
 use num_complex::Complex64;
@@ -12,7 +12,7 @@ use num_complex::Complex64;
 const ILLUSTRATIVE: &str = "variable_group x, y, z; function f, g, h; \
     s = x^2 + y^2 + z^2 - 1; \
     f = (y - x^2)*s*(x - 1/2); g = (z - x^3)*s*(y - 1/2); h = (y - x^2)*(z - x^3)*s*(z - 1/2);";
-const TWISTED_CUBIC: &str =
+pub(super) const TWISTED_CUBIC: &str =
     "variable_group x, y, z; function f, g, h; f = y - x^2; g = z - x*y; h = x*z - y^2;";
 
 pub(super) fn system(text: &str) -> System {
@@ -31,7 +31,11 @@ pub(super) fn components(system: &System, seed: u64) -> Decomposition {
 }
 
 /// Asks with another seed than that of the decomposition: nothing may depend on it.
-fn ask(system: &System, sets: &[WitnessSet], question: &Question) -> (Answer, Vec<String>) {
+pub(super) fn ask(
+    system: &System,
+    sets: &[WitnessSet],
+    question: &Question,
+) -> (Answer, Vec<String>) {
     let options = DecompositionOptions {
         seed: 77,
         ..DecompositionOptions::default()
@@ -335,135 +339,6 @@ fn what_is_not_whole_is_found() {
     );
 }
 
-/// Loops, arcs, isolated and singular points, connected parts.
-fn real_counts(text: &str, seed: u64) -> [u64; 5] {
-    let system = system(text);
-    let found = components(&system, seed);
-    let question = Question::RealCurve(CurveWish {
-        samples: 2,
-        ..CurveWish::default()
-    });
-    let (answer, doubts) = ask(&system, &found.components, &question);
-    let Answer::RealCurve(curves) = answer else {
-        panic!("{answer:?}");
-    };
-    assert!(doubts.is_empty(), "seed {seed}: {doubts:?}");
-    let mut sum = [0; 5];
-    for curve in &curves {
-        let c = curve.counts();
-        let own = [
-            c.closed_loops,
-            c.unbounded_arcs,
-            c.isolated_points,
-            c.singular_points,
-            c.connected_components,
-        ];
-        for (sum, own) in sum.iter_mut().zip(own) {
-            *sum += own;
-        }
-        for point in curve.edges.iter().flat_map(|edge| &edge.samples) {
-            assert!(point.iter().all(|z| z.im.abs() < 1e-9), "{point:?}");
-        }
-    }
-    sum
-}
-
-#[test]
-fn real_curves_have_their_loops_arcs_and_points() {
-    let curves = [
-        (
-            "variable_group x, y; function f; f = x^2 + y^2 - 1;",
-            [1, 0, 0, 0, 1],
-        ),
-        (
-            "variable_group x, y; function f; f = x^2 - y^2 - 1;",
-            [0, 2, 0, 0, 2],
-        ),
-        (
-            "variable_group x, y; function f; f = y^2 - x*(x - 1)*(x + 1);",
-            [1, 1, 0, 0, 2],
-        ),
-        (
-            "variable_group x, y; function f; f = y^2 - x^2*(x - 1);",
-            [0, 1, 1, 1, 2],
-        ),
-        (
-            "variable_group x, y; function f; f = y^2 - x^2*(x + 1);",
-            [0, 0, 0, 1, 1],
-        ),
-        (
-            "variable_group x, y; function f; f = y^2 - x^3;",
-            [0, 1, 0, 1, 1],
-        ),
-        (
-            "variable_group x, y; function f; f = x^2 + y^2 + 1;",
-            [0, 0, 0, 0, 0],
-        ),
-        (
-            "variable_group x, y; function f; f = x - 2*y + 1;",
-            [0, 1, 0, 0, 1],
-        ),
-        (
-            "variable_group x, y; function f; f = (x^2 + y^2 - 1)*(x - 2*y);",
-            [1, 1, 0, 0, 2],
-        ),
-        (TWISTED_CUBIC, [0, 1, 0, 0, 1]),
-    ];
-    for (text, expected) in curves {
-        for seed in 1..=2 {
-            assert_eq!(real_counts(text, seed), expected, "seed {seed}: {text}");
-        }
-    }
-}
-
-/// Along x many things are not general: values of critical points are the same, an inflection is critical, branches go to
-/// infinity over a value or lie in a fibre. Each is right, or a doubt that says why.
-#[test]
-fn projections_that_are_not_general_are_right_or_in_doubt() {
-    let curves = [
-        ("x^2 + y^2 - 1", Ok([1, 0, 0, 0, 1])),
-        // Two loops that meet in the origin, with equal highest and lowest points.
-        ("(x^2 + y^2)^2 - y^2 + x^2", Ok([0, 0, 0, 1, 1])),
-        ("x - y^3", Ok([0, 1, 0, 0, 1])),
-        ("x^4 + y^4 - 1", Ok([1, 0, 0, 0, 1])),
-        ("x*y - 1", Err("at infinity")),
-        ("x - 1", Err("")),
-    ];
-    for (equation, expected) in curves {
-        for seed in 1..=3 {
-            let system = system(&format!("variable_group x, y; function f; f = {equation};"));
-            let found = components(&system, seed);
-            let question = Question::RealCurve(CurveWish {
-                samples: 2,
-                projection: Some(0),
-                ..CurveWish::default()
-            });
-            let (answer, doubts) = ask(&system, &found.components, &question);
-            let Answer::RealCurve(curves) = answer else {
-                panic!("{answer:?}");
-            };
-            let counts = curves[0].counts();
-            let own = [
-                counts.closed_loops,
-                counts.unbounded_arcs,
-                counts.isolated_points,
-                counts.singular_points,
-                counts.connected_components,
-            ];
-            match expected {
-                Ok(expected) => {
-                    assert!(doubts.is_empty(), "{equation}, seed {seed}: {doubts:?}");
-                    assert_eq!(own, expected, "{equation}, seed {seed}");
-                }
-                Err(why) => assert!(
-                    doubts.iter().any(|doubt| doubt.contains(why)),
-                    "{equation}, seed {seed}: {own:?}, {doubts:?}"
-                ),
-            }
-        }
-    }
-}
-
 #[test]
 fn witness_points_are_proved_and_different() {
     for text in [
@@ -481,58 +356,6 @@ fn witness_points_are_proved_and_different() {
         assert_eq!(
             points,
             found.components.iter().map(|set| set.degree).sum::<u64>()
-        );
-    }
-}
-
-/// Arcs whose points are as dense as a tolerance asks, also where they turn, and no denser than they must be.
-#[test]
-fn chords_are_as_near_to_their_arcs_as_is_asked() {
-    // The distance of a point near the curve from it, from the value and the gradient of its equation.
-    type Gap = fn(f64, f64) -> f64;
-    let circle: Gap = |x, y| ((x * x + y * y).sqrt() - 1.0).abs();
-    let cusp: Gap = |x, y| {
-        let gradient = (4.0 * y * y + 9.0 * x * x * x * x).sqrt().max(1e-3);
-        (y * y - x * x * x).abs() / gradient
-    };
-    let curves = [
-        ("x^2 + y^2 - 1", circle, 1e-2),
-        ("x^2 + y^2 - 1", circle, 1e-4),
-        ("y^2 - x^3", cusp, 1e-3),
-    ];
-    for (equation, gap, tolerance) in curves {
-        let system = system(&format!("variable_group x, y; function f; f = {equation};"));
-        let found = components(&system, 1);
-        let question = Question::RealCurve(CurveWish {
-            samples: 1,
-            tolerance: Some(tolerance),
-            ..CurveWish::default()
-        });
-        let (answer, doubts) = ask(&system, &found.components, &question);
-        let Answer::RealCurve(curves) = answer else {
-            panic!("{answer:?}");
-        };
-        assert!(doubts.is_empty(), "{equation}: {doubts:?}");
-        let (mut worst, mut count) = (0.0f64, 0);
-        for edge in &curves[0].edges {
-            let end = |k: usize| edge.ends[k].map(|v| &curves[0].vertices[v].point);
-            let points: Vec<_> = end(0)
-                .into_iter()
-                .chain(&edge.samples)
-                .chain(end(1))
-                .collect();
-            for pair in points.windows(2) {
-                let [x, y] = [0, 1].map(|v| 0.5 * (pair[0][v].re + pair[1][v].re));
-                worst = worst.max(gap(x, y));
-                count += 1;
-            }
-        }
-        assert!(worst < 2.0 * tolerance, "{equation}: {worst:e}");
-        // A circle takes pi / sqrt(2 * tolerance) chords at least.
-        let most = 40.0 + 12.0 / tolerance.sqrt();
-        assert!(
-            f64::from(count) < most,
-            "{equation}: {count} pieces at {tolerance}"
         );
     }
 }

@@ -30,6 +30,8 @@ fn asked(m: v1::Question) -> Result<Asked, ProtocolError> {
             samples: curve.samples,
             projection: curve.projection,
             tolerance: curve.tolerance,
+            within: pairs("real_curve.within", &curve.within)?,
+            certify: curve.certify,
         }),
         v1::question::Kind::Intersect(second) => Question::Intersect(SecondSet {
             own: second.own,
@@ -59,20 +61,25 @@ fn wish(m: v1::SampleQuestion) -> Result<SampleWish, ProtocolError> {
         None => None,
         Some(near) => Some(one("sample.near", given(near)?)?),
     };
-    if !m.within.len().is_multiple_of(2) {
-        return Err(ProtocolError::invalid(
-            "sample.within",
-            format!("{} numbers", m.within.len()),
-            "a lower and an upper number for each variable",
-        ));
-    }
-    let pairs = m.within.chunks_exact(2);
     Ok(SampleWish {
         count: m.count,
         near,
         real: m.real,
-        within: pairs.map(|pair| [pair[0], pair[1]]).collect(),
+        within: pairs("sample.within", &m.within)?,
     })
+}
+
+/// Lower and upper bounds in turn.
+fn pairs(field: &'static str, numbers: &[f64]) -> Result<Vec<[f64; 2]>, ProtocolError> {
+    if !numbers.len().is_multiple_of(2) {
+        return Err(ProtocolError::invalid(
+            field,
+            format!("{} numbers", numbers.len()),
+            "a lower and an upper number for each variable",
+        ));
+    }
+    let pairs = numbers.chunks_exact(2);
+    Ok(pairs.map(|pair| [pair[0], pair[1]]).collect())
 }
 
 fn one(field: &str, mut points: Vec<GivenPoint>) -> Result<GivenPoint, ProtocolError> {

@@ -25,6 +25,8 @@ pub fn question(asked: &Asked) -> v1::Question {
             samples: wish.samples,
             projection: wish.projection,
             tolerance: wish.tolerance,
+            within: wish.within.concat(),
+            certify: wish.certify,
         })),
         Question::Intersect(second) => Some(Kind::Intersect(v1::IntersectQuestion {
             own: second.own,

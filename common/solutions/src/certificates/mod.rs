@@ -13,6 +13,7 @@ mod reality;
 pub use boxes::Groups;
 pub use distinct::{Distinctness, judge};
 pub use line::{Attempt, CertifiedCoordinate, CertifiedSystem, SolutionCertificate};
+pub use reality::judge as judge_reality;
 
 use crate::involution::Involution;
 use crate::solution_set::SolutionSet;

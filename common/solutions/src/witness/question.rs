@@ -27,7 +27,7 @@ pub struct SampleWish {
 }
 
 /// How real curves are followed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CurveWish {
     /// Points of each arc, on either side of its middle.
     pub samples: u32,
@@ -36,6 +36,11 @@ pub struct CurveWish {
     /// How far the arc may be from the lines between its points, in the units of the variables; more points are taken
     /// until it is not farther. `None`: only the samples.
     pub tolerance: Option<f64>,
+    /// Only what lies in this box: lower and upper bound for each variable, of a pair of conjugates for the real part and
+    /// for the imaginary part; empty: all of the curve.
+    pub within: Vec<[f64; 2]>,
+    /// Whether the number of real branches over each slab is proved.
+    pub certify: bool,
 }
 
 /// With what components are intersected.

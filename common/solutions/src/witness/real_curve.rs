@@ -20,6 +20,8 @@ pub enum VertexKind {
     Cusp,
     /// The curve is not singular; another component passes.
     Crossing,
+    /// The curve leaves the box that was asked for.
+    Window,
     /// Nothing happens there but that another vertex has the same value.
     Regular,
 }
@@ -54,6 +56,27 @@ pub struct CurveEdge {
     pub samples: Vec<Vec<Complex64>>,
 }
 
+/// What is proved of the points of a curve over one value of the form, inside a slab, as solutions of as many
+/// combinations of the equations as are tracked: real branches of the slab are as many as real points there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProvedFibre {
+    /// Value of the form in the unknowns that are tracked.
+    pub value: f64,
+    /// Points that are each alone in a box, and different from all others.
+    pub different: u64,
+    /// ... and real,
+    pub real: u64,
+    /// ... and not real.
+    pub not_real: u64,
+}
+
+impl ProvedFibre {
+    /// Whether so many points are proved to be different, and each to be real or not.
+    pub fn is_complete(&self, points: u64) -> bool {
+        self.different == points && self.real + self.not_real == points
+    }
+}
+
 /// The real part of one component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RealCurve {
@@ -67,6 +90,8 @@ pub struct RealCurve {
     pub vertices: Vec<CurveVertex>,
     /// The arcs, each from a vertex to a vertex.
     pub edges: Vec<CurveEdge>,
+    /// What is proved of the points over each slab; empty where that was not asked.
+    pub proofs: Vec<ProvedFibre>,
     /// What is not clear.
     pub doubts: Vec<String>,
 }
@@ -78,6 +103,8 @@ pub struct CurveCounts {
     pub closed_loops: u64,
     /// Connected parts that are lines.
     pub unbounded_arcs: u64,
+    /// Connected parts that begin and end where the curve leaves the box that was asked for.
+    pub arcs_across_box: u64,
     /// Points through which no real branch passes.
     pub isolated_points: u64,
     /// Real points where the curve is singular.
@@ -120,15 +147,25 @@ impl RealCurve {
                 .flat_map(|&k| self.edges[k - vertices].ends)
                 .filter(Option::is_none)
                 .count();
-            let plain = points.iter().all(|&v| degrees[v] == 2);
-            match (arcs.is_empty(), plain, open) {
-                (true, _, _) => counts.isolated_points += 1,
-                (false, true, 0) => counts.closed_loops += 1,
-                (false, true, 2) => counts.unbounded_arcs += 1,
+            let (leaving, inner): (Vec<usize>, Vec<usize>) = points
+                .into_iter()
+                .partition(|&v| self.vertices[v].kind == VertexKind::Window);
+            let plain = inner.iter().all(|&v| degrees[v] == 2);
+            match (arcs.is_empty(), plain, open, leaving.len()) {
+                (true, ..) => counts.isolated_points += 1,
+                (false, true, 0, 0) => counts.closed_loops += 1,
+                (false, true, 2, 0) => counts.unbounded_arcs += 1,
+                (false, true, 0, 2) => counts.arcs_across_box += 1,
                 _ => {}
             }
         }
         counts
+    }
+
+    /// Over how many slabs the number of real branches is proved; `None` where that was not asked.
+    pub fn proved_slabs(&self) -> Option<usize> {
+        let complete = self.proofs.iter().filter(|p| p.is_complete(self.degree));
+        (!self.proofs.is_empty()).then(|| complete.count())
     }
 
     /// What does not fit together: a vertex at which a branch is missing.
@@ -140,6 +177,7 @@ impl RealCurve {
                 VertexKind::Cusp => degree == 2,
                 VertexKind::Node => degree >= 4 && degree % 2 == 0,
                 VertexKind::Acnode => degree == 0,
+                VertexKind::Window => degree == 1,
             };
             if !fits {
                 self.doubts.push(format!(
@@ -181,6 +219,7 @@ mod tests {
             form: Vec::new(),
             vertices: kinds.iter().map(|&kind| vertex(kind)).collect(),
             edges: ends.iter().map(edge).collect(),
+            proofs: Vec::new(),
             doubts: Vec::new(),
         }
     }
@@ -216,6 +255,50 @@ mod tests {
         );
         let counts = eight.counts();
         assert_eq!((counts.closed_loops, counts.connected_components), (0, 1));
+    }
+
+    #[test]
+    fn what_leaves_a_box_is_neither_a_loop_nor_unbounded() {
+        use VertexKind::{Critical, Window};
+        let ends = [[Some(0), Some(1)], [Some(2), Some(1)]];
+        let mut arc = curve(&[Window, Critical, Window], &ends);
+        arc.check();
+        assert!(arc.doubts.is_empty());
+        let counts = arc.counts();
+        assert_eq!(
+            (counts.arcs_across_box, counts.connected_components),
+            (1, 1)
+        );
+        assert_eq!((counts.closed_loops, counts.unbounded_arcs), (0, 0));
+        let mut touching = curve(
+            &[Window, Critical],
+            &[[Some(0), Some(1)], [Some(0), Some(1)]],
+        );
+        touching.check();
+        assert!(!touching.doubts.is_empty());
+    }
+
+    #[test]
+    fn a_slab_with_a_point_that_is_not_proved_is_not_counted() {
+        let mut broken = curve(&[], &[]);
+        assert_eq!(broken.proved_slabs(), None);
+        let whole = ProvedFibre {
+            value: 0.0,
+            different: 4,
+            real: 2,
+            not_real: 2,
+        };
+        let lost = ProvedFibre {
+            different: 3,
+            real: 1,
+            ..whole.clone()
+        };
+        let unclear = ProvedFibre {
+            not_real: 1,
+            ..whole.clone()
+        };
+        broken.proofs = vec![whole, lost, unclear];
+        assert_eq!(broken.proved_slabs(), Some(1));
     }
 
     #[test]

@@ -42,23 +42,28 @@ pub async fn sample(a: &Sample) -> Result<Exit, ClientError> {
                 }
             },
         };
-        let within = match &a.within {
-            None => Vec::new(),
-            Some(Ranges(ranges)) if ranges.len() == 1 => vec![ranges[0]; variables.len()],
-            Some(Ranges(ranges)) => ranges.clone(),
-        };
-        if !within.is_empty() && within.len() != variables.len() {
-            let message = format!("{} ranges; expected {}", within.len(), variables.len());
-            return Err(wrong("--box", &message));
-        }
         Ok(Question::Sample(SampleWish {
             count: a.count,
             near,
             real: a.real,
-            within,
+            within: ranges_of(a.within.as_ref(), variables)?,
         }))
     })
     .await
+}
+
+/// A range for each variable: one is for all of them.
+fn ranges_of(given: Option<&Ranges>, variables: &[String]) -> Result<Vec<[f64; 2]>, ClientError> {
+    let ranges = match given {
+        None => return Ok(Vec::new()),
+        Some(Ranges(ranges)) if ranges.len() == 1 => vec![ranges[0]; variables.len()],
+        Some(Ranges(ranges)) => ranges.clone(),
+    };
+    if ranges.len() != variables.len() {
+        let message = format!("{} ranges; expected {}", ranges.len(), variables.len());
+        return Err(wrong("--box", &message));
+    }
+    Ok(ranges)
 }
 
 /// Images of components.
@@ -131,6 +136,8 @@ pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
             samples,
             projection: projection.transpose()?,
             tolerance: a.tolerance,
+            within: ranges_of(a.within.as_ref(), variables)?,
+            certify: a.certify,
         }))
     })
     .await?;

@@ -128,6 +128,9 @@ fn table(summary: &QuestionSummary, look: Look) -> String {
     text
 }
 
+/// Columns that are shown only where there is something in them.
+const ONLY_WHERE_ASKED: [&str; 3] = ["arcs_across_box", "proved_slabs", "slabs"];
+
 /// Name and cell of each column.
 type Row = Vec<(String, String)>;
 
@@ -170,6 +173,9 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
             "isolated_points",
             "singular_points",
             "connected_components",
+            "arcs_across_box",
+            "proved_slabs",
+            "slabs",
             "settled",
         ],
         _ => &[
@@ -180,10 +186,16 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
             "fiber_degree",
         ],
     };
+    let said = |name: &str| {
+        list.iter()
+            .any(|value| value[name].as_u64().is_some_and(|n| n > 0))
+    };
+    let shown = |name: &&&str| !ONLY_WHERE_ASKED.contains(name) || said(name);
+    let shown: Vec<&&str> = columns.iter().filter(shown).collect();
     let row = |value: &Value| {
-        let cells = columns.iter();
+        let cells = shown.iter();
         cells
-            .map(|name| (name.replace('_', " "), cell(&value[*name])))
+            .map(|name| (name.replace('_', " "), cell(&value[**name])))
             .collect()
     };
     list.iter().map(row).collect()

@@ -142,7 +142,8 @@ pub struct Plain {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 Examples:
-  cognate real-curve here --component 1.1 --output curve && open curve/curve.svg")]
+  cognate real-curve here --component 1.1 --output curve && open curve/curve.svg
+  cognate real-curve here --box=-2..2 --certify                          inside a box, with proofs")]
 pub struct RealCurve {
     /// Components.
     #[command(flatten)]
@@ -159,6 +160,13 @@ pub struct RealCurve {
     /// The variable whose values divide the curve; of a pair of conjugates its real part [default: a random real form]
     #[arg(long, value_name = "X")]
     pub projection: Option<String>,
+    /// Only what lies between two numbers for each variable: "0..1,-1..1", or a range for all of them; of a pair of
+    /// conjugates the first range is for the real part, the second for the imaginary part
+    #[arg(long = "box", value_name = "LOW..HIGH,...", value_parser = ranges, allow_hyphen_values = true)]
+    pub within: Option<Ranges>,
+    /// Prove how many real branches there are over each slab between two critical values
+    #[arg(long)]
+    pub certify: bool,
 }
 
 /// `cognate real-surface`.

@@ -1,6 +1,8 @@
 //! The graph of a real curve, put together from what paths between fibres found.
 
+use super::super::real_box::RealBox;
 use super::super::{Context, Operand};
+use super::boxed::clip;
 use super::traced::{End, FibrePoint, Task, Tracing, distance, value};
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};
@@ -28,13 +30,19 @@ struct Assembly<'a> {
 }
 
 /// The graph. What is in doubt already has no graph.
-pub(super) fn assemble(with: &Context<'_>, operand: &Operand, now: &Tracing) -> RealCurve {
+pub(super) fn assemble(
+    with: &Context<'_>,
+    operand: &Operand,
+    now: &Tracing,
+    within: Option<RealBox<'_>>,
+) -> RealCurve {
     let mut curve = RealCurve {
         id: operand.id,
         degree: operand.degree() as u64,
         form: now.form.clone(),
         vertices: Vec::new(),
         edges: Vec::new(),
+        proofs: now.proofs.clone(),
         doubts: now.doubts.clone(),
     };
     if !curve.doubts.is_empty() {
@@ -51,10 +59,11 @@ pub(super) fn assemble(with: &Context<'_>, operand: &Operand, now: &Tracing) -> 
         true => assembly.alone(),
         false => assembly.kinds(with),
     }
+    let wanted = assembly.wanted();
     let Assembly {
         mut vertices,
         mut edges,
-        doubts,
+        mut doubts,
         ..
     } = assembly;
     for edge in &mut edges {
@@ -68,7 +77,11 @@ pub(super) fn assemble(with: &Context<'_>, operand: &Operand, now: &Tracing) -> 
         vertex.point = with.problem.to_variables(&vertex.point);
     }
     (curve.vertices, curve.edges) = (vertices, edges);
+    doubts.extend(now.unproved.iter().cloned());
     curve.doubts = doubts;
+    if let Some(within) = within {
+        clip(&mut curve, &wanted, &within);
+    }
     curve
 }
 
@@ -77,10 +90,12 @@ impl<'a> Assembly<'a> {
         let vertices: Vec<CurveVertex> = now
             .critical
             .iter()
-            .map(|critical| CurveVertex {
-                kind: VertexKind::Critical,
-                point: critical.point.clone(),
-                value: critical.value,
+            .map(|critical| (VertexKind::Critical, critical))
+            .chain(now.window.iter().map(|point| (VertexKind::Window, point)))
+            .map(|(kind, at)| CurveVertex {
+                kind,
+                point: at.point.clone(),
+                value: at.value,
             })
             .collect();
         let mut edges = Vec::new();
@@ -161,7 +176,8 @@ impl<'a> Assembly<'a> {
             }
         }
         if let Some((apart, k)) = nearest {
-            let critical = self.vertices[k].kind != VertexKind::Regular;
+            let smooth = [VertexKind::Regular, VertexKind::Window];
+            let critical = !smooth.contains(&self.vertices[k].kind);
             if apart <= SAME
                 || (critical && apart <= AT_CRITICAL && (!regular || apart < 0.01 * AT_CRITICAL))
             {
@@ -189,8 +205,9 @@ impl<'a> Assembly<'a> {
     /// Real points of a slab came to a value inside it.
     fn sample(&mut self, task: &Task, ends: &[Option<End>]) {
         let at = task.to;
-        let arcs = self.arcs[task.slab].iter().flatten();
-        for (&arc, end) in arcs.zip(ends) {
+        let fibre = self.arcs[task.slab].iter().zip(&self.now.fibres[task.slab]);
+        let arcs = fibre.filter_map(|(arc, point)| arc.filter(|_| point.wanted));
+        for (arc, end) in arcs.zip(ends) {
             match end {
                 Some(End::At {
                     point,
@@ -200,6 +217,12 @@ impl<'a> Assembly<'a> {
                 _ => {}
             }
         }
+    }
+
+    /// The arcs that are wanted.
+    fn wanted(&self) -> Vec<bool> {
+        let points = self.now.fibres.iter().flatten();
+        points.filter(|p| p.real).map(|p| p.wanted).collect()
     }
 
     /// The real points of a curve that is not its own conjugate: its conjugate passes there, too.

@@ -46,7 +46,7 @@ pub(super) fn finer_samples(
 /// Where arcs are known, by growing value.
 fn rows(now: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64>) -> Vec<Row> {
     let fibre = &now.fibres[slab];
-    let real: Vec<usize> = (0..fibre.len()).filter(|&k| fibre[k].real).collect();
+    let real: Vec<usize> = (0..fibre.len()).filter(|&k| fibre[k].wanted).collect();
     if real.is_empty() {
         return Vec::new();
     }
@@ -69,7 +69,7 @@ fn rows(now: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64
             Some(Some(End::At { point, .. })) => Some(seen(point)),
             _ => None,
         };
-        // All points of a fibre go to levels, and real ones to samples.
+        // All points of a fibre go to levels, and wanted ones to samples.
         let points = match at_level {
             true => real.iter().map(|&k| end(k)).collect(),
             false => (0..real.len()).map(end).collect(),

@@ -1,5 +1,6 @@
 //! Tracing: what is known of a real curve while it is followed.
 
+use cognate_solutions::witness::real_curve::ProvedFibre;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,8 @@ pub(super) struct Task {
 pub(super) struct FibrePoint {
     pub point: Vec<Complex64>,
     pub real: bool,
+    /// Whether it is real and in the box that was asked for, or anywhere where none was.
+    pub wanted: bool,
 }
 
 /// The current component.
@@ -52,13 +55,19 @@ pub(super) struct Tracing {
     /// Points on the slice of the level, then on all its forms.
     pub start: Vec<Vec<Complex64>>,
     pub critical: Vec<Critical>,
-    /// Values of the critical points, ascending, each once.
+    /// Where the curve leaves the box that was asked for.
+    pub window: Vec<Critical>,
+    /// Values of the critical points and of those where it leaves the box, ascending, each once.
     pub levels: Vec<f64>,
     /// Values in the middle of the slabs: before the first level, between, after the last.
     pub middles: Vec<f64>,
     /// Values beyond all levels, below and above in turn.
     pub far: Vec<f64>,
     pub fibres: Vec<Vec<FibrePoint>>,
+    /// What is proved of each fibre, where that was asked.
+    pub proofs: Vec<ProvedFibre>,
+    /// What is not proved.
+    pub unproved: Vec<String>,
     pub tasks: Vec<Task>,
     /// Where the points of each task's slab came, in the order of the points.
     pub ends: Vec<Vec<Option<End>>>,
