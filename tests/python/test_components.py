@@ -78,6 +78,14 @@ def test_real_parts_are_seen(tmp_path: Path) -> None:
     assert node.settled and node.components[0]["singular_points"] == 1
     assert len(node.parts[0]["edges"]) >= 3 and node._repr_html_().startswith("<svg")
     assert node.picture.save(tmp_path / "node.svg").read_text() == node.picture.svg
+    circle = cg.decompose(["x^2 + y^2 - 1"], workers=1)
+    part = circle.real_curve(box={"x": (0, 2), "y": (-2, 2)}, tolerance=1e-3, certify=True)
+    [counts] = part.components
+    assert part.settled and (counts["arcs_across_box"], counts["closed_loops"]) == (1, 0)
+    assert counts["proved_slabs"] == counts["slabs"] > 0 and len(part.parts[0]["edges"][0]["samples"]) > 20
+    assert circle.real_curve(projection="x", samples=2).components[0]["closed_loops"] == 1
+    with pytest.raises(cg.InputError, match="none for y"):
+        circle.real_curve(box={"x": (0, 1)})
     sphere = cg.decompose(["x^2 + y^2 + z^2 - 1"], workers=1).real_surface(samples=4)
     assert sphere.settled and sphere.components[0]["euler"] == 2
     assert len(sphere.parts[0]["triangles"]) > 20

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 Point = tuple[complex, ...]
 """Coordinates in the order of the variables."""
 
+Ranges = Sequence[tuple[float, float]] | Mapping[str, tuple[float, float]]
+"""Two numbers for each variable, in their order or by name."""
+
 
 @dataclass(frozen=True)
 class Component:
@@ -194,7 +197,7 @@ class Decomposition:
         components: Iterable[str] = (),
         real: bool = False,
         near: object = None,
-        box: Sequence[tuple[float, float]] | Mapping[str, tuple[float, float]] | None = None,
+        box: Ranges | None = None,
         strict: bool = False,
         progress: Wanted = None,
     ) -> Sample:
@@ -207,16 +210,9 @@ class Decomposition:
         >>> found.array().shape, all(abs(x * x + y * y - 1) < 1e-12 for x, y in found.points["1.1"])
         ((5, 2), True)
         """
-        more = [f"--count={count}"]
+        more = [f"--count={count}", *self._box(box)]
         if real:
             more.append("--real")
-        if box is not None:
-            if isinstance(box, Mapping):
-                missing = [v for v in self.variables if v not in box]
-                if missing:
-                    raise InputError(f"expected a range for each variable, found none for {missing[0]}", field="box")
-                box = [box[v] for v in self.variables]
-            more.append("--box=" + ",".join(f"{float(low)!r}..{float(high)!r}" for low, high in box))
         files = {} if near is None else {"near": _points([near], self.variables)}
         summary = self._ask("sample", more, components, strict, progress, files)
         rest = iter(summary["points"])
@@ -231,13 +227,20 @@ class Decomposition:
         *,
         components: Iterable[str] = (),
         samples: int | None = None,
+        tolerance: float | None = None,
+        box: Ranges | None = None,
+        projection: str | None = None,
+        certify: bool = False,
         axes: Sequence[str] = (),
         strict: bool = False,
         progress: Wanted = None,
     ) -> RealPart:
         """The real part of curves: arcs between vertices, loops, singular points.
 
-        `samples`: points of each arc; `axes`: the two variables that the drawing shows.
+        `samples`: points of each arc; `tolerance`: more of them until arcs are not farther than this from the lines
+        between them; `box`: only what lies between two numbers for each variable; `projection`: the variable whose values
+        divide the curve, instead of a random form; `certify`: prove how many real branches each slab has; `axes`: the two
+        variables that the drawing shows.
 
         >>> import cognate as cg
         >>> circle = cg.decompose(["x^2 + y^2 - 1"], workers=1).real_curve()
@@ -245,7 +248,11 @@ class Decomposition:
         (1, True)
         """
         more = [f"--samples={samples}"] if samples is not None else []
+        more += [f"--tolerance={float(tolerance)!r}"] if tolerance is not None else []
+        more += [f"--projection={projection}"] if projection is not None else []
+        more += ["--certify"] if certify else []
         more += [f"--axes={','.join(axes)}"] if axes else []
+        more += self._box(box)
         return self._real("real-curve", "curve", more, components, strict, progress)
 
     def real_surface(
@@ -259,6 +266,16 @@ class Decomposition:
         """The real part of surfaces in three variables as triangles. `samples`: points of each edge."""
         more = [f"--samples={samples}"] if samples is not None else []
         return self._real("real-surface", "surface", more, components, strict, progress)
+
+    def _box(self, box: Ranges | None) -> list[str]:
+        if box is None:
+            return []
+        if isinstance(box, Mapping):
+            missing = [v for v in self.variables if v not in box]
+            if missing:
+                raise InputError(f"expected a range for each variable, found none for {missing[0]}", field="box")
+            box = [box[v] for v in self.variables]
+        return ["--box=" + ",".join(f"{float(low)!r}..{float(high)!r}" for low, high in box)]
 
     def _real(
         self, question: str, name: str, more: list[str], components: Iterable[str], strict: bool, progress: Wanted

@@ -4,6 +4,7 @@
 //! What moves witness points to other slices is a parameter homotopy, tracked in stages like any other. (Sommese,
 //! Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 to 16.)
 
+mod centred;
 mod certify;
 mod check;
 mod levels;
@@ -34,6 +35,7 @@ use crate::decomposition::{DecompositionOptions, ProblemError};
 use crate::progress::{Progress, StageProgress, VerdictCounts};
 use crate::run_locally;
 use crate::solve::{Next, Root, Solve, StageNumbers};
+use centred::{back, centred};
 use certify::Certify;
 use check::Check;
 use cognate_continuation::item_result::ItemResult;
@@ -47,6 +49,7 @@ use locus::{Locus, Wanted};
 use member::Member;
 use mobility::Mobility;
 use multidegree::Multidegree;
+use num_complex::Complex64;
 use project::Project;
 use real_curve::RealCurves;
 use real_points::RealPoints;
@@ -118,6 +121,8 @@ struct State {
     system: Arc<System>,
     options: DecompositionOptions,
     components: Vec<WitnessSet>,
+    /// The point that was moved to the origin; empty where none was.
+    centre: Vec<Complex64>,
     /// How many of the first equations the components are of, where that is not all.
     own: Option<u32>,
     /// Components of a second set.
@@ -142,6 +147,7 @@ impl State {
             system: Arc::new(system.clone()),
             options: options.clone(),
             components: components.to_vec(),
+            centre: Vec::new(),
             own: None,
             others: None,
             asking,
@@ -242,6 +248,25 @@ struct Context<'a> {
 impl QuestionSolve {
     /// A question to these components of a system that has been checked. Each point of them is checked.
     pub fn new(
+        system: &System,
+        options: &DecompositionOptions,
+        components: &[WitnessSet],
+        question: &Question,
+    ) -> Result<Self, QuestionError> {
+        if let Some(about) = centred(system, options, components, question) {
+            let mut solve = Self::asked(
+                &about.system,
+                &about.options,
+                &about.components,
+                &about.question,
+            )?;
+            solve.state.centre = about.centre;
+            return Ok(solve);
+        }
+        Self::asked(system, options, components, question)
+    }
+
+    fn asked(
         system: &System,
         options: &DecompositionOptions,
         components: &[WitnessSet],
@@ -414,7 +439,7 @@ impl QuestionSolve {
             Asking::Done(_) => None,
         };
         if job.is_none() {
-            let answer = match &mut state.asking {
+            let mut answer = match &mut state.asking {
                 Asking::Check(asking) => Answer::Check(asking.take()),
                 Asking::Certify(asking) => Answer::Certify(asking.take()),
                 Asking::Member(asking) => Answer::Member(asking.take()),
@@ -434,6 +459,9 @@ impl QuestionSolve {
                 }
                 Asking::Done(_) => return None,
             };
+            if !state.centre.is_empty() {
+                back(&mut answer, &state.centre, with.problem);
+            }
             state.asking = Asking::Done(Box::new(answer));
         }
         job
