@@ -298,6 +298,24 @@ fn a_circle_in_isotropic_coordinates() {
     let system = written("variable_group p, P; function f; f = p*P - 1;");
     let system = cognate_tests::systems::with_conjugates(system, "p~P");
     check_real("circle", &system, [1, 0, 0, 0, 1]);
+    // The upper half of it, with proofs: the second range is for the imaginary part.
+    for seed in seeds() {
+        let question = Question::RealCurve(CurveWish {
+            samples: 2,
+            within: vec![[-2.0, 2.0], [0.25, 2.0]],
+            certify: true,
+            ..CurveWish::default()
+        });
+        let Answer::RealCurve(curves) = ask("circle", &system, seed, &question) else {
+            panic!("a curve was asked");
+        };
+        let counts = curves[0].counts();
+        assert_eq!(
+            (counts.arcs_across_box, counts.connected_components),
+            (1, 1)
+        );
+        assert_eq!(curves[0].proved_slabs(), Some(curves[0].proofs.len()));
+    }
 }
 
 /// What two components of a decomposition have in common: the values of the variables, where it is points.
@@ -525,6 +543,16 @@ fn whitneys_umbrella_has_its_handle() {
     for seed in seeds() {
         let said = surface_without_doubt("whitney", "x^2 - y^2*z", seed);
         assert_eq!(said, Some((1, false)), "{seed}");
+    }
+}
+
+/// A torus twenty times its radius from the origin, where critical points were lost once without a word.
+#[test]
+fn a_torus_far_away_is_a_torus() {
+    let torus = "((x - 20)^2 + (y + 10)^2 + z^2 + 3)^2 - 16*((x - 20)^2 + (y + 10)^2)";
+    for seed in seeds() {
+        let said = surface_without_doubt("torus", torus, seed);
+        assert_eq!(said, Some((0, true)), "{seed}");
     }
 }
 

@@ -288,6 +288,55 @@ fn what_lies_in_a_box() {
     }
 }
 
+/// A node and a circle far from the origin, the circle multiplied out, are asked about their centre and answered about the
+/// origin.
+#[test]
+fn curves_far_away_come_back_to_their_places() {
+    let node = "(y + 20000)^2 - (x - 10000)^2*(x - 9999)";
+    let circle = "x^2 - 20000*x + y^2 + 40000*y + 500000000 - 4";
+    let near = |seed| CurveWish {
+        samples: 2,
+        within: vec![
+            [9_999.0, 10_003.0],
+            [-20_010.0, -19_999.25 + f64::from(seed)],
+        ],
+        certify: true,
+        ..CurveWish::default()
+    };
+    for seed in 1..=3u32 {
+        let (curve, doubts) = curve_of(
+            node,
+            u64::from(seed),
+            CurveWish {
+                samples: 1,
+                ..CurveWish::default()
+            },
+        );
+        assert!(doubts.is_empty(), "{doubts:?}");
+        let singular = curve.vertices.iter().find(|v| v.is_singular()).unwrap();
+        let expected = [10_000.0, -20_000.0];
+        let at = singular
+            .point
+            .iter()
+            .zip(expected)
+            .all(|(z, x)| (z.re - x).abs() < 1e-6);
+        assert!(at, "{singular:?}");
+        let (curve, doubts) = curve_of(circle, u64::from(seed), near(seed));
+        assert!(doubts.is_empty(), "{doubts:?}");
+        let counts = curve.counts();
+        assert_eq!(
+            (counts.arcs_across_box, counts.closed_loops),
+            (1, 0),
+            "{curve:?}"
+        );
+        assert_eq!(curve.proved_slabs(), Some(curve.proofs.len()));
+        for point in curve.edges.iter().flat_map(|edge| &edge.samples) {
+            let (x, y) = (point[0].re - 10_000.0, point[1].re + 20_000.0);
+            assert!((x * x + y * y - 4.0).abs() < 1e-6 && x > -1.0, "{x} {y}");
+        }
+    }
+}
+
 /// The number of real branches over every slab is proved, and is that of the arcs there.
 #[test]
 fn real_branches_over_slabs_are_proved() {

@@ -1,9 +1,11 @@
 //! Centre: the point from which the solutions of a polynomial system are seen at ordinary coordinates.
 //!
 //! A polynomial f of degree d has f(x + c) = f_d + (f_(d-1) + sum of c_k df_d/dx_k) + ...: c by least squares makes the terms
-//! below the highest small (Tschirnhaus' substitution, in several variables). Far from the origin, where that is not done, the
+//! below the highest small (Tschirnhaus' substitution, in several variables). Along directions on which the highest do not depend the
+//! next ones do the same. Far from the origin, where that is not done, the
 //! terms of an equation nearly cancel on all of its solutions.
 
+use crate::expression::Expressions;
 use crate::polynomial::Polynomial;
 use crate::system::System;
 use cognate_numeric::linear_algebra::svd::Svd;
@@ -33,8 +35,9 @@ pub fn about_centre(system: &System, partner: &[usize]) -> Option<(System, Vec<C
     let expand = |&root| Polynomial::expand(&system.expressions, root, n, 0);
     let equations: Vec<Polynomial> = system.equations.iter().map(expand).collect::<Option<_>>()?;
     let centre = centre_of(&equations, partner)?;
-    let (moved, about) = translated(system, &equations, &centre)?;
-    (size(&equations) >= LEAST_GAIN + size(&about)).then_some((moved, centre))
+    let about = translated(&equations, &centre)?;
+    let far = size(&equations) >= LEAST_GAIN + size(&about);
+    far.then(|| (written(system, &about), centre))
 }
 
 /// About how large solutions are, as a power of two: that of which powers make up for the coefficients below the highest.
@@ -63,82 +66,117 @@ fn exponent(x: f64) -> i32 {
     ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023
 }
 
-/// The centre of these equations, rounded; `None` where it is the origin or nothing determines it.
+/// The centre of these equations, rounded; `None` where nothing determines it.
 fn centre_of(equations: &[Polynomial], partner: &[usize]) -> Option<Vec<Complex64>> {
     let n = partner.len();
-    let mut columns = vec![Vec::new(); n];
-    let mut below = Vec::new();
-    for equation in equations {
-        let coefficients = equation.coefficients_at(&[]);
-        let degree = equation.degree();
-        let of_degree = |exponents: &Vec<u32>, degree: u32| exponents.iter().sum::<u32>() == degree;
-        let highest = coefficients.iter().filter(|(e, _)| of_degree(e, degree));
-        let size = highest
-            .clone()
-            .map(|(_, c)| c.norm_sqr())
-            .sum::<f64>()
-            .sqrt();
-        if degree == 0 || !size.is_normal() {
-            continue;
+    let unit = |k: usize| {
+        (0..n)
+            .map(|j| Complex64::from(f64::from(u8::from(j == k))))
+            .collect()
+    };
+    let mut free: Vec<Vec<Complex64>> = (0..n).map(unit).collect();
+    let mut centre = vec![Complex64::default(); n];
+    let most = equations.iter().map(Polynomial::degree).max().unwrap_or(0);
+    for below in 1..=most {
+        if free.is_empty() {
+            break;
         }
-        let mut rows: BTreeMap<Vec<u32>, Vec<Complex64>> = BTreeMap::new();
-        let zeros = || vec![Complex64::default(); n + 1];
-        for (exponents, c) in highest {
+        let about = translated(equations, &centre)?;
+        let (step, left) = step(&about, &free, below)?;
+        for (k, c) in centre.iter_mut().enumerate() {
+            *c += 0.5 * (step[k] + step[partner[k]].conj());
+        }
+        centre = rounded(&centre);
+        free = left;
+    }
+    Some(centre)
+}
+
+/// The step along some directions, on which terms of higher degrees do not depend, that makes those so far below the highest
+/// least, and the directions on which these do not depend either.
+fn step(
+    equations: &[Polynomial],
+    free: &[Vec<Complex64>],
+    below: u32,
+) -> Option<(Vec<Complex64>, Vec<Vec<Complex64>>)> {
+    let n = free.first()?.len();
+    let mut rows: Vec<Vec<Complex64>> = Vec::new();
+    for equation in equations {
+        rows.extend(rows_of(equation, n, below));
+    }
+    let along = |direction: &Vec<Complex64>| -> Vec<Complex64> {
+        let dot = |row: &Vec<Complex64>| row.iter().zip(direction).map(|(a, b)| a * b).sum();
+        rows.iter().map(dot).collect()
+    };
+    let wanted: Vec<Complex64> = rows.iter().map(|row| row[n]).collect();
+    if wanted
+        .iter()
+        .any(|z| !z.re.is_finite() || !z.im.is_finite())
+    {
+        return None;
+    }
+    let found = Svd::of(free.iter().map(along).collect());
+    let largest = found.values.first().copied().unwrap_or(0.0).max(RANK);
+    let rank = found.values.iter().filter(|&&v| v > RANK * largest).count();
+    let combined = |parts: &[Complex64]| -> Vec<Complex64> {
+        let part = |k: usize| parts.iter().zip(free).map(|(c, d)| c * d[k]).sum();
+        (0..n).map(part).collect()
+    };
+    let left = found.domain[rank..].iter().map(|parts| combined(parts));
+    Some((
+        combined(&found.least_squares(&wanted, rank)),
+        left.collect(),
+    ))
+}
+
+/// For each monomial so far below the highest degree: how its coefficient changes with each variable, and what it is, less.
+fn rows_of(equation: &Polynomial, n: usize, below: u32) -> Vec<Vec<Complex64>> {
+    let coefficients = equation.coefficients_at(&[]);
+    let degree = equation.degree();
+    let size = |of: u32| {
+        let own = coefficients
+            .iter()
+            .filter(|(e, _)| e.iter().sum::<u32>() == of);
+        own.map(|(_, c)| c.norm_sqr()).sum::<f64>().sqrt()
+    };
+    let size = size(degree);
+    if degree < below || !size.is_normal() {
+        return Vec::new();
+    }
+    let mut rows: BTreeMap<Vec<u32>, Vec<Complex64>> = BTreeMap::new();
+    let zeros = || vec![Complex64::default(); n + 1];
+    for (exponents, c) in &coefficients {
+        let own = exponents.iter().sum::<u32>();
+        if own + below == degree {
+            rows.entry(exponents.clone()).or_insert_with(zeros)[n] -= c / size;
+        }
+        if own + below == degree + 1 {
             for k in (0..n).filter(|&k| exponents[k] > 0) {
                 let mut lower = exponents.clone();
                 lower[k] -= 1;
                 rows.entry(lower).or_insert_with(zeros)[k] += c * f64::from(exponents[k]) / size;
             }
         }
-        for (exponents, c) in coefficients.iter() {
-            if degree > 0 && of_degree(exponents, degree - 1) {
-                rows.entry(exponents.clone()).or_insert_with(zeros)[n] -= c / size;
-            }
-        }
-        for row in rows.into_values() {
-            for (column, value) in columns.iter_mut().zip(&row) {
-                column.push(*value);
-            }
-            below.push(row[n]);
-        }
     }
-    if below.is_empty() || below.iter().any(|z| !z.re.is_finite() || !z.im.is_finite()) {
-        return None;
-    }
-    let found = Svd::of(columns);
-    let largest = found.values.first().copied().unwrap_or(0.0);
-    let rank = found.values.iter().filter(|&&v| v > RANK * largest).count();
-    let centre = found.least_squares(&below, rank);
-    let real = (0..n).map(|k| 0.5 * (centre[k] + centre[partner[k]].conj()));
-    rounded(&real.collect::<Vec<_>>())
+    rows.into_values().collect()
 }
 
-/// The same with few bits; `None` for the origin.
-fn rounded(point: &[Complex64]) -> Option<Vec<Complex64>> {
-    let largest = point
-        .iter()
-        .map(|z| z.re.abs().max(z.im.abs()))
-        .fold(0.0, f64::max);
-    if !largest.is_normal() {
-        return None;
-    }
+/// A point with few bits.
+fn rounded(point: &[Complex64]) -> Vec<Complex64> {
+    let parts = point.iter().flat_map(|z| [z.re.abs(), z.im.abs()]);
+    let largest = parts.fold(0.0, f64::max);
     let unit = f64::from_bits(((exponent(largest) - BITS + 1023).max(1) as u64) << 52);
     let round = |x: f64| (x / unit).round() * unit;
-    let point = point
+    let each = point
         .iter()
         .map(|z| Complex64::new(round(z.re), round(z.im)));
-    Some(point.collect())
+    each.collect()
 }
 
 /// The equations at x + c, multiplied out.
-fn translated(
-    system: &System,
-    equations: &[Polynomial],
-    centre: &[Complex64],
-) -> Option<(System, Vec<Polynomial>)> {
-    let n = centre.len();
-    let mut between = crate::expression::Expressions::new();
-    let mut leaves = Vec::with_capacity(n);
+fn translated(equations: &[Polynomial], centre: &[Complex64]) -> Option<Vec<Polynomial>> {
+    let mut between = Expressions::new();
+    let mut leaves = Vec::with_capacity(centre.len());
     for (k, &c) in centre.iter().enumerate() {
         let (x, c) = (
             between.variable(k as u32),
@@ -146,26 +184,27 @@ fn translated(
         );
         leaves.push(between.add(x, c));
     }
-    let mut moved = System {
-        expressions: crate::expression::Expressions::new(),
-        equations: Vec::new(),
+    let each = equations.iter().map(|equation| {
+        let root = equation.write(&mut between, &leaves);
+        Polynomial::expand(&between, root, centre.len(), 0)
+    });
+    each.collect()
+}
+
+/// The system with these equations.
+fn written(system: &System, equations: &[Polynomial]) -> System {
+    let mut expressions = Expressions::new();
+    let variables = 0..system.variables.len();
+    let own: Vec<_> = variables.map(|k| expressions.variable(k as u32)).collect();
+    let roots = equations.iter().map(|e| e.write(&mut expressions, &own));
+    System {
+        equations: roots.collect(),
+        expressions,
         scaling: Default::default(),
         symmetry: Vec::new(),
         degenerate: Default::default(),
         ..system.clone()
-    };
-    let own: Vec<_> = (0..n)
-        .map(|k| moved.expressions.variable(k as u32))
-        .collect();
-    let mut about = Vec::with_capacity(equations.len());
-    for equation in equations {
-        let root = equation.write(&mut between, &leaves);
-        let equation = Polynomial::expand(&between, root, n, 0)?;
-        let root = equation.write(&mut moved.expressions, &own);
-        moved.equations.push(root);
-        about.push(equation);
     }
-    Some((moved, about))
 }
 
 #[cfg(test)]
@@ -192,6 +231,19 @@ mod tests {
         let expand = |s: &System| Polynomial::expand(&s.expressions, s.equations[0], 3, 0).unwrap();
         assert_eq!(expand(&moved).degree(), 4);
         assert_eq!(about_centre(&moved, &[0, 1, 2]), None);
+    }
+
+    #[test]
+    fn variables_without_terms_of_the_highest_degree_have_a_centre() {
+        let far = system(
+            "variable_group x, y; function f; f = (y + 20000)^2 - (x - 10000)^2*(x - 9999);",
+        );
+        let (_, centre) = about_centre(&far, &[0, 1]).unwrap();
+        let at = centre.iter().zip([10_000.0 - 1.0 / 3.0, -20_000.0]);
+        assert!(
+            at.into_iter().all(|(c, x)| (c.re - x).abs() < 1e-2),
+            "{centre:?}"
+        );
     }
 
     #[test]
