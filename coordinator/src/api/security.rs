@@ -6,7 +6,7 @@ use super::middleware::{Answer, Inner, Middleware};
 use super::visible::visible;
 use crate::ledger::identity::{Credential, Tenant};
 use cognate_worker::transport::tokens::{CredentialError, Limits, Role, read_tokens};
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::time::Duration;
@@ -217,14 +217,21 @@ fn hashed(file: &Path) -> Result<Vec<HashedToken>, CredentialError> {
     hashed.collect()
 }
 
-/// Says that others than the owner can read the tokens.
+/// Says that others than this coordinator can read the tokens. A file of another owner, as a Kubernetes secret is
+/// root's, can be read by a group only.
 fn warn_of_readers(file: &Path) {
-    let mode = std::fs::metadata(file).map(|found| found.permissions().mode());
-    if let Ok(mode) = mode
-        && mode & 0o077 != 0
-    {
+    let Ok(found) = std::fs::metadata(file) else {
+        return;
+    };
+    let (mode, is_own) = (
+        found.permissions().mode(),
+        found.uid() == rustix::process::geteuid().as_raw(),
+    );
+    let others = if is_own { 0o077 } else { 0o037 };
+    if mode & others != 0 {
+        let wanted = if is_own { "600" } else { "440" };
         tracing::warn!(file = %file.display(), mode = format!("{:o}", mode & 0o777),
-            "others can read the tokens: chmod 600");
+            "others can read the tokens: chmod {wanted}");
     }
 }
 
