@@ -2,6 +2,7 @@
 
 use super::audit_log::{AuditLog, Entry};
 use super::caller::Caller;
+use super::methods;
 use super::middleware::{Answer, Inner, Middleware};
 use super::visible::visible;
 use crate::ledger::identity::{Credential, Tenant};
@@ -83,19 +84,6 @@ pub struct Tokens {
     file: PathBuf,
 }
 
-/// Calls of clients that change nothing.
-const READ: [&str; 9] = [
-    "Watch",
-    "GetSummary",
-    "GetDecomposition",
-    "StreamSolutions",
-    "StreamPaths",
-    "Explain",
-    "ListJobs",
-    "ListWorkers",
-    "GetServerInfo",
-];
-
 /// A token, without the token.
 struct HashedToken {
     /// What it opens; `None`: everything.
@@ -176,7 +164,7 @@ impl Tokens {
             // Probes have no tokens, and learn only that it is alive.
             "grpc.health.v1.Health" => return Ok(Caller::untold("nobody", peer)),
             "cognate.v1.WorkerApi" => Some(Role::Worker),
-            "cognate.v1.ClientApi" if READ.contains(&method) => Some(Role::Viewer),
+            "cognate.v1.ClientApi" if methods::reads_only(method) => Some(Role::Viewer),
             "cognate.v1.ClientApi" => Some(Role::Client),
             _ => None,
         };
@@ -384,7 +372,10 @@ mod tests {
         );
         // Whoever may look changes nothing, and works for nobody.
         let viewer = Some("Bearer viewer-0123456789");
-        for method in READ {
+        let reading = methods::OF_CLIENTS
+            .iter()
+            .filter(|method| method.reads_only);
+        for method in reading.map(|method| method.name) {
             let path = format!("/cognate.v1.ClientApi/{method}");
             check(&path, viewer, None);
             check(&path, Some("Bearer client-0123456789"), None);

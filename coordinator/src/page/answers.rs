@@ -27,6 +27,7 @@ use super::points::Sample;
 use super::request::{Fault, Query, answer, download, fault, full, json_text, json_value};
 use crate::recent::Recent;
 use bytes::Bytes;
+use cognate_continuation::start_systems::interruption::Interruption;
 use cognate_protocol::limits::MESSAGE_BYTES;
 use cognate_protocol::option_misfit::any_of;
 use cognate_protocol::submission::{Decompose, Options, Source, StartKind, Submission};
@@ -336,8 +337,11 @@ impl Page {
             status: StatusCode::SERVICE_UNAVAILABLE,
             message: "another mechanism is being solved: try again".to_owned(),
         })?;
+        let sign = Interruption::default();
+        // Dropped with this call: when the page closes, or is told to cancel.
+        let _waits = sign.when_dropped();
         let solved = tokio::task::spawn_blocking(move || {
-            let answer = asked(mechanisms.as_ref(), sent);
+            let answer = sign.run(|| asked(mechanisms.as_ref(), sent));
             drop(turn);
             answer
         });
