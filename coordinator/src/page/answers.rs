@@ -43,6 +43,7 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::timeout;
 use tokio_util::sync::CancellationToken;
 use tonic::body::Body;
 use tonic::{Code, Status};
@@ -61,6 +62,8 @@ const UPLOADS: usize = 2;
 const LISTENERS: usize = 100;
 /// A file must have arrived after this time.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// How long a question about a mechanism waits for the one before it: one that was cancelled ends sooner.
+const TURN: Duration = Duration::from_secs(3);
 /// Pictures of jobs that were looked at lately.
 const PICTURES: usize = 4;
 /// Bytes of a token.
@@ -333,7 +336,8 @@ impl Page {
         let sent: Sent = serde_json::from_slice(&bytes)
             .map_err(|error| Fault::of_request(format!("the body is not as expected: {error}")))?;
         let solving = Arc::clone(&self.solving);
-        let turn = solving.try_acquire_owned().map_err(|_| Fault {
+        let turn = timeout(TURN, solving.acquire_owned()).await;
+        let turn = turn.ok().and_then(Result::ok).ok_or_else(|| Fault {
             status: StatusCode::SERVICE_UNAVAILABLE,
             message: "another mechanism is being solved: try again".to_owned(),
         })?;
