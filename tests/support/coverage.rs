@@ -14,7 +14,7 @@ extern "C" fn __sanitizer_cov_8bit_counters_init(begin: *const AtomicU8, end: *c
     let mut all = COUNTERS.lock().unwrap_or_else(PoisonError::into_inner);
     let known = |part: &&[AtomicU64]| part.as_ptr_range().contains(&begin.cast());
     let length = (end as usize).saturating_sub(begin as usize);
-    if length < 16 || all.iter().any(|part| known(&part)) {
+    if length < 16 || all.iter().any(known) {
         return;
     }
     // SAFETY: these are the bounds of one array of bytes that lives as long as the program, and `AtomicU64` may have any
