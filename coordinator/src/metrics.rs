@@ -46,6 +46,11 @@ fn family(text: &mut String, name: &str, kind: &str, help: &str, values: &[(Stri
     }
 }
 
+/// A family of one value.
+fn single(text: &mut String, name: &str, kind: &str, help: &str, value: u64) {
+    family(text, name, kind, help, &[(String::new(), value)]);
+}
+
 fn label(name: &str, value: &str) -> String {
     let value = value.replace('\\', "\\\\").replace('"', "\\\"");
     format!("{{{name}=\"{}\"}}", value.replace('\n', " "))
@@ -111,37 +116,18 @@ pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<Strin
     let help = "Chunks of jobs that have not ended; ready ones wait for a worker.";
     family(&mut text, "cognate_chunks", "gauge", help, &of_chunks);
     let help = "CPU seconds that the items which wait for a worker are expected to take, by those done so far.";
-    let backlog = [(String::new(), backlog_micros.div_ceil(1_000_000))];
-    family(
-        &mut text,
-        "cognate_backlog_seconds",
-        "gauge",
-        help,
-        &backlog,
-    );
+    let backlog = backlog_micros.div_ceil(1_000_000);
+    single(&mut text, "cognate_backlog_seconds", "gauge", help, backlog);
     let longest = waiting.longest(standing, Instant::now()).as_secs();
     let help =
         "Seconds that the job has waited which has ready chunks and has not got on for longest.";
-    let longest = [(String::new(), longest)];
-    family(
-        &mut text,
-        "cognate_waiting_seconds",
-        "gauge",
-        help,
-        &longest,
-    );
+    single(&mut text, "cognate_waiting_seconds", "gauge", help, longest);
     let help = "Paths accepted, of all stages, by how they ended.";
     let of_paths = named(paths, "outcome");
     family(&mut text, "cognate_paths_total", "counter", help, &of_paths);
     let help = "CPU time of accepted chunks, in microseconds.";
-    let time = [(String::new(), micros)];
-    family(
-        &mut text,
-        "cognate_tracking_microseconds_total",
-        "counter",
-        help,
-        &time,
-    );
+    let name = "cognate_tracking_microseconds_total";
+    single(&mut text, name, "counter", help, micros);
     let of_speculative = [
         (
             "cognate_speculative_leases_total",
@@ -153,7 +139,7 @@ pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<Strin
         ),
     ];
     for ((name, help), value) in of_speculative.into_iter().zip(speculative) {
-        family(&mut text, name, "counter", help, &[(String::new(), value)]);
+        single(&mut text, name, "counter", help, value);
     }
     let of = |count: fn(&(u64, u64)) -> u64| -> Vec<(String, u64)> {
         let counts = workers.iter();

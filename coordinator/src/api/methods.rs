@@ -3,7 +3,7 @@
 /// A client's method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClientMethod {
-    /// Its name.
+    /// The name of the method, as `proto/client_api.proto` declares it.
     pub name: &'static str,
     /// Whether it changes nothing: viewers may call it.
     pub reads_only: bool,
