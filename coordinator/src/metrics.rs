@@ -14,6 +14,9 @@ use tokio::time::Instant;
 const ROWS: u32 = 10_000;
 /// A worker that was silent for longer counts as gone. Default 60 s: six heartbeats.
 const PRESENT_MS: u64 = 60_000;
+/// CPU time that is expected of an item while no item of its stage is done, in microseconds.
+const UNKNOWN_MICROS: u64 = 1_000;
+
 /// Since when jobs wait: how far each had got when it was last seen to get on, and when that was.
 #[derive(Debug, Default)]
 pub struct Waiting(HashMap<JobId, (u64, Instant)>);
@@ -43,6 +46,11 @@ fn family(text: &mut String, name: &str, kind: &str, help: &str, values: &[(Stri
     }
 }
 
+/// A family of one value.
+fn single(text: &mut String, name: &str, kind: &str, help: &str, value: u64) {
+    family(text, name, kind, help, &[(String::new(), value)]);
+}
+
 fn label(name: &str, value: &str) -> String {
     let value = value.replace('\\', "\\\\").replace('"', "\\\"");
     format!("{{{name}=\"{}\"}}", value.replace('\n', " "))
@@ -57,6 +65,7 @@ pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<Strin
     let mut chunks = [0; 3];
     let mut paths: BTreeMap<&str, u64> = BTreeMap::new();
     let mut micros = 0;
+    let mut backlog_micros = 0u64;
     let mut speculative = [0; 2];
     let mut standing = HashMap::new();
     for (job, stages) in ledger.overviews(ROWS).await? {
@@ -67,6 +76,12 @@ pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<Strin
                 chunks[1] += stage.leased.chunks;
                 let done = stage.accepted.chunks + stage.failed.chunks;
                 chunks[2] += done;
+                let each = stage.cpu_micros.checked_div(stage.accepted.items);
+                let wanted = stage
+                    .ready
+                    .items
+                    .saturating_mul(each.unwrap_or(UNKNOWN_MICROS));
+                backlog_micros = backlog_micros.saturating_add(wanted);
                 // What is leased or done differs once a chunk is given out, comes back or is done.
                 let got = stage.leased.chunks + 2 * done + u64::from(stage.stage.0);
                 if stage.ready.chunks > 0 {
@@ -100,29 +115,19 @@ pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<Strin
     let of_chunks: Vec<_> = of_chunks.map(|(k, v)| (label("state", k), v)).collect();
     let help = "Chunks of jobs that have not ended; ready ones wait for a worker.";
     family(&mut text, "cognate_chunks", "gauge", help, &of_chunks);
+    let help = "CPU seconds that the items which wait for a worker are expected to take, by those done so far.";
+    let backlog = backlog_micros.div_ceil(1_000_000);
+    single(&mut text, "cognate_backlog_seconds", "gauge", help, backlog);
     let longest = waiting.longest(standing, Instant::now()).as_secs();
     let help =
         "Seconds that the job has waited which has ready chunks and has not got on for longest.";
-    let longest = [(String::new(), longest)];
-    family(
-        &mut text,
-        "cognate_waiting_seconds",
-        "gauge",
-        help,
-        &longest,
-    );
+    single(&mut text, "cognate_waiting_seconds", "gauge", help, longest);
     let help = "Paths accepted, of all stages, by how they ended.";
     let of_paths = named(paths, "outcome");
     family(&mut text, "cognate_paths_total", "counter", help, &of_paths);
     let help = "CPU time of accepted chunks, in microseconds.";
-    let time = [(String::new(), micros)];
-    family(
-        &mut text,
-        "cognate_tracking_microseconds_total",
-        "counter",
-        help,
-        &time,
-    );
+    let name = "cognate_tracking_microseconds_total";
+    single(&mut text, name, "counter", help, micros);
     let of_speculative = [
         (
             "cognate_speculative_leases_total",
@@ -134,7 +139,7 @@ pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<Strin
         ),
     ];
     for ((name, help), value) in of_speculative.into_iter().zip(speculative) {
-        family(&mut text, name, "counter", help, &[(String::new(), value)]);
+        single(&mut text, name, "counter", help, value);
     }
     let of = |count: fn(&(u64, u64)) -> u64| -> Vec<(String, u64)> {
         let counts = workers.iter();
@@ -195,6 +200,8 @@ mod tests {
         );
         assert!(text.contains("cognate_chunks{state=\"done\"} 1"), "{text}");
         assert!(text.contains("cognate_tracking_microseconds_total 7000"));
+        // 90 items at 700 µs: less than a second.
+        assert!(text.contains("cognate_backlog_seconds 1"), "{text}");
         assert!(text.contains("cognate_speculative_leases_total 0"));
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             let (name, value) = line.rsplit_once(' ').expect("name and value");

@@ -301,6 +301,7 @@ async fn an_operator_sees_calls_storage_and_whether_it_serves() {
         "cognate_storage_failures_total{operation=\"ledger_commit\"} 0",
         "cognate_chunk_events_total{event=\"leased\"} 0",
         "cognate_waiting_seconds 0",
+        "cognate_backlog_seconds ",
         "process_resident_memory_bytes ",
         "# TYPE cognate_chunks gauge",
     ] {
@@ -310,9 +311,13 @@ async fn an_operator_sees_calls_storage_and_whether_it_serves() {
         );
     }
     // What the dashboard and the alerts that are shipped ask for is there.
-    let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy/monitoring");
+    let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy");
     let mut asked = 0;
-    for file in ["grafana.json", "alerts.yaml"] {
+    for file in [
+        "monitoring/grafana.json",
+        "monitoring/alerts.yaml",
+        "kubernetes/autoscaler.yaml",
+    ] {
         let text = std::fs::read_to_string(deploy.join(file)).unwrap();
         let is_name = |c: char| c.is_ascii_lowercase() || c == '_';
         for name in text.split(|c| !is_name(c)) {

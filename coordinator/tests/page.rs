@@ -2,12 +2,16 @@
 
 mod support;
 
+use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_coordinator::api::security::{Security, Tls, Tokens};
 use cognate_coordinator::config::Config;
+use cognate_coordinator::page::mechanisms::{MechanismQuestion, Mechanisms};
 use cognate_coordinator::server::{RunningServer, Server, ServerError};
 use cognate_coordinator::transport::ListenError;
 use rcgen::{CertificateParams, KeyPair};
 use serde_json::{Value, json};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 use support::{FOUR_POINTS, House, durable_config};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -96,6 +100,68 @@ async fn submit(at: &str, name: &str, content: &str) -> String {
     let made = ask(at, "POST", &path, &[OWN], content.as_bytes()).await;
     assert_eq!(made.status, 200, "{}", made.body);
     made.json()["job"].as_str().unwrap().to_owned()
+}
+
+/// Solves until nobody waits any more; counts what it began and what was interrupted.
+#[derive(Debug, Default)]
+struct Endless {
+    begun: AtomicUsize,
+    interrupted: AtomicUsize,
+}
+
+impl Mechanisms for Endless {
+    fn describe(&self, _: &str, _: &str) -> Result<Value, String> {
+        Ok(json!({}))
+    }
+
+    fn positions(&self, _: &MechanismQuestion) -> Result<Value, String> {
+        self.begun.fetch_add(1, Ordering::Relaxed);
+        while !is_interrupted() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        self.interrupted.fetch_add(1, Ordering::Relaxed);
+        Err("nobody waits for it any more".to_owned())
+    }
+}
+
+/// Waits until a count is reached.
+async fn reaches(count: &AtomicUsize, wanted: usize) {
+    let reached = async {
+        while count.load(Ordering::Relaxed) < wanted {
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+    };
+    let waited = tokio::time::timeout(Duration::from_secs(20), reached).await;
+    waited.expect("it is reached");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_mechanism_is_solved_as_long_as_somebody_waits() {
+    let folder = tempfile::tempdir().unwrap();
+    let endless = Arc::new(Endless::default());
+    let config = Config {
+        page: Some("127.0.0.1:0".to_owned()),
+        mechanisms: Some(endless.clone()),
+        ..durable_config(folder.path())
+    };
+    let server = Server::start(config).await.expect("a coordinator starts");
+    let at = authority(&server);
+    let (path, body) = (
+        "/api/mechanism/positions?name=a.json&given=inputs",
+        br#"{"file": "{}", "targets": ""}"#,
+    );
+    for round in 1..=2 {
+        let asked = ask(&at, "POST", path, &[OWN], body);
+        tokio::select! {
+            answer = asked => panic!("answered: {}", answer.body),
+            () = reaches(&endless.begun, round) => {}
+        }
+        // The connection is closed; the next question finds the place free.
+        reaches(&endless.interrupted, round).await;
+        let described = ask(&at, "POST", "/api/mechanism?name=a.json", &[OWN], body).await;
+        assert_eq!(described.status, 200, "{}", described.body);
+    }
+    server.shutdown().await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

@@ -1,16 +1,20 @@
 //! Any bytes: readers are given what a seed makes of good files, and must end in time and memory, with a value or an error.
 //!
 //! Each reader has a second, or `COGNATE_FUZZ_SECONDS`, from the seed 1, or `COGNATE_FUZZ_SEED`. An input that a
-//! reader panics at, or takes too long or too much memory for, is written to a file that the test names. What was found
-//! so is kept in `tests/any_bytes`.
+//! reader panics at, or takes too long or too much memory for, is added to its corpus. Where the program counts its edges
+//! ([`coverage`]), inputs that reach new ones are changed further, and `COGNATE_FUZZ_KEEP=yes` keeps the shortest of
+//! them: `tests/any_bytes/README.md`.
 
+mod corpus;
+mod reach;
+
+use crate::coverage;
 use crate::dice::Dice;
 use crate::measures::memory_bytes;
+use corpus::Corpus;
+use reach::Reach;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
-
-/// Inputs that a reader once failed at, in a folder of its name.
-const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/any_bytes");
 
 /// No input may take longer, ...
 const LONGEST: Duration = Duration::from_secs(10);
@@ -61,13 +65,13 @@ fn setting(name: &str, default: u64) -> u64 {
     })
 }
 
-/// What the dice make of some good inputs.
-struct Inputs<'a> {
-    good: &'a [Vec<u8>],
+/// What the dice make of some inputs.
+struct Inputs {
+    good: Vec<Vec<u8>>,
     dice: Dice,
 }
 
-impl Inputs<'_> {
+impl Inputs {
     fn below(&mut self, bound: usize) -> usize {
         self.dice.below(bound.max(1) as u64) as usize
     }
@@ -120,36 +124,31 @@ impl Inputs<'_> {
     }
 }
 
-/// The inputs of the corpus.
-fn found_before(name: &str) -> Vec<Vec<u8>> {
-    let entries = std::fs::read_dir(format!("{CORPUS}/{name}"));
-    let entries = entries.into_iter().flatten().flatten();
-    entries
-        .map(|entry| std::fs::read(entry.path()).expect("the corpus is readable"))
-        .collect()
+/// What a reader did with its inputs.
+struct Trial<'a> {
+    name: &'a str,
+    corpus: Corpus,
+    taken: u64,
+    refused: u64,
 }
 
-/// Gives a reader what the seed makes of these inputs, and the inputs themselves. `read` says whether it took the bytes.
-///
-/// # Panics
-/// When the reader does, or an input takes too long or too much memory, or all inputs are refused or taken, which shows
-/// nothing.
-pub fn read_any_bytes(name: &str, good: &[Vec<u8>], read: impl Fn(&[u8]) -> bool) {
-    assert!(!good.is_empty(), "{name}: there are no good inputs");
-    let seconds = setting("COGNATE_FUZZ_SECONDS", 1);
-    let mut inputs = Inputs {
-        good,
-        dice: Dice(setting("COGNATE_FUZZ_SEED", 1)),
-    };
-    let (mut taken, mut refused) = (0u64, 0u64);
-    let peak = || memory_bytes("self", "VmHWM").unwrap_or(0);
-    let mut check = |bytes: &[u8]| {
+impl Trial<'_> {
+    /// Gives the reader an input.
+    ///
+    /// # Panics
+    /// When the reader does, or takes too long or too much memory.
+    fn check(&mut self, bytes: &[u8], read: &impl Fn(&[u8]) -> bool) {
+        let peak = || memory_bytes("self", "VmHWM").unwrap_or(0);
         let (before, began) = (peak(), Instant::now());
         let outcome = catch_unwind(AssertUnwindSafe(|| read(bytes)));
         let (took, more) = (began.elapsed(), peak().saturating_sub(before));
         let wrong = match outcome {
             Ok(was_taken) => {
-                *(if was_taken { &mut taken } else { &mut refused }) += 1;
+                *(if was_taken {
+                    &mut self.taken
+                } else {
+                    &mut self.refused
+                }) += 1;
                 match (took > LONGEST, more > MEMORY) {
                     (true, _) => format!("takes {took:?}"),
                     (_, true) => format!("takes {} MiB", more >> 20),
@@ -158,18 +157,66 @@ pub fn read_any_bytes(name: &str, good: &[Vec<u8>], read: impl Fn(&[u8]) -> bool
             }
             Err(_) => "panics".to_owned(),
         };
-        let file = std::env::temp_dir().join(format!("any-bytes-{name}-{}", std::process::id()));
-        let written = std::fs::write(&file, bytes);
-        panic!("{name} {wrong} at {} ({written:?})", file.display());
+        let added = self.corpus.add_fault(bytes);
+        panic!(
+            "{} {wrong} at the last input of its corpus ({added:?}): {}",
+            self.name,
+            bytes.escape_ascii()
+        );
+    }
+}
+
+/// Gives a reader what the seed makes of these inputs and its corpus, and the inputs themselves. `read` says whether it
+/// took the bytes.
+///
+/// # Panics
+/// When the reader does, or an input takes too long or too much memory, or all inputs are refused or taken, which shows
+/// nothing.
+pub fn read_any_bytes(name: &str, good: &[Vec<u8>], read: impl Fn(&[u8]) -> bool) {
+    assert!(!good.is_empty(), "{name}: there are no good inputs");
+    let seconds = setting("COGNATE_FUZZ_SECONDS", 1);
+    let corpus = Corpus::of(name);
+    let mut inputs = Inputs {
+        good: good.iter().cloned().chain(corpus.inputs()).collect(),
+        dice: Dice(setting("COGNATE_FUZZ_SEED", 1)),
     };
-    for bytes in good.iter().chain(&found_before(name)) {
-        check(bytes);
+    let mut trial = Trial {
+        name,
+        corpus,
+        taken: 0,
+        refused: 0,
+    };
+    let mut reach = Reach::default();
+    for bytes in &inputs.good {
+        trial.check(bytes, &read);
+        reach.is_new();
     }
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(seconds) {
-        check(&inputs.next());
+        let bytes = inputs.next();
+        trial.check(&bytes, &read);
+        if reach.is_new() {
+            inputs.good.push(bytes);
+        }
     }
-    println!("{name}: {taken} inputs taken, {refused} refused");
+    if coverage::is_counted() && std::env::var_os("COGNATE_FUZZ_KEEP").is_some() {
+        let found = inputs.good.split_off(good.len());
+        let mut reach = Reach::default();
+        let mut reaches = |bytes: &[u8]| {
+            trial.check(bytes, &read);
+            reach.is_new()
+        };
+        for bytes in good {
+            reaches(bytes);
+        }
+        let kept = corpus::shortest(found, &mut reaches);
+        trial.corpus.keep(kept).expect("the corpus can be written");
+    }
+    let Trial { taken, refused, .. } = trial;
+    println!(
+        "{name}: {taken} inputs taken, {refused} refused{}",
+        reach.words()
+    );
     assert!(
         taken > 0 && refused > 0,
         "{name}: {taken} taken, {refused} refused"

@@ -142,10 +142,12 @@ fn no_file_grows_beyond_a_thousand_lines() {
 }
 
 #[test]
-fn unsafe_code_stands_in_two_files_alone() {
+fn unsafe_code_stands_in_three_files_alone() {
     let allowed = [
         "common/numeric/src/lanes/dispatch.rs",
         "common/machine_code/src/executable.rs",
+        // Of no program that is shipped.
+        "tests/support/coverage.rs",
     ];
     let mut offences = Vec::new();
     for file in sources() {

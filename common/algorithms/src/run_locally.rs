@@ -6,11 +6,15 @@ use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::start_systems::interruption::{can_be_interrupted, is_interrupted};
 use cognate_continuation::work::Stage;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
+
+/// Items between two looks at whether anybody still waits: less than a second's work.
+const PIECE: usize = 256;
 
 /// Solves with lanes of this width; one solution set for each target.
 ///
@@ -41,7 +45,8 @@ pub fn run_locally(
 }
 
 /// The same for one of many solves in a family, with as many lanes as are best: what belongs to the family is taken
-/// over from the solves before, and kept for the next. The bits are the same.
+/// over from the solves before, and kept for the next. The bits are the same. Ends with `Interrupted` where the sign of
+/// this thread says so.
 pub fn run_in_family(
     system: &System,
     algorithm: &mut dyn PathAlgorithm,
@@ -50,7 +55,18 @@ pub fn run_in_family(
 ) -> Result<Vec<SolutionSet>, PrepareError> {
     run(system, algorithm, objects, &mut |system, stage, find| {
         let prepared = family.prepare(system, stage, find)?;
-        Ok(prepared.run(0..prepared.items(), prepared.preferred_width()))
+        let (items, width) = (prepared.items(), prepared.preferred_width());
+        if !can_be_interrupted() {
+            return Ok(prepared.run(0..items, width));
+        }
+        let mut results = Vec::new();
+        for from in (0..items).step_by(PIECE) {
+            if is_interrupted() {
+                return Err(PrepareError::Interrupted);
+            }
+            results.extend(prepared.run(from..items.min(from + PIECE as u64), width));
+        }
+        Ok(results)
     })
 }
 

@@ -41,6 +41,9 @@ pub enum PrepareError {
     /// The object with the start points is not there.
     #[error("the object {0} with the start points is missing")]
     MissingObject(Digest),
+    /// Nobody waits for the items any more.
+    #[error("nobody waits for it any more")]
+    Interrupted,
     /// The object with the start points is damaged.
     #[error(transparent)]
     Damaged(#[from] DamagedPoints),

@@ -227,21 +227,32 @@ impl Scan<'_> {
             return Err(self.malformed(shape, "messages are nested too deeply"));
         }
         while self.at < end {
-            let tag = self.varint(end, shape)?;
-            let (number, wire_type) = (tag >> 3, tag & 7);
-            let number = u32::try_from(number).ok().filter(|&n| n > 0 && n < 1 << 29);
-            let number =
-                number.ok_or_else(|| self.malformed(shape, "the number of the field is none"))?;
+            let (number, wire_type) = self.tag(end, shape)?;
             match SHAPES.all[shape].fields.get(&number).copied() {
-                None => self.unknown(wire_type, end, shape)?,
+                None => self.unknown(number, wire_type, end, (shape, depth))?,
                 Some(field) => self.field(field, wire_type, end, shape, depth)?,
             }
         }
         Ok(())
     }
 
-    /// A field of a later version.
-    fn unknown(&mut self, wire_type: u64, end: usize, shape: usize) -> Result<(), WireError> {
+    /// The number and the wire type of a field.
+    fn tag(&mut self, end: usize, shape: usize) -> Result<(u32, u64), WireError> {
+        let tag = self.varint(end, shape)?;
+        let number = u32::try_from(tag >> 3).ok();
+        let number = number.filter(|&n| n > 0 && n < 1 << 29);
+        let number = number.ok_or_else(|| self.malformed(shape, "the number of the field is none"));
+        Ok((number?, tag & 7))
+    }
+
+    /// A field of a later version, or of another program: a group, too, which lasts until its end is marked.
+    fn unknown(
+        &mut self,
+        number: u32,
+        wire_type: u64,
+        end: usize,
+        (shape, depth): (usize, usize),
+    ) -> Result<(), WireError> {
         match wire_type {
             0 => self.varint(end, shape).map(drop),
             1 => self.skip(8, end, shape),
@@ -250,7 +261,15 @@ impl Scan<'_> {
                 let length = self.varint(end, shape)?;
                 self.skip(length, end, shape)
             }
-            _ => Err(self.malformed(shape, "groups and other wire types are not used")),
+            3 if depth >= DEEPEST => Err(self.malformed(shape, "groups are nested too deeply")),
+            3 => loop {
+                match self.tag(end, shape)? {
+                    (other, 4) if other == number => return Ok(()),
+                    (_, 4) => return Err(self.malformed(shape, "another group ends here")),
+                    (inner, kind) => self.unknown(inner, kind, end, (shape, depth + 1))?,
+                }
+            },
+            _ => Err(self.malformed(shape, "the field has no such wire type")),
         }
     }
 
@@ -362,6 +381,27 @@ mod tests {
         let size = decoded_size(REPORT, &bytes).unwrap();
         assert!(size >= n * size_of::<v1::PathResult>(), "{size}");
         assert!(size <= n * 8 * size_of::<v1::PathResult>(), "{size}");
+    }
+
+    #[test]
+    fn unknown_groups_are_skipped_as_when_decoding() {
+        let groups = |count: usize| {
+            let begin = std::iter::repeat_n([0xa3, 0x06], count).flatten();
+            let end = std::iter::repeat_n([0xa4, 0x06], count).flatten();
+            begin.chain(end).collect::<Vec<u8>>()
+        };
+        let cut_off = groups(3)[..9].to_vec();
+        let other_end = vec![0xa3, 0x06, 0xac, 0x06];
+        for (bytes, is_taken) in [
+            (groups(1), true),
+            (groups(90), true),
+            (groups(5_000), false),
+            (cut_off, false),
+            (other_end, false),
+        ] {
+            assert_eq!(decoded_size(REPORT, &bytes).is_ok(), is_taken);
+            assert_eq!(v1::ReportRequest::decode(&bytes[..]).is_ok(), is_taken);
+        }
     }
 
     #[test]

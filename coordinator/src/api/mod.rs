@@ -7,6 +7,7 @@ pub mod caller;
 pub mod client_service;
 pub mod error;
 pub mod held_stream;
+pub mod methods;
 pub mod middleware;
 pub mod quota;
 pub mod security;

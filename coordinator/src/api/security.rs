@@ -2,11 +2,12 @@
 
 use super::audit_log::{AuditLog, Entry};
 use super::caller::Caller;
+use super::methods;
 use super::middleware::{Answer, Inner, Middleware};
 use super::visible::visible;
 use crate::ledger::identity::{Credential, Tenant};
 use cognate_worker::transport::tokens::{CredentialError, Limits, Role, read_tokens};
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::time::Duration;
@@ -82,19 +83,6 @@ pub struct Tokens {
     held: Arc<RwLock<Vec<HashedToken>>>,
     file: PathBuf,
 }
-
-/// Calls of clients that change nothing.
-const READ: [&str; 9] = [
-    "Watch",
-    "GetSummary",
-    "GetDecomposition",
-    "StreamSolutions",
-    "StreamPaths",
-    "Explain",
-    "ListJobs",
-    "ListWorkers",
-    "GetServerInfo",
-];
 
 /// A token, without the token.
 struct HashedToken {
@@ -176,7 +164,7 @@ impl Tokens {
             // Probes have no tokens, and learn only that it is alive.
             "grpc.health.v1.Health" => return Ok(Caller::untold("nobody", peer)),
             "cognate.v1.WorkerApi" => Some(Role::Worker),
-            "cognate.v1.ClientApi" if READ.contains(&method) => Some(Role::Viewer),
+            "cognate.v1.ClientApi" if methods::reads_only(method) => Some(Role::Viewer),
             "cognate.v1.ClientApi" => Some(Role::Client),
             _ => None,
         };
@@ -217,14 +205,21 @@ fn hashed(file: &Path) -> Result<Vec<HashedToken>, CredentialError> {
     hashed.collect()
 }
 
-/// Says that others than the owner can read the tokens.
+/// Says that others than this coordinator can read the tokens. A file of another owner, as a Kubernetes secret is
+/// root's, can be read by a group only.
 fn warn_of_readers(file: &Path) {
-    let mode = std::fs::metadata(file).map(|found| found.permissions().mode());
-    if let Ok(mode) = mode
-        && mode & 0o077 != 0
-    {
+    let Ok(found) = std::fs::metadata(file) else {
+        return;
+    };
+    let (mode, is_own) = (
+        found.permissions().mode(),
+        found.uid() == rustix::process::geteuid().as_raw(),
+    );
+    let others = if is_own { 0o077 } else { 0o037 };
+    if mode & others != 0 {
+        let wanted = if is_own { "600" } else { "440" };
         tracing::warn!(file = %file.display(), mode = format!("{:o}", mode & 0o777),
-            "others can read the tokens: chmod 600");
+            "others can read the tokens: chmod {wanted}");
     }
 }
 
@@ -377,7 +372,10 @@ mod tests {
         );
         // Whoever may look changes nothing, and works for nobody.
         let viewer = Some("Bearer viewer-0123456789");
-        for method in READ {
+        let reading = methods::OF_CLIENTS
+            .iter()
+            .filter(|method| method.reads_only);
+        for method in reading.map(|method| method.name) {
             let path = format!("/cognate.v1.ClientApi/{method}");
             check(&path, viewer, None);
             check(&path, Some("Bearer client-0123456789"), None);

@@ -71,15 +71,6 @@ impl Drop for Place {
     }
 }
 
-/// Interrupts the work when nobody waits for it any more.
-struct Waited(Interruption);
-
-impl Drop for Waited {
-    fn drop(&mut self) {
-        self.0.interrupt();
-    }
-}
-
 /// How one attempt ended.
 enum Attempt<T> {
     Done(T),
@@ -172,7 +163,7 @@ async fn attempt<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Attempt<T> {
     let sign = Interruption::default();
-    let _waited = Waited(sign.clone());
+    let _waits = sign.when_dropped();
     let under = sign.clone();
     let mut working = tokio::task::spawn_blocking(move || {
         let _permit = permit;

@@ -27,6 +27,7 @@ use super::points::Sample;
 use super::request::{Fault, Query, answer, download, fault, full, json_text, json_value};
 use crate::recent::Recent;
 use bytes::Bytes;
+use cognate_continuation::start_systems::interruption::Interruption;
 use cognate_protocol::limits::MESSAGE_BYTES;
 use cognate_protocol::option_misfit::any_of;
 use cognate_protocol::submission::{Decompose, Options, Source, StartKind, Submission};
@@ -42,6 +43,7 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::timeout;
 use tokio_util::sync::CancellationToken;
 use tonic::body::Body;
 use tonic::{Code, Status};
@@ -60,6 +62,8 @@ const UPLOADS: usize = 2;
 const LISTENERS: usize = 100;
 /// A file must have arrived after this time.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// How long a question about a mechanism waits for the one before it: one that was cancelled ends sooner.
+const TURN: Duration = Duration::from_secs(3);
 /// Pictures of jobs that were looked at lately.
 const PICTURES: usize = 4;
 /// Bytes of a token.
@@ -332,12 +336,16 @@ impl Page {
         let sent: Sent = serde_json::from_slice(&bytes)
             .map_err(|error| Fault::of_request(format!("the body is not as expected: {error}")))?;
         let solving = Arc::clone(&self.solving);
-        let turn = solving.try_acquire_owned().map_err(|_| Fault {
+        let turn = timeout(TURN, solving.acquire_owned()).await;
+        let turn = turn.ok().and_then(Result::ok).ok_or_else(|| Fault {
             status: StatusCode::SERVICE_UNAVAILABLE,
             message: "another mechanism is being solved: try again".to_owned(),
         })?;
+        let sign = Interruption::default();
+        // Dropped with this call: when the page closes, or is told to cancel.
+        let _waits = sign.when_dropped();
         let solved = tokio::task::spawn_blocking(move || {
-            let answer = asked(mechanisms.as_ref(), sent);
+            let answer = sign.run(|| asked(mechanisms.as_ref(), sent));
             drop(turn);
             answer
         });

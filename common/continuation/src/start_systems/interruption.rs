@@ -1,4 +1,4 @@
-//! Interruption: ends long counting on this thread when nobody waits for it any more.
+//! Interruption: ends long work on this thread when nobody waits for it any more.
 //!
 //! Counting is bounded by operations, so that what it answers never depends on a clock. An interrupted
 //! count says that it takes too long; whoever interrupted it drops the answer.
@@ -26,10 +26,25 @@ impl Interruption {
         self.0.load(Ordering::Relaxed)
     }
 
+    /// A value that interrupts the work when it is dropped: held by whoever waits.
+    pub fn when_dropped(&self) -> InterruptWhenDropped {
+        InterruptWhenDropped(self.clone())
+    }
+
     /// Runs work on this thread under this sign.
     pub fn run<T>(&self, work: impl FnOnce() -> T) -> T {
         let _within = Within(CURRENT.replace(Some(self.clone())));
         work()
+    }
+}
+
+/// Interrupts work when it is dropped.
+#[derive(Debug)]
+pub struct InterruptWhenDropped(Interruption);
+
+impl Drop for InterruptWhenDropped {
+    fn drop(&mut self) {
+        self.0.interrupt();
     }
 }
 
@@ -40,6 +55,11 @@ impl Drop for Within {
     fn drop(&mut self) {
         CURRENT.replace(self.0.take());
     }
+}
+
+/// Whether the work of this thread may be interrupted at all.
+pub fn can_be_interrupted() -> bool {
+    CURRENT.with_borrow(Option::is_some)
 }
 
 /// Whether the work of this thread is to end.
@@ -55,13 +75,13 @@ mod tests {
     fn a_sign_reaches_the_work_that_runs_under_it() {
         let sign = Interruption::default();
         sign.run(|| {
-            assert!(!is_interrupted());
-            sign.clone().interrupt();
+            assert!(can_be_interrupted() && !is_interrupted());
+            drop(sign.when_dropped());
             assert!(is_interrupted());
             Interruption::default().run(|| assert!(!is_interrupted()));
             assert!(is_interrupted());
         });
-        assert!(!is_interrupted());
+        assert!(!can_be_interrupted() && !is_interrupted());
         assert!(sign.is_interrupted());
     }
 }

@@ -313,6 +313,14 @@ impl Mechanism {
         MechanismError::of_file(&self.file, message)
     }
 
+    /// These names, each with whether its value is an angle.
+    pub fn kinds(&self, names: &[String]) -> Vec<(String, bool)> {
+        let values = self.values();
+        let is_angle = |name: &String| values.iter().any(|(n, angle)| n == name && *angle);
+        let kind = |name: &String| (name.clone(), is_angle(name));
+        names.iter().map(kind).collect()
+    }
+
     /// Names of the joints or legs that have a value, and whether it is an angle.
     pub fn values(&self) -> Vec<(String, bool)> {
         match &self.body {

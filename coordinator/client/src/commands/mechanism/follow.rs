@@ -31,7 +31,7 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
     let solver = Solver::new(&read.mechanism, &question, &options(&a.solving));
     let solver = solver.map_err(|e| described(&e))?;
     let preparation = solver.preparation();
-    let kinds = read.kinds(&preparation.inputs);
+    let kinds = read.mechanism.kinds(&preparation.inputs);
     let targets = match (&a.poses, &a.inputs) {
         (Some(file), _) => read.poses(file, degrees)?,
         (None, Some(file)) => read.inputs(file, &kinds, degrees)?,

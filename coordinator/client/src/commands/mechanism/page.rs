@@ -62,10 +62,7 @@ impl Mechanisms for PageMechanisms {
         let solver = Solver::new(&mechanism, &question(problem), &options);
         let solver = solver.map_err(|e| e.to_string())?;
         let preparation = solver.preparation();
-        let kinds = mechanism.values();
-        let is_angle = |name: &String| kinds.iter().any(|(n, angle)| n == name && *angle);
-        let inputs = preparation.inputs.iter();
-        let inputs: Vec<(String, bool)> = inputs.map(|n| (n.clone(), is_angle(n))).collect();
+        let inputs = mechanism.kinds(&preparation.inputs);
         let targets = self.targets(asked, &mechanism, &inputs)?;
         let view = View {
             mechanism: &mechanism,

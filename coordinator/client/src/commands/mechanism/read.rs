@@ -113,14 +113,6 @@ impl Read {
         Ok(pairs)
     }
 
-    /// Names with whether each is of an angle.
-    pub fn kinds(&self, names: &[String]) -> Vec<(String, bool)> {
-        let values = self.mechanism.values();
-        let is_angle = |name: &String| values.iter().any(|(n, angle)| n == name && *angle);
-        let kind = |name: &String| (name.clone(), is_angle(name));
-        names.iter().map(kind).collect()
-    }
-
     /// The joints that are held, with their values.
     pub fn locks(&self, a: &MechanismFile) -> Result<Vec<(String, f64)>, ClientError> {
         self.pairs("--lock", &a.lock, self.degrees(a))

@@ -33,7 +33,7 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
         eprintln!("warning: {warning}");
     }
     let kind = if a.forward {
-        LineKind::Inputs(read.kinds(&preparation.inputs))
+        LineKind::Inputs(read.mechanism.kinds(&preparation.inputs))
     } else {
         LineKind::Poses
     };

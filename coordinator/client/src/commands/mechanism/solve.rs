@@ -46,7 +46,7 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
         locks: read.locks(&a.mechanism)?,
     };
     let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
-    let names = read.kinds(formulation.inputs());
+    let names = read.mechanism.kinds(formulation.inputs());
     let list = || {
         names
             .iter()

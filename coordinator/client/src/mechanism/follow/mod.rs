@@ -11,6 +11,8 @@ mod tube;
 use super::parallel;
 use super::solver::Solver;
 use super::target_answer::{Position, TargetAnswer};
+use cognate_continuation::stage::PrepareError;
+use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_kinematics::mechanism::MechanismError;
 use joints::{Joint, Link};
 use samples::Sample;
@@ -112,6 +114,9 @@ pub fn follow(solver: &Solver<'_>, samples: Vec<Sample>) -> Result<Path, Mechani
     let real: Vec<Vec<usize>> = answers.iter().map(followed).collect();
     let count = samples.len().saturating_sub(1);
     let links = parallel::map(count, solver.threads(), |k| {
+        if is_interrupted() {
+            return None;
+        }
         let segment = Segment::new(&equations, &parameters[k], &parameters[k + 1]);
         let points = |sample: usize| {
             let positions = real[sample].iter();
@@ -119,8 +124,11 @@ pub fn follow(solver: &Solver<'_>, samples: Vec<Sample>) -> Result<Path, Mechani
                 .map(|p| answers[sample].positions[*p].point.as_slice())
                 .collect::<Vec<_>>()
         };
-        joints::join(segment, &points(k), &points(k + 1))
+        Some(joints::join(segment, &points(k), &points(k + 1)))
     });
+    let links: Option<Vec<Joint>> = links.into_iter().collect();
+    let links = links
+        .ok_or_else(|| MechanismError::of_file("follow", PrepareError::Interrupted.to_string()))?;
     Ok(Path::assemble(samples, answers, &real, &links))
 }
 
