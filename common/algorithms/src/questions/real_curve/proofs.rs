@@ -8,6 +8,7 @@ use crate::decomposition::job::Job;
 use cognate_solutions::certificates::{Distinctness, judge, judge_reality};
 use cognate_solutions::involution::Involution;
 use cognate_solutions::witness::real_curve::ProvedFibre;
+use cognate_systems::system::System;
 
 impl RealCurves {
     /// The stage that tests the points of all fibres.
@@ -35,9 +36,13 @@ impl RealCurves {
         job: &Job,
     ) -> Option<Job> {
         // Combinations of real equations are real; where conjugation exchanges equations they need not be.
-        let system = with
+        let tracked = with
             .deflations
             .of_stage(with.problem, &operand.set.tracked());
+        let system = System {
+            conjugates: with.problem.given.conjugates.clone(),
+            ..(*tracked).clone()
+        };
         let row = row_of(&self.now.form, self.now.middles[0]);
         let involution = Involution::of(&system, &row).ok();
         let mut unproved = 0;
