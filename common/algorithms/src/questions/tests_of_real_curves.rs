@@ -202,7 +202,8 @@ fn curve_of(equation: &str, seed: u64, wish: CurveWish) -> (RealCurve, Vec<Strin
 #[test]
 fn what_lies_in_a_box() {
     let elliptic = "y^2 - x*(x - 1)*(x + 1)";
-    let cases: [(&str, [[f64; 2]; 2], Result<[u64; 5], &str>); 14] = [
+    type Expected = Result<[u64; 5], &'static str>;
+    let cases: [(&str, [[f64; 2]; 2], Expected); 14] = [
         (
             "x^2 + y^2 - 1",
             [[-2.0, 2.0], [-2.0, 2.0]],
