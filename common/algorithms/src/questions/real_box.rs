@@ -4,6 +4,9 @@ use super::QuestionError;
 use cognate_solutions::involution::Involution;
 use num_complex::Complex64;
 
+/// How far a point of a curve may be off, relative to its size or to 1.
+pub(super) const ERROR: f64 = 1e-9;
+
 /// Whether a point is in a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
@@ -60,8 +63,10 @@ impl<'a> RealBox<'a> {
         }
     }
 
-    /// Where a real point is; `error`: how far it may be off; `face`: the variable on whose bound it is known to be.
+    /// Where a real point is; `error`: how far it may be off, relative to its size or to 1; `face`: the variable on whose bound it is known to be.
     pub fn place(&self, point: &[Complex64], error: f64, face: Option<usize>) -> Place {
+        let squares = point.iter().map(|z| z.norm_sqr()).sum::<f64>();
+        let error = error * squares.sqrt().max(1.0);
         let mut place = Place::Inside;
         let bounds = self.bounds.iter().enumerate();
         for (variable, [low, high]) in bounds.filter(|(v, _)| Some(*v) != face) {

@@ -7,6 +7,7 @@
 
 mod assembled;
 mod boxed;
+mod clip;
 mod finer;
 mod proofs;
 mod traced;

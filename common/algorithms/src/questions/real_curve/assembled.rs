@@ -2,7 +2,7 @@
 
 use super::super::real_box::RealBox;
 use super::super::{Context, Operand};
-use super::boxed::clip;
+use super::clip::clip;
 use super::traced::{End, FibrePoint, Task, Tracing, distance, value};
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};

@@ -1,6 +1,6 @@
-//! Boxed: where a real curve leaves the box that was asked for, and its part inside.
+//! Boxed: where a real curve leaves the box that was asked for.
 
-use super::super::real_box::{Place, RealBox};
+use super::super::real_box::{ERROR, Place, RealBox};
 use super::super::{Context, Operand};
 use super::traced::{Critical, value};
 use super::{Phase, RealCurves, is_real, make_real};
@@ -8,11 +8,7 @@ use crate::decomposition::deflated::equal_ones_merged;
 use crate::decomposition::job::Job;
 use cognate_continuation::bend::doubles_of;
 use cognate_solutions::classification::Verdict;
-use cognate_solutions::witness::real_curve::{RealCurve, VertexKind};
 use num_complex::Complex64;
-
-/// How far a point may be off, relative to its size or to 1.
-const ERROR: f64 = 1e-9;
 
 impl RealCurves {
     /// The stage to all faces of the box, where one was asked for.
@@ -107,13 +103,7 @@ fn place(
     point: &[Complex64],
     face: Option<usize>,
 ) -> Place {
-    let point = with.problem.to_variables(point);
-    within.place(&point, ERROR * size(&point), face)
-}
-
-fn size(point: &[Complex64]) -> f64 {
-    let squares = point.iter().map(|z| z.norm_sqr());
-    squares.sum::<f64>().sqrt().max(1.0)
+    within.place(&with.problem.to_variables(point), ERROR, face)
 }
 
 /// A face as a slice in the unknowns that are tracked.
@@ -129,45 +119,4 @@ fn row(
     }
     let tracked = with.problem.tracked_slices(&[row]);
     tracked.into_iter().next().unwrap_or_default()
-}
-
-/// Leaves the arcs that are wanted, and the vertices inside; points are in the variables.
-pub(super) fn clip(curve: &mut RealCurve, wanted: &[bool], within: &RealBox<'_>) {
-    let at = |point: &[Complex64]| within.place(point, ERROR * size(point), None);
-    let mut names = Vec::with_capacity(curve.vertices.len());
-    let mut kept = Vec::new();
-    for vertex in std::mem::take(&mut curve.vertices) {
-        let place = match vertex.kind {
-            VertexKind::Window => Place::Inside,
-            _ => at(&vertex.point),
-        };
-        if place == Place::OnFace {
-            let value = vertex.value;
-            let doubt = format!("a vertex where the form is {value:.6} is on a face of the box");
-            curve.doubts.push(doubt);
-        }
-        names.push((place == Place::Inside).then_some(kept.len()));
-        if place == Place::Inside {
-            kept.push(vertex);
-        }
-    }
-    curve.vertices = kept;
-    let mut leaves = false;
-    for (mut edge, _) in std::mem::take(&mut curve.edges)
-        .into_iter()
-        .zip(wanted)
-        .filter(|(_, wanted)| **wanted)
-    {
-        for end in &mut edge.ends {
-            *end = end.and_then(|vertex| names[vertex]);
-            leaves |= end.is_none();
-        }
-        leaves |= edge.samples.iter().any(|p| at(p) == Place::Outside);
-        curve.edges.push(edge);
-    }
-    if leaves {
-        curve
-            .doubts
-            .push("an arc leaves the box where none was seen to".to_owned());
-    }
 }
