@@ -189,6 +189,29 @@ fn component(dimension: u32, points: usize) -> WitnessSet {
     }
 }
 
+/// As of a program that does not know why equations have names.
+#[test]
+fn equations_without_names_are_numbered() {
+    let mut system = Draw::new(1).system();
+    let count = system.equation_count();
+    system.equation_names.clear();
+    let source = Source::System(Box::new(system));
+    let submission = Submission {
+        source,
+        options: Options::default(),
+    };
+    let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
+    let Ok(Submission {
+        source: Source::System(system),
+        ..
+    }) = from_proto::problem::submission(message)
+    else {
+        panic!("a submission is a submission");
+    };
+    assert_eq!(system.equation_names.len(), count);
+    assert_eq!(system.equation_names[0], "equation 1");
+}
+
 #[test]
 fn questions_about_loci_come_back() {
     let second = |components| SecondSet {

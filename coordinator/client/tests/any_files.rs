@@ -100,10 +100,8 @@ fn files_beside_a_system() {
         named(symmetry::read("FILE", bytes, &mut nine_point.clone()))
     });
     let good = texts(&[
-        r#"["x*y - a", "x"]"#,
-        r#"{"degenerate": ["x"]}"#,
-        r#"[["x", "y"]]"#,
-        r#"[{"name": "both", "equations": ["x", "y - x"]}]"#,
+        r#"{"flat": {"nonzero": "x*Y - a"}}"#,
+        r#"{"one": {"equations": ["x", "y - a"]}, "two": {"nonzero": "b^2"}}"#,
     ]);
     read_any_bytes("degenerate_file", &good, |bytes| {
         named(degenerate::read("FILE", bytes, &mut nine_point.clone()))

@@ -639,8 +639,8 @@ pub(crate) const SINGULAR: Known = Known {
 fn with_equations(system: &System, chosen: &[usize]) -> System {
     let mut result = system.clone();
     result.equations = chosen.iter().map(|&i| system.equations[i]).collect();
-    let names = chosen.iter().map(|&i| system.equation_names[i].clone());
-    result.equation_names = names.collect();
+    let names = chosen.iter().filter_map(|&i| system.equation_names.get(i));
+    result.equation_names = names.cloned().collect();
     result.symmetry.clear();
     result.conjugates.clear();
     result.degenerate.clear();
@@ -669,7 +669,7 @@ fn without_vanishing(system: Cow<'_, System>) -> (Cow<'_, System>, Vec<usize>) {
     let mut whole = system.into_owned();
     whole.equation_names = left
         .iter()
-        .map(|&i| whole.equation_names[i].clone())
+        .filter_map(|&i| whole.equation_names.get(i).cloned())
         .collect();
     whole.equations = left.iter().map(|&i| whole.equations[i]).collect();
     (Cow::Owned(whole), left)
@@ -734,6 +734,16 @@ fn rank_at_random(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Names are for messages: a system of another program may come without.
+    #[test]
+    fn equations_need_no_names() {
+        let text = b"variable_group x, y; function f, g; f = x*y; g = x*(y - 1);";
+        let mut system = cognate_systems::formats::read("test", text).unwrap().system;
+        system.equation_names.clear();
+        let problem = Problem::of_options(&system, &DecompositionOptions::default()).unwrap();
+        assert_eq!(problem.prefix(1).unwrap().given.equation_count(), 1);
+    }
 
     #[test]
     fn what_is_not_homogeneous_in_its_group_is_refused() {

@@ -29,7 +29,13 @@ const MOST_IDLE_LOOPS: u32 = 200;
 pub fn submission(message: v1::Problem) -> Result<Submission, ProtocolError> {
     let source = match required("source", message.source)? {
         v1::problem::Source::System(m) => {
-            Source::System(Box::new(system(&m).map_err(|e| e.within("system"))?))
+            let mut system = system(&m).map_err(|e| e.within("system"))?;
+            // What works with parts of a system takes equations by their names, too.
+            if system.equation_names.is_empty() {
+                let names = (1..=system.equation_count()).map(|i| format!("equation {i}"));
+                system.equation_names = names.collect();
+            }
+            Source::System(Box::new(system))
         }
         v1::problem::Source::Text(m) => {
             within_limit("text.name", m.name.len(), limits::NAME_BYTES)?;
