@@ -237,10 +237,10 @@ class Decomposition:
     ) -> RealPart:
         """The real part of curves: arcs between vertices, loops, singular points.
 
-        `samples`: points of each arc; `tolerance`: more of them until arcs are not farther than this from the lines
-        between them; `box`: only what lies between two numbers for each variable; `projection`: the variable whose values
-        divide the curve, instead of a random form; `certify`: prove how many real branches each slab has; `axes`: the two
-        variables that the drawing shows.
+        `samples`: points of each arc; `tolerance`: more of them until arcs are not farther than this from the
+        lines between them; `box`: only what lies between two numbers for each variable; `projection`: the
+        variable whose values divide the curve, instead of a random form; `certify`: prove how many real branches
+        each slab has; `axes`: the two variables that the drawing shows.
 
         >>> import cognate as cg
         >>> circle = cg.decompose(["x^2 + y^2 - 1"], workers=1).real_curve()
