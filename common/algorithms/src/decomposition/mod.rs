@@ -23,7 +23,7 @@ pub(crate) mod multiple_cut;
 pub(crate) mod operand;
 mod options;
 pub(crate) mod problem;
-mod proof;
+pub(crate) mod proof;
 mod resumed;
 mod search;
 mod slices;

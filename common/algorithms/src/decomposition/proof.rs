@@ -94,7 +94,7 @@ impl Proving {
                 let pairs = std::mem::take(&mut self.asked).into_iter();
                 let pairs = pairs.zip(job.answers());
                 let proved =
-                    pairs.filter_map(|(place, result)| Some((place, certificate(result)?)));
+                    pairs.filter_map(|(place, result)| Some((place, certificate(result)?.clone())));
                 self.proved.extend(proved);
                 self.done += 1;
                 return self.advance((problem, deflations), None);
@@ -258,9 +258,9 @@ pub(super) fn moving_slices(problem: &Problem, dimension: usize) -> [Vec<Complex
     [start, moved.concat()]
 }
 
-fn certificate(result: &ItemResult) -> Option<Certificate> {
+pub(crate) fn certificate(result: &ItemResult) -> Option<&Certificate> {
     match result {
-        ItemResult::Certify(result) => result.fact()?.certificate().cloned(),
+        ItemResult::Certify(result) => result.fact()?.certificate(),
         _ => None,
     }
 }

@@ -5,8 +5,8 @@
 
 use super::Context;
 use crate::decomposition::job::Job;
+use crate::decomposition::proof::certificate;
 use cognate_continuation::certification::Certificate;
-use cognate_continuation::item_result::ItemResult;
 use cognate_solutions::certificates::{Distinctness, Groups, judge};
 use cognate_solutions::witness::answer::CertifiedComponent;
 use serde::{Deserialize, Serialize};
@@ -38,14 +38,6 @@ impl Certify {
 
     pub fn take(&mut self) -> Vec<CertifiedComponent> {
         std::mem::take(&mut self.found)
-    }
-}
-
-/// The proof of a point, where there is one.
-pub(super) fn certificate(result: &ItemResult) -> Option<&Certificate> {
-    match result {
-        ItemResult::Certify(result) => result.fact().and_then(|fact| fact.certificate()),
-        _ => None,
     }
 }
 

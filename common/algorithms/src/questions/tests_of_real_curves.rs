@@ -5,7 +5,19 @@ use cognate_solutions::witness::question::CurveWish;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::{Answer, Question};
 
-/// Loops, arcs, isolated and singular points, connected parts.
+/// Loops, arcs, isolated and singular points, connected parts of one curve.
+fn numbers(curve: &RealCurve) -> [u64; 5] {
+    let counts = curve.counts();
+    [
+        counts.closed_loops,
+        counts.unbounded_arcs,
+        counts.isolated_points,
+        counts.singular_points,
+        counts.connected_components,
+    ]
+}
+
+/// The same of all curves of a system together.
 fn real_counts(text: &str, seed: u64) -> [u64; 5] {
     let system = system(text);
     let found = components(&system, seed);
@@ -20,15 +32,7 @@ fn real_counts(text: &str, seed: u64) -> [u64; 5] {
     assert!(doubts.is_empty(), "seed {seed}: {doubts:?}");
     let mut sum = [0; 5];
     for curve in &curves {
-        let c = curve.counts();
-        let own = [
-            c.closed_loops,
-            c.unbounded_arcs,
-            c.isolated_points,
-            c.singular_points,
-            c.connected_components,
-        ];
-        for (sum, own) in sum.iter_mut().zip(own) {
+        for (sum, own) in sum.iter_mut().zip(numbers(curve)) {
             *sum += own;
         }
         for point in curve.edges.iter().flat_map(|edge| &edge.samples) {
@@ -101,25 +105,13 @@ fn projections_that_are_not_general_are_right_or_in_doubt() {
     ];
     for (equation, expected) in curves {
         for seed in 1..=3 {
-            let system = system(&format!("variable_group x, y; function f; f = {equation};"));
-            let found = components(&system, seed);
-            let question = Question::RealCurve(CurveWish {
+            let wish = CurveWish {
                 samples: 2,
                 projection: Some(0),
                 ..CurveWish::default()
-            });
-            let (answer, doubts) = ask(&system, &found.components, &question);
-            let Answer::RealCurve(curves) = answer else {
-                panic!("{answer:?}");
             };
-            let counts = curves[0].counts();
-            let own = [
-                counts.closed_loops,
-                counts.unbounded_arcs,
-                counts.isolated_points,
-                counts.singular_points,
-                counts.connected_components,
-            ];
+            let (curve, doubts) = curve_of(equation, seed, wish);
+            let own = numbers(&curve);
             match expected {
                 Ok(expected) => {
                     assert!(doubts.is_empty(), "{equation}, seed {seed}: {doubts:?}");
@@ -150,21 +142,16 @@ fn chords_are_as_near_to_their_arcs_as_is_asked() {
         ("y^2 - x^3", cusp, 1e-3),
     ];
     for (equation, gap, tolerance) in curves {
-        let system = system(&format!("variable_group x, y; function f; f = {equation};"));
-        let found = components(&system, 1);
-        let question = Question::RealCurve(CurveWish {
+        let wish = CurveWish {
             samples: 1,
             tolerance: Some(tolerance),
             ..CurveWish::default()
-        });
-        let (answer, doubts) = ask(&system, &found.components, &question);
-        let Answer::RealCurve(curves) = answer else {
-            panic!("{answer:?}");
         };
+        let (curve, doubts) = curve_of(equation, 1, wish);
         assert!(doubts.is_empty(), "{equation}: {doubts:?}");
         let (mut worst, mut count) = (0.0f64, 0);
-        for edge in &curves[0].edges {
-            let end = |k: usize| edge.ends[k].map(|v| &curves[0].vertices[v].point);
+        for edge in &curve.edges {
+            let end = |k: usize| edge.ends[k].map(|v| &curve.vertices[v].point);
             let points: Vec<_> = end(0)
                 .into_iter()
                 .chain(&edge.samples)

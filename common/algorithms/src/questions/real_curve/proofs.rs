@@ -1,10 +1,11 @@
 //! Proofs: of how many real branches a curve has over each slab, by Krawczyk's test of all points of a fibre in it.
 
-use super::super::certify::{affine, certificate};
+use super::super::certify::affine;
 use super::super::{Context, Operand};
 use super::traced::row_of;
 use super::{Phase, RealCurves};
 use crate::decomposition::job::Job;
+use crate::decomposition::proof::certificate;
 use cognate_solutions::certificates::{Distinctness, judge, judge_reality};
 use cognate_solutions::involution::Involution;
 use cognate_solutions::witness::real_curve::ProvedFibre;
