@@ -564,7 +564,7 @@ async fn a_running_coordinator_needs_nobody_to_drive_it() {
     }
     let last = last.expect("progress is said at least once");
     assert_eq!(last.state, JobState::Solved, "{}", last.message);
-    assert!(begin.elapsed() < Duration::from_secs(20));
+    assert!(begin.elapsed() < Duration::from_secs(300));
     let row = coordinator
         .ledger()
         .job(accepted.job)
