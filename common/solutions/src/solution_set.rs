@@ -9,6 +9,7 @@ use crate::classification::{
 };
 use crate::completeness::Completeness;
 use crate::degenerate::{self, DeclaredSets};
+use crate::denominators::{AskedPoint, Denominator, Denominators};
 use crate::involution::Involution;
 use crate::path_crossing::{broken_cycles, coincidences, crossings, radius};
 use crate::point_shape::PointShape;
@@ -19,6 +20,7 @@ use crate::symmetry::classes;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -95,6 +97,9 @@ pub struct SolutionSet {
     pub failed: Vec<FailedPath>,
     /// The paths that end on positive-dimensional solution sets, ascending.
     pub on_positive_dimensional_sets: Vec<u64>,
+    /// The paths that end at points that were taken away from the answer, ascending.
+    #[serde(default)]
+    pub removed: Vec<u64>,
     /// What a reader should know.
     pub warnings: Vec<String>,
     /// What the certificates are of, where there are some.
@@ -104,10 +109,17 @@ pub struct SolutionSet {
 impl SolutionSet {
     /// True when no path failed, every crossing came apart, of every endpoint that is on no declared set it
     /// is known whether it is isolated, none is infinite but for digits beyond the accuracy of the data, none is finite or at infinity only by the limit of the precision, and
-    /// multiplicities are what the numbers of paths say, and no exact count says otherwise.
+    /// multiplicities are what the numbers of paths say, no exact count says otherwise, and the answer is not known to
+    /// be incomplete.
     pub fn settled(&self) -> bool {
+        self.is_settled_as_far_as_it_goes() && self.counts.complete != Completeness::No
+    }
+
+    /// The same of an answer that may be known to be incomplete.
+    pub fn is_settled_as_far_as_it_goes(&self) -> bool {
         self.paths.failed == 0
             && self.counts.undecided == 0
+            && self.counts.doubtful_denominators == 0
             && self.paths.within_data_accuracy == 0
             && self.paths.decided_by_precision_limit == 0
             && self.counts.doubtful_multiplicity == 0
@@ -150,6 +162,10 @@ struct Draft<'a> {
     decisions: Vec<Decision>,
     /// Which lie on a declared set of which no point was seen to be isolated.
     on_declared_sets: Vec<bool>,
+    /// The endpoints in each declared set, by their places.
+    in_declared_sets: Vec<(String, Vec<usize>)>,
+    /// First paths of the points of which it is not known whether a denominator is 0 there.
+    doubtful_denominators: Vec<u64>,
     set: SolutionSet,
 }
 
@@ -175,6 +191,8 @@ impl<'a> Draft<'a> {
             shape,
             decisions,
             on_declared_sets: vec![false; results.len()],
+            in_declared_sets: Vec::new(),
+            doubtful_denominators: Vec::new(),
             set: SolutionSet::default(),
         }
     }
@@ -184,6 +202,7 @@ impl<'a> Draft<'a> {
         self.settle_declared_sets();
         self.absorb_regular_ends();
         self.fail_what_coincides();
+        self.remove_zero_denominators();
         self.list_failures();
         self.count_paths(history);
         let representatives = self.merge(history);
@@ -241,8 +260,7 @@ impl<'a> Draft<'a> {
                     self.decisions[place].verdict = Verdict::PositiveDimensional;
                 }
             }
-            let counts = &mut self.set.paths.degenerate;
-            counts.insert(name.to_string(), members.len() as u64);
+            self.in_declared_sets.push((name.to_string(), members));
         }
     }
 
@@ -311,6 +329,59 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Takes away the points where a denominator of the given equations is 0.
+    fn remove_zero_denominators(&mut self) {
+        let (parameters, tolerances, seed) = (self.parameters, self.tolerances, self.seed);
+        let Some(denominators) = Denominators::of(self.system, parameters, tolerances, seed) else {
+            return;
+        };
+        let mut removed = 0;
+        for members in self.finite_points() {
+            let first = members[0];
+            let best = self.most_accurate(&members);
+            let result = &self.results[best];
+            let verdict = self.decisions[best].verdict;
+            let values = self.shape.to_variables(result.endpoint.to_double());
+            let decision = denominators.at(AskedPoint {
+                values: &values,
+                accuracy: result.accuracy,
+                singular: verdict != Verdict::Finite,
+                isolated: verdict != Verdict::PositiveDimensional,
+            });
+            match decision {
+                Denominator::Nonzero => {}
+                Denominator::Doubtful => {
+                    let path = self.results[first].origin.0;
+                    self.doubtful_denominators.push(path);
+                }
+                Denominator::Zero => {
+                    // Points of one set are not told apart.
+                    removed += u64::from(verdict != Verdict::PositiveDimensional);
+                    for member in members {
+                        self.decisions[member].verdict = Verdict::ZeroDenominator;
+                    }
+                }
+            }
+        }
+        let counts = &mut self.set.counts.removed;
+        counts.insert(ZERO_DENOMINATOR.into(), removed);
+    }
+
+    /// The finite endpoints, by their places: those that coincide together.
+    fn finite_points(&self) -> Vec<Vec<usize>> {
+        let verdict = |place: usize| self.decisions[place].verdict;
+        // No two are at one point: see `fail_what_coincides`.
+        let finite = (0..self.results.len()).filter(|&place| verdict(place) == Verdict::Finite);
+        let mut points: Vec<Vec<usize>> = finite.map(|place| vec![place]).collect();
+        let singular = |place: usize| {
+            verdict(place).may_be_multiple() || verdict(place) == Verdict::PositiveDimensional
+        };
+        let (results, shape) = (self.results, &self.shape);
+        let coinciding = coincidences(results, shape, self.tolerances, self.seed, singular);
+        points.extend(coinciding);
+        points
+    }
+
     fn list_failures(&mut self) {
         for (result, decision) in self.results.iter().zip(&self.decisions) {
             if decision.verdict != Verdict::Failed {
@@ -345,6 +416,7 @@ impl<'a> Draft<'a> {
             undecided: count(Verdict::Undecided),
             within_data_accuracy: count(Verdict::WithinDataAccuracy),
             excess: Some(count(Verdict::ExcessSolution)),
+            removed: count(Verdict::ZeroDenominator),
             at_infinity: count(Verdict::AtInfinity),
             failed: count(Verdict::Failed),
             retracked: history.retracked,
@@ -355,7 +427,15 @@ impl<'a> Draft<'a> {
                 .iter()
                 .filter(|d| d.by_precision_limit)
                 .count() as u64,
-            degenerate: std::mem::take(&mut self.set.paths.degenerate),
+            degenerate: {
+                let sets = std::mem::take(&mut self.in_declared_sets).into_iter();
+                let kept = |k: &usize| self.decisions[*k].verdict != Verdict::ZeroDenominator;
+                sets.map(|(name, mut members)| {
+                    members.retain(kept);
+                    (name, members.len() as u64)
+                })
+                .collect()
+            },
             images: history.images,
             decided_by_exact_count: {
                 let aside = |result: &&PathResult| result.outcome == PathOutcome::PutAside;
@@ -369,11 +449,16 @@ impl<'a> Draft<'a> {
         paths.highest_precision_bits = paths.by_precision.keys().copied().max().unwrap_or(0);
         assert_eq!(paths.sum(), paths.total, "every path is in one class");
         self.set.paths = paths;
-        let places = self.results.iter().zip(&self.decisions);
-        self.set.on_positive_dimensional_sets = places
-            .filter(|(_, decision)| decision.verdict == Verdict::PositiveDimensional)
-            .map(|(result, _)| result.origin.0)
-            .collect();
+        let with = |verdict: Verdict| -> Vec<u64> {
+            let places = self.results.iter().zip(&self.decisions);
+            places
+                .filter(|(_, decision)| decision.verdict == verdict)
+                .map(|(result, _)| result.origin.0)
+                .collect()
+        };
+        let on_sets = with(Verdict::PositiveDimensional);
+        self.set.removed = with(Verdict::ZeroDenominator);
+        self.set.on_positive_dimensional_sets = on_sets;
     }
 
     /// Solutions from finite endpoints; returns the place of the result that stands for each.
@@ -464,15 +549,7 @@ impl<'a> Draft<'a> {
 
     /// The solution of some coinciding endpoints, and whose point it is: the most accurate.
     fn solution(&self, members: &[usize], verdict: Verdict) -> (usize, Solution) {
-        let best = *members
-            .iter()
-            .min_by(|&&a, &&b| {
-                let unasked = |m: usize| self.results[m].local_dimension.is_none();
-                let accuracy = |m: usize| self.results[m].accuracy;
-                let first = unasked(a).cmp(&unasked(b));
-                first.then(accuracy(a).total_cmp(&accuracy(b)))
-            })
-            .expect("a cluster has a member");
+        let best = self.most_accurate(members);
         let result = &self.results[best];
         let values = self.shape.to_variables(result.endpoint.to_double());
         let solution = Solution {
@@ -500,6 +577,19 @@ impl<'a> Draft<'a> {
             undecided: verdict == Verdict::Undecided,
         };
         (best, solution)
+    }
+
+    /// The most accurate of some coinciding endpoints; one whose dual spaces were asked, where there is one.
+    fn most_accurate(&self, members: &[usize]) -> usize {
+        *members
+            .iter()
+            .min_by(|&&a, &&b| {
+                let unasked = |m: usize| self.results[m].local_dimension.is_none();
+                let accuracy = |m: usize| self.results[m].accuracy;
+                let first = unasked(a).cmp(&unasked(b));
+                first.then(accuracy(a).total_cmp(&accuracy(b)))
+            })
+            .expect("a cluster has a member")
     }
 
     fn decide_reality(&mut self, representatives: &[usize]) {
@@ -537,12 +627,17 @@ impl<'a> Draft<'a> {
         counts.singular = set.solutions.iter().filter(|s| s.singular).count() as u64;
         counts.nonsingular = counts.distinct - counts.singular;
         counts.undecided = set.undecided.len() as u64;
+        counts.doubtful_denominators = self.doubtful_denominators.len() as u64;
         counts.with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
         // Every positive-dimensional set has an end of a complete start system's
         // paths on it, where the Jacobian is singular, if only at infinity.
         let ends = self.results.iter().zip(&self.decisions);
         let all_isolated = ends.into_iter().all(|(result, decision)| {
-            result.outcome == PathOutcome::Regular || decision.verdict == Verdict::Singular
+            let isolated = || isolation(result, self.tolerances);
+            result.outcome == PathOutcome::Regular
+                || decision.verdict == Verdict::Singular
+                || decision.verdict == Verdict::ZeroDenominator
+                    && matches!(isolated(), Isolation::Isolated { .. })
         });
         counts.positive_dimensional = if set.on_positive_dimensional_sets.is_empty() {
             (history.complete_start && all_isolated && set.failed.is_empty()).then_some(false)
@@ -599,6 +694,12 @@ impl<'a> Draft<'a> {
         );
         let multiplicities = self.set.counts.doubtful_multiplicity;
         say(multiplicities, "singular point", "of doubtful multiplicity");
+        let denominators = self.set.counts.doubtful_denominators;
+        say(
+            denominators,
+            "point",
+            "of which it is not known whether a denominator is 0",
+        );
         open.extend(history.may_miss.clone());
         let counts = &mut self.set.counts;
         (counts.complete, counts.complete_reason) = if !open.is_empty() {
@@ -635,6 +736,15 @@ impl<'a> Draft<'a> {
                 plural(paths.undecided as usize),
                 if paths.undecided == 1 { "s" } else { "" },
                 if set.counts.undecided == 1 { "is" } else { "are" },
+            ));
+        }
+        if !self.doubtful_denominators.is_empty() {
+            set.warnings.push(format!(
+                "at {} point{} (first paths: {}) a denominator is so near to 0 that digits do not tell whether it is: \
+                 if so, no solution is there",
+                self.doubtful_denominators.len(),
+                plural(self.doubtful_denominators.len()),
+                some_of(&self.doubtful_denominators),
             ));
         }
         if paths.crossings_found > paths.crossings_resolved {

@@ -192,6 +192,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             undecided,
             within_data_accuracy,
             decided_by_exact_count,
+            removed,
         } = &set.paths;
         paths.total += total;
         paths.finite += finite;
@@ -215,6 +216,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         paths.undecided += undecided;
         paths.within_data_accuracy += within_data_accuracy;
         paths.decided_by_exact_count += decided_by_exact_count;
+        paths.removed += removed;
         let SolutionCounts {
             distinct,
             nonsingular,
@@ -233,12 +235,18 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             complete_reason,
             // Each target has its own.
             exact_count: _,
+            removed,
+            doubtful_denominators,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;
         counts.singular += singular;
         counts.undecided += undecided;
         counts.doubtful_multiplicity += doubtful_multiplicity;
+        counts.doubtful_denominators += doubtful_denominators;
+        for (name, number) in removed {
+            *counts.removed.entry(name.clone()).or_default() += number;
+        }
         if counts.complete == Completeness::Yes && *complete != Completeness::Yes {
             counts.complete_reason.clone_from(complete_reason);
         }

@@ -24,6 +24,7 @@ pub(crate) mod operand;
 mod options;
 pub(crate) mod problem;
 pub(crate) mod proof;
+mod removal;
 mod resumed;
 mod search;
 mod slices;
@@ -400,7 +401,7 @@ impl DecompositionSolve {
         if self.state.method == Method::Slices {
             self.state.dimensions.iter_mut().for_each(account_for_lost);
         }
-        let mut found = ordered(Decomposition {
+        let mut found = Decomposition {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
@@ -411,7 +412,13 @@ impl DecompositionSolve {
             paths: self.state.paths,
             paths_of_loops: self.state.paths_of_loops,
             family: None,
-        });
+            removed: Vec::new(),
+        };
+        // A problem was made of the system at these values.
+        if let Ok(system) = self.system() {
+            removal::remove_zero_denominators(&mut found, &system, self.state.options.seed);
+        }
+        let mut found = ordered(found);
         found.family = self.family(&found);
         found
     }
