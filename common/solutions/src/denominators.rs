@@ -29,8 +29,9 @@ const SHARPENED_BITS: u32 = 512;
 const BITS: u32 = 128;
 /// A value beyond so many times its error is not 0.
 const CLEARLY_NOT_ZERO: f64 = 1e3;
-/// Errors of singular endpoints are estimated less well: at least this, relative to the largest coordinate.
-const SINGULAR_ERROR: f64 = 1e-8;
+/// Errors of singular endpoints are estimated less well: at least this, relative to the largest coordinate. Beside points
+/// of multiplicity 8 doubles had left 2e-3.
+const SINGULAR_ERROR: f64 = 1e-6;
 /// Digits that leave an error above this decide nothing.
 const LARGEST_ERROR: f64 = 1e-4;
 /// So many endpoints of one answer are brought to more digits; further ones are decided by their own.
@@ -121,6 +122,8 @@ impl<'a> Denominators<'a> {
         }
         let error = error_bound(point.accuracy, factor, floor);
         match self.nearest(&unknowns, error) {
+            // No digits could be had, and those of a multiple point are not to be trusted.
+            Nearness::Clear if point.singular && point.isolated => Denominator::Doubtful,
             Nearness::Clear => Denominator::Nonzero,
             Nearness::Zero if error <= LARGEST_ERROR => Denominator::Zero,
             _ => Denominator::Doubtful,

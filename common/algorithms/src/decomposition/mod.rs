@@ -62,6 +62,7 @@ pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
 use proof::Proving;
+pub(crate) use removal::remove_zero_denominators;
 use resumed::Resumed;
 use serde::{Deserialize, Serialize, Serializer};
 use slices::Slices;
@@ -416,7 +417,7 @@ impl DecompositionSolve {
         };
         // A problem was made of the system at these values.
         if let Ok(system) = self.system() {
-            removal::remove_zero_denominators(&mut found, &system, self.state.options.seed);
+            remove_zero_denominators(&mut found, &system, self.state.options.seed);
         }
         let mut found = ordered(found);
         found.family = self.family(&found);
@@ -491,6 +492,7 @@ pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
         (by, key(set))
     });
     for dimension in &mut found.dimensions {
+        dimension.degree = 0;
         let own = found.components.iter_mut();
         let own = own.filter(|set| set.dimension() == dimension.number);
         for (number, set) in (1..).zip(own) {

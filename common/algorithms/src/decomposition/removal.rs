@@ -19,7 +19,7 @@ const LEAST_ERROR: f64 = 1e-13;
 
 /// Takes away the components of a system without parameters on which a denominator is 0, and notes where that is in
 /// doubt.
-pub(super) fn remove_zero_denominators(found: &mut Decomposition, system: &System, seed: u64) {
+pub(crate) fn remove_zero_denominators(found: &mut Decomposition, system: &System, seed: u64) {
     let tolerances = Tolerances::default();
     let Some(denominators) = Denominators::of(system, &[], &tolerances, seed) else {
         return;
