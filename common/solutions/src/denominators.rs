@@ -74,7 +74,7 @@ pub struct Denominators<'a> {
 }
 
 impl<'a> Denominators<'a> {
-    /// Those of a system; `None` where the given equations have none.
+    /// The denominators of a system; `None` where the given equations have none.
     pub fn of(
         system: &'a System,
         parameters: &'a [Complex64],

@@ -91,7 +91,7 @@ pub struct DecompositionBlock {
 /// Components of one dimension and degree that were taken away.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemovedBlock {
-    /// Their dimension.
+    /// The dimension of the components.
     pub dimension: u32,
     /// The degree of each.
     pub degree: u64,

@@ -66,9 +66,9 @@ impl TrackedPaths {
 pub struct RemovedComponent {
     /// Why: `a denominator is 0`.
     pub reason: String,
-    /// Its dimension.
+    /// The dimension of the component.
     pub dimension: u32,
-    /// Its degree.
+    /// The degree of the component.
     pub degree: u64,
 }
 
