@@ -5,6 +5,7 @@ use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::ExactCount;
 use cognate_systems::polynomial::{SolutionCount, solution_count};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::denominator_factors;
 
 /// Operations that a count may take for each path, and in all: a tenth of a millisecond and a tenth of a second.
 const OPERATIONS_PER_PATH: u64 = 100_000;
@@ -14,18 +15,23 @@ const LEAST_OPERATIONS: u64 = 4_000_000;
 
 /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points or on
 /// sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
-/// `known`: the number, where it is known already.
+/// `known`: the number of solutions of the equations as they are tracked, where it is known already.
 pub(crate) fn compare_with_exact_count(
     set: &mut SolutionSet,
     system: &System,
     known: Option<SolutionCount>,
 ) {
     let paths = &set.paths;
-    if !set.settled() || paths.finite == paths.total || !paths.degenerate.is_empty() {
+    if !set.is_settled_as_far_as_it_goes()
+        || paths.finite == paths.total
+        || !paths.degenerate.is_empty()
+    {
         return;
     }
     let operations = OPERATIONS_PER_PATH.saturating_mul(paths.total);
     let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
+    // The given equations have fewer where they have denominators.
+    let known = known.filter(|_| denominator_factors(system).is_empty());
     if let Some(count) = known.or_else(|| solution_count(system, operations)) {
         compare(set, count);
     }
@@ -169,7 +175,8 @@ mod tests {
         set.counts.complete = Completeness::NotKnown;
         let mut more = set.clone();
         compare(&mut more, finite(3, 3));
-        assert!(more.settled() && more.counts.complete == Completeness::No);
+        assert_eq!(more.counts.complete, Completeness::No);
+        assert!(more.is_settled_as_far_as_it_goes() && !more.settled());
         compare(&mut set, finite(2, 2));
         assert!(set.settled() && set.counts.complete == Completeness::Yes);
     }

@@ -7,10 +7,12 @@ mod quotient;
 
 use super::Polynomial;
 use super::dual_dimensions::FIELD;
+use crate::expression::NodeId;
 use crate::system::System;
+use crate::transform::clear_denominators::denominator_factors;
 use groebner::{Budget, Terms, groebner_basis};
 use monomial::{MOST_VARIABLES, Monomial};
-use nonsingular::with_inverse_of_determinant;
+use nonsingular::{with_inverse_of_determinant, with_inverses};
 use quotient::Quotient;
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +39,7 @@ pub enum SolutionCount {
 /// Counts the solutions of a system of affine groups without parameters, in at most some operations: from a Gröbner
 /// basis over a prime field. That is the count over the rationals but for primes that divide one of the numbers
 /// on the way, with odds of some 1e-8. `None` where it takes more, or equations are no polynomials with
-/// rational coefficients.
+/// rational coefficients. Points where a denominator of the given equations is 0 are no solutions.
 ///
 /// D. Cox, J. Little, D. O'Shea: Using Algebraic Geometry, 2005, chapters 2 and 4.
 pub fn solution_count(system: &System, operations: u64) -> Option<SolutionCount> {
@@ -46,8 +48,8 @@ pub fn solution_count(system: &System, operations: u64) -> Option<SolutionCount>
     if !affine || !system.parameters.is_empty() || variables > MOST_VARIABLES {
         return None;
     }
-    let residues = |&equation| -> Option<Terms> {
-        let polynomial = Polynomial::expand(&system.expressions, equation, variables, 0)?;
+    let residues = |equation: &NodeId| -> Option<Terms> {
+        let polynomial = Polynomial::expand(&system.expressions, *equation, variables, 0)?;
         let terms = polynomial.terms.iter();
         let terms =
             terms.map(|(exponents, c)| Some((Monomial::new(exponents)?, FIELD.complex(c)?)));
@@ -57,33 +59,52 @@ pub fn solution_count(system: &System, operations: u64) -> Option<SolutionCount>
         Some(terms)
     };
     let equations: Option<Vec<Terms>> = system.equations.iter().map(residues).collect();
-    count(variables, equations?, operations)
+    let denominators = denominator_factors(system);
+    let denominators: Option<Vec<Terms>> = denominators.iter().map(residues).collect();
+    let ideal = Ideal {
+        variables,
+        equations: equations?,
+        denominators: denominators?,
+    };
+    ideal.count(operations)
 }
 
-fn count(variables: usize, equations: Vec<Terms>, operations: u64) -> Option<SolutionCount> {
-    let budget = &mut Budget(operations);
-    let basis = groebner_basis(equations.clone(), budget)?;
-    let dimension = dimension(variables, &basis, budget)?;
-    if dimension > 0 {
+/// Equations, and polynomials that are 0 at no point that counts.
+struct Ideal {
+    variables: usize,
+    equations: Vec<Terms>,
+    denominators: Vec<Terms>,
+}
+
+impl Ideal {
+    fn count(self, operations: u64) -> Option<SolutionCount> {
         let budget = &mut Budget(operations);
-        let nonsingular = nonsingular_points(variables, equations, budget);
-        return Some(SolutionCount::Infinite {
-            dimension,
-            nonsingular,
-        });
+        let equations = self.equations.clone();
+        let (variables, equations) = with_inverses(self.variables, equations, &self.denominators)?;
+        let basis = groebner_basis(equations, budget)?;
+        let dimension = dimension(variables, &basis, budget)?;
+        if dimension > 0 {
+            let budget = &mut Budget(operations);
+            return Some(SolutionCount::Infinite {
+                dimension,
+                nonsingular: self.nonsingular_points(budget),
+            });
+        }
+        let quotient = Quotient::new(variables, &basis, budget)?;
+        Some(SolutionCount::Finite {
+            with_multiplicity: quotient.dimension() as u64,
+            distinct: quotient.distinct_zeros(budget).map(|zeros| zeros as u64),
+        })
     }
-    let quotient = Quotient::new(variables, &basis, budget)?;
-    Some(SolutionCount::Finite {
-        with_multiplicity: quotient.dimension() as u64,
-        distinct: quotient.distinct_zeros(budget).map(|zeros| zeros as u64),
-    })
-}
 
-fn nonsingular_points(variables: usize, equations: Vec<Terms>, budget: &mut Budget) -> Option<u64> {
-    let equations = with_inverse_of_determinant(variables, equations, budget)?;
-    let basis = groebner_basis(equations, budget)?;
-    let quotient = Quotient::new(variables + 1, &basis, budget)?;
-    Some(quotient.dimension() as u64)
+    fn nonsingular_points(self, budget: &mut Budget) -> Option<u64> {
+        let variables = self.variables;
+        let equations = with_inverse_of_determinant(variables, self.equations, budget)?;
+        let (variables, equations) = with_inverses(variables + 1, equations, &self.denominators)?;
+        let basis = groebner_basis(equations, budget)?;
+        let quotient = Quotient::new(variables, &basis, budget)?;
+        Some(quotient.dimension() as u64)
+    }
 }
 
 /// The most variables of which no leading monomial is a product; 0 also where one is 1.
@@ -159,6 +180,23 @@ mod tests {
         assert_eq!(of(text), infinite(1, Some(1)));
         let more = "function f, g, h; f = x*y; g = x*(y - 1); h = x*(x - 1);";
         assert_eq!(of(more), infinite(1, None), "not square");
+    }
+
+    #[test]
+    fn points_where_a_denominator_is_0_do_not_count() {
+        let of = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
+        assert_eq!(
+            of("f = x/y + y/x - 5/2; g = 1/x + 1/y - 3/2;"),
+            finite(2, 2)
+        );
+        assert_eq!(of("f = 1/x - 1/y - 1; g = x - y;"), finite(0, 0));
+        // Multiplied out, the line x = y.
+        let cut = "f = (x^2 - y^2)/(x - y); g = (x - y)*(x^2 + 1)/(x^2 - y^2) - 1/y;";
+        assert_eq!(of(cut), finite(0, 0));
+        assert_eq!(of("f = (x - 1)*x/x; g = y^2*x;"), finite(2, 1));
+        // The axis y = 0, without one point; the other axis is gone.
+        let set = "f = x*y/x; g = y*(y - 1)*(x - 2)/x;";
+        assert_eq!(of(set), infinite(1, Some(0)));
     }
 
     /// G. Björck, 1985; J. Backelin, R. Fröberg, 1991; S. Katsura, 1986.
