@@ -13,7 +13,7 @@ pub enum PlanError {
     /// Underdetermined.
     #[error(
         "{equations} equations for {unknowns} unknowns, so that no solution is isolated: \
-         `cognate decompose FILE` finds the curves, surfaces, ... of solutions. Or add {0} to ask for points of the \
+         `cognate decompose FILE` finds the curves, surfaces, ... of solutions. Add {0} to ask for points of the \
          solution set (random linear ones: a slice, whose solutions are as many as the set's degree), or fix as many \
          variables",
         .unknowns.checked_sub(*.equations).map_or(String::new(), |n| match n {

@@ -132,11 +132,13 @@ fn linear_form(system: &mut System, row: &[Complex64]) -> Option<NodeId> {
 #[cfg(test)]
 mod tests {
     use super::super::{DecompositionOptions, DecompositionSolve, run_locally};
-    use super::*;
     use cognate_solutions::witness::Method;
 
+    /// Dimension and degree of each component.
+    type Listed = Vec<(u32, u64)>;
+
     /// Dimension and degree of the components, and of those that were removed.
-    fn decomposed(equations: &str, method: Option<Method>) -> (Vec<(u32, u64)>, Vec<(u32, u64)>) {
+    fn decomposed(equations: &str, method: Option<Method>) -> (Listed, Listed) {
         let text =
             format!("{{\"variables\": [\"x\", \"y\", \"z\"], \"equations\": [{equations}]}}");
         let read = cognate_systems::formats::read("test", text.as_bytes());
@@ -164,8 +166,8 @@ mod tests {
             // The plane x = y doubly, the sphere, which meets it, and the point on x = 3.
             let surface = "\"(x - y)^2*(x^2 + y^2 + z^2 - 1)/(x - y)\"";
             assert_eq!(decomposed(surface, method), (vec![(2, 2)], vec![(2, 1)]));
-            // The line x = y = z, off the line x = y = 0.
-            let lines = "\"x/y - 1\", \"(z - x)*x/x\"";
+            // The line x = y = z, and x = y = 1, where the denominator y - 1 is 0.
+            let lines = "\"x/y - 1\", \"(z - x)*(x - 1)/(y - 1)\"";
             assert_eq!(decomposed(lines, method), (vec![(1, 1)], vec![(1, 1)]));
             let points = "\"1/x - 1/y - 1\", \"x - y\", \"z - 1\"";
             assert_eq!(decomposed(points, method), (vec![], vec![(0, 1)]));
