@@ -138,7 +138,9 @@ fi
 step "the tests of the workspace"
 chosen=()
 if [ "$mode" = long ]; then chosen=(--run-ignored all); fi
-target/tools/bin/cargo-nextest nextest run --release --workspace --config-file tests/nextest.toml "${chosen[@]}"
+# One more at a time than there are cores: some wait for leases, servers and processes.
+target/tools/bin/cargo-nextest nextest run --release --workspace --config-file tests/nextest.toml \
+  --test-threads $(($(nproc) + 1)) "${chosen[@]}"
 cargo test --quiet --release --workspace --doc
 
 step "the Python package, with the program that is built"
