@@ -32,6 +32,15 @@ pub struct Answer {
 /// Seeds that every known answer is checked with.
 pub const SEEDS: std::ops::RangeInclusive<u64> = 1..=10;
 
+/// Seeds of answers that take seconds each: two of them, and every one by `tests/run.sh long`.
+pub fn seeds_of_slow_answers() -> std::ops::RangeInclusive<u64> {
+    if std::env::var_os("COGNATE_LONG").is_some() {
+        SEEDS
+    } else {
+        1..=2
+    }
+}
+
 /// Lanes side by side; other widths give the same bits.
 const WIDTH: usize = 8;
 
