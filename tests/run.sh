@@ -13,7 +13,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . deploy/packages.sh
 
 mode=${1:-all}
-crates="numeric systems machine-code continuation solutions algorithms protocol kinematics summary worker coordinator client tests"
+crates="numeric systems machine-code continuation solutions algorithms protocol kinematics mechanism-solver summary worker coordinator client tests"
 case " all fast long $crates " in
   *" $mode "*) ;;
   *)

@@ -407,14 +407,21 @@ fn section<'a>(readme: &'a str, heading: &str) -> &'a str {
 }
 
 /// The order of the house: the line of the drawing that begins with `numeric`, then what stands below it:
-/// kinematics, summaries, the coordinator, its client and the tests.
+/// kinematics and its solver, summaries, the coordinator, its client and the tests.
 fn drawn_order(readme: &str) -> Vec<String> {
     let line = readme
         .lines()
         .find(|line| line.trim_start().starts_with("numeric ◄"))
         .expect("README.md has the drawing, a line `numeric ◄ systems ◄ ...`");
     let mut order: Vec<String> = line.split('◄').map(|name| name.trim().to_owned()).collect();
-    let below = ["kinematics", "summary", "coordinator", "client", "tests"];
+    let below = [
+        "kinematics",
+        "mechanism_solver",
+        "summary",
+        "coordinator",
+        "client",
+        "tests",
+    ];
     order.extend(below.map(str::to_owned));
     order
 }

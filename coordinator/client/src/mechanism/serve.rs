@@ -3,8 +3,8 @@
 //! What has come is answered as soon as nothing more is waiting, so that one line is answered at once and many are
 //! answered side by side. Never more than a round is held.
 
-use super::solver::{ROUND, Solver};
-use super::target_answer::TargetAnswer;
+use cognate_mechanism_solver::prepared_mechanism::{ROUND, PreparedMechanism};
+use cognate_mechanism_solver::postures::Postures;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::line::{Line, LineId};
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
@@ -52,12 +52,12 @@ struct Asked {
 
 /// Answers all lines. `shown` makes the JSON of an answer.
 pub fn serve(
-    solver: &Solver<'_>,
+    prepared: &PreparedMechanism<'_>,
     mechanism: &Mechanism,
     (kind, degrees): (&LineKind, bool),
     input: impl BufRead + Send + 'static,
     output: &mut impl Write,
-    shown: &dyn Fn(u64, &TargetAnswer) -> Value,
+    shown: &dyn Fn(u64, &Postures) -> Value,
 ) -> std::io::Result<Served> {
     let (sender, receiver) = sync_channel(ROUND);
     // Not joined: where the output has gone, the thread may wait for input for ever.
@@ -75,7 +75,7 @@ pub fn serve(
                 line => asked.push(read(number, &line, mechanism, kind, degrees)),
             }
         }
-        let answers = answers(solver, &mut asked);
+        let answers = answers(prepared, &mut asked);
         let mut answers = answers.into_iter();
         for line in asked {
             let answer = match &line.target {
@@ -185,19 +185,19 @@ fn read(number: u64, line: &Raw, mechanism: &Mechanism, kind: &LineKind, degrees
 }
 
 /// The answers of all that are targets; where one of them cannot be solved, its line says why.
-fn answers(solver: &Solver<'_>, asked: &mut [Asked]) -> Vec<TargetAnswer> {
+fn answers(prepared: &PreparedMechanism<'_>, asked: &mut [Asked]) -> Vec<Postures> {
     let targets: Vec<Target> = asked
         .iter()
         .filter_map(|line| line.target.as_ref().ok().cloned())
         .collect();
-    if let Ok(answers) = solver.solve(&targets) {
+    if let Ok(answers) = prepared.solve(&targets) {
         return answers;
     }
     // One of them is at fault: each by itself.
     let mut found = Vec::new();
     for line in asked {
         let Ok(target) = &line.target else { continue };
-        match solver.solve(std::slice::from_ref(target)) {
+        match prepared.solve(std::slice::from_ref(target)) {
             Ok(answers) => found.extend(answers),
             Err(error) => {
                 line.target = Err(MechanismError {
@@ -236,7 +236,7 @@ fn with_id(mut value: Value, id: Option<&LineId>) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::preparation::AnswerOptions;
+    use cognate_mechanism_solver::preparation::AnswerOptions;
     use cognate_kinematics::compile::{Problem, Question};
     use cognate_kinematics::mechanism::{ReadOptions, read};
 
@@ -252,13 +252,13 @@ mod tests {
             locks: Vec::new(),
         };
         let options = AnswerOptions::default();
-        let solver = Solver::new(&mechanism, &question, &options).unwrap();
+        let prepared = PreparedMechanism::new(&mechanism, &question, &options).unwrap();
         let names = ["q1", "q2"].map(|name| (name.to_owned(), true)).to_vec();
         let kind = (&LineKind::Inputs(names), false);
         let input = std::io::Cursor::new(lines.to_owned().into_bytes());
         let mut output = Vec::new();
-        let shown = |number: u64, answer: &TargetAnswer| json!({"line": number, "complex": answer.counts.complex});
-        let served = serve(&solver, &mechanism, kind, input, &mut output, &shown).unwrap();
+        let shown = |number: u64, answer: &Postures| json!({"line": number, "complex": answer.counts.complex});
+        let served = serve(&prepared, &mechanism, kind, input, &mut output, &shown).unwrap();
         let text = String::from_utf8(output).unwrap();
         let values = text.lines().map(|l| serde_json::from_str(l).unwrap());
         (values.collect(), served)

@@ -2,12 +2,12 @@
 //!
 //! `meta.json` of each instance says what is expected and by which independent programs that was found.
 
-use cognate_client::mechanism::follow::samples::{Sample, samples};
-use cognate_client::mechanism::follow::{BranchEnd, Path, follow};
-use cognate_client::mechanism::preparation::{AnswerOptions, Preparation};
-use cognate_client::mechanism::solver::Solver;
-use cognate_client::mechanism::summary::Summary;
-use cognate_client::mechanism::target_answer::TargetAnswer;
+use cognate_mechanism_solver::follow::samples::{Sample, samples};
+use cognate_mechanism_solver::follow::{BranchEnd, Path, follow};
+use cognate_mechanism_solver::preparation::{AnswerOptions, Preparation};
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
+use cognate_mechanism_solver::summary::Summary;
+use cognate_mechanism_solver::postures::Postures;
 use cognate_kinematics::compile::{Configuration, Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::{
@@ -50,7 +50,7 @@ fn question(problem: Problem) -> Question {
 #[derive(Debug)]
 struct Answer {
     preparation: Preparation,
-    targets: Vec<TargetAnswer>,
+    targets: Vec<Postures>,
     warnings: Vec<String>,
     settled: bool,
 }
@@ -62,16 +62,16 @@ fn answer(
     targets: &[Target],
     options: &AnswerOptions,
 ) -> Result<Answer, MechanismError> {
-    let solver = Solver::new(mechanism, question, options)?;
+    let prepared = PreparedMechanism::new(mechanism, question, options)?;
     let lone = [Target::Inputs(Vec::new())];
     let targets = match targets {
-        [] => solver.solve(&lone)?,
-        targets => solver.solve(targets)?,
+        [] => prepared.solve(&lone)?,
+        targets => prepared.solve(targets)?,
     };
-    let mut summary = Summary::of(solver.preparation());
+    let mut summary = Summary::of(prepared.preparation());
     targets.iter().for_each(|target| summary.note(target));
     Ok(Answer {
-        preparation: solver.preparation().clone(),
+        preparation: prepared.preparation().clone(),
         targets,
         warnings: summary.warnings,
         settled: summary.settled,
@@ -182,7 +182,7 @@ fn inputs(instance: &str, file: &str, mechanism: &Mechanism, names: &[String]) -
 }
 
 /// The real joint values of a target.
-fn real_values(target: &TargetAnswer) -> Vec<Vec<f64>> {
+fn real_values(target: &Postures) -> Vec<Vec<f64>> {
     let real = target.positions.iter().filter(|p| p.is_real);
     real.map(|p| {
         p.configuration
@@ -752,8 +752,8 @@ fn follow_path(mechanism: &Mechanism, problem: Problem, samples: Vec<Sample>) ->
         inputs: (problem == Problem::Forward).then(|| mechanism.inputs.clone()),
         ..question(problem)
     };
-    let solver = Solver::new(mechanism, &asked, &options).unwrap_or_else(|e| panic!("{e}"));
-    follow(&solver, samples).unwrap_or_else(|e| panic!("{e}"))
+    let prepared = PreparedMechanism::new(mechanism, &asked, &options).unwrap_or_else(|e| panic!("{e}"));
+    follow(&prepared, samples).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Ground 4, crank 3, coupler and rocker 2.5 each: stretched where the crank stands upright, since 3, 4, 5 is a
@@ -827,7 +827,7 @@ fn branches_of_an_arm_end_at_proved_folds_only() {
 fn loops_whose_rows_leap_are_not_followed() {
     let arm = random_arm(&mut dice(5), &[]);
     let asked = question(Problem::Forward);
-    let solver = Solver::new(&arm, &asked, &AnswerOptions::default()).unwrap();
-    let refused = follow(&solver, Vec::new()).unwrap_err().to_string();
+    let prepared = PreparedMechanism::new(&arm, &asked, &AnswerOptions::default()).unwrap();
+    let refused = follow(&prepared, Vec::new()).unwrap_err().to_string();
     assert!(refused.contains("closed form"), "{refused}");
 }

@@ -4,7 +4,7 @@ use super::read::wrong;
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{FamilyAction, MechanismFamilies};
-use crate::mechanism::families::solve_member;
+use cognate_mechanism_solver::families::solve_member;
 use crate::output;
 use crate::output::mechanisms::families as shown;
 use crate::output::text::Look;

@@ -3,9 +3,9 @@
 use super::read::{Read, cpu_seconds, described, options, some, wrong};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{MechanismFollow, MechanismFormat};
-use crate::mechanism::follow::samples::samples;
-use crate::mechanism::follow::{Path, follow};
-use crate::mechanism::solver::Solver;
+use cognate_mechanism_solver::follow::samples::samples;
+use cognate_mechanism_solver::follow::{Path, follow};
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 use crate::output;
 use crate::output::mechanisms::path::{self, ShownPath};
 use crate::output::mechanisms::{View, folder};
@@ -28,9 +28,9 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
         inputs: some(&a.input),
         locks: read.locks(&a.mechanism)?,
     };
-    let solver = Solver::new(&read.mechanism, &question, &options(&a.solving));
-    let solver = solver.map_err(|e| described(&e))?;
-    let preparation = solver.preparation();
+    let prepared = PreparedMechanism::new(&read.mechanism, &question, &options(&a.solving));
+    let prepared = prepared.map_err(|e| described(&e))?;
+    let preparation = prepared.preparation();
     let kinds = read.mechanism.kinds(&preparation.inputs);
     let targets = match (&a.poses, &a.inputs) {
         (Some(file), _) => read.poses(file, degrees)?,
@@ -46,7 +46,7 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
         );
         return Err(wrong("--samples", message));
     }
-    let followed = follow(&solver, found).map_err(|e| described(&e))?;
+    let followed = follow(&prepared, found).map_err(|e| described(&e))?;
     let seed = match &a.seed_angles {
         Some(text) => Some(seed_angles(&read, text, degrees)?),
         None => None,

@@ -1,11 +1,11 @@
 //! Mechanisms on the page of a coordinator: their positions and branches, solved in this process.
 
-use crate::mechanism::cache::Cache;
-use crate::mechanism::follow::follow;
-use crate::mechanism::follow::samples::samples;
-use crate::mechanism::preparation::AnswerOptions;
-use crate::mechanism::solver::Solver;
-use crate::mechanism::summary::Summary;
+use cognate_mechanism_solver::cache::Cache;
+use cognate_mechanism_solver::follow::follow;
+use cognate_mechanism_solver::follow::samples::samples;
+use cognate_mechanism_solver::preparation::AnswerOptions;
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
+use cognate_mechanism_solver::summary::Summary;
 use crate::output::mechanisms::View;
 use crate::output::mechanisms::drawing::{Drawing, of_path};
 use crate::output::mechanisms::path::ShownPath;
@@ -59,9 +59,9 @@ impl Mechanisms for PageMechanisms {
             cache: Cache::usual_folder(),
             threads: 1,
         };
-        let solver = Solver::new(&mechanism, &question(problem), &options);
-        let solver = solver.map_err(|e| e.to_string())?;
-        let preparation = solver.preparation();
+        let prepared = PreparedMechanism::new(&mechanism, &question(problem), &options);
+        let prepared = prepared.map_err(|e| e.to_string())?;
+        let preparation = prepared.preparation();
         let inputs = mechanism.kinds(&preparation.inputs);
         let targets = self.targets(asked, &mechanism, &inputs)?;
         let view = View {
@@ -76,7 +76,7 @@ impl Mechanisms for PageMechanisms {
             let angles: Vec<bool> = inputs.iter().map(|(_, angle)| *angle).collect();
             let found = samples(&targets, Some(SAMPLES), size(&mechanism), &angles);
             few(found.len(), "samples")?;
-            let path = follow(&solver, found).map_err(|e| e.to_string())?;
+            let path = follow(&prepared, found).map_err(|e| e.to_string())?;
             return Ok(of_path(&ShownPath {
                 view,
                 path: &path,
@@ -88,7 +88,7 @@ impl Mechanisms for PageMechanisms {
         }
         let mut drawing = Drawing::new(view);
         let mut summary = Summary::of(preparation);
-        for answer in solver.solve(&targets).map_err(|e| e.to_string())? {
+        for answer in prepared.solve(&targets).map_err(|e| e.to_string())? {
             drawing.take(summary.targets, &answer);
             summary.note(&answer);
         }

@@ -2,8 +2,8 @@
 
 use crate::error::ClientError;
 use crate::mechanism::arguments::{AngleUnit, MechanismFile, MechanismSolving};
-use crate::mechanism::cache::Cache;
-use crate::mechanism::preparation::AnswerOptions;
+use cognate_mechanism_solver::cache::Cache;
+use cognate_mechanism_solver::preparation::AnswerOptions;
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::read_options::ChainEnds;

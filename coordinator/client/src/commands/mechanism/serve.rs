@@ -4,7 +4,7 @@ use super::read::{Read, described, options, some, wrong};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismServe;
 use crate::mechanism::serve::{LineKind, serve};
-use crate::mechanism::solver::Solver;
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 use crate::output::mechanisms::{View, json};
 use cognate_kinematics::compile::{Problem, Question};
 
@@ -27,8 +27,8 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
         locks: read.locks(&a.mechanism)?,
     };
     let options = options(&a.solving);
-    let solver = Solver::new(&read.mechanism, &question, &options).map_err(|e| described(&e))?;
-    let preparation = solver.preparation();
+    let prepared = PreparedMechanism::new(&read.mechanism, &question, &options).map_err(|e| described(&e))?;
+    let preparation = prepared.preparation();
     for warning in &preparation.warnings {
         eprintln!("warning: {warning}");
     }
@@ -49,7 +49,7 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
     let input = std::io::BufReader::new(std::io::stdin());
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     let lines = (&kind, view.degrees);
-    let served = match serve(&solver, &read.mechanism, lines, input, &mut out, &shown) {
+    let served = match serve(&prepared, &read.mechanism, lines, input, &mut out, &shown) {
         Ok(served) => served,
         // The reader has gone: nobody waits for more.
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => return Ok(Exit::Solved),

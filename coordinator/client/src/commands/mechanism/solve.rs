@@ -5,8 +5,8 @@ use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{
     MechanismAnswer, MechanismFormat, MechanismForward, MechanismInverse,
 };
-use crate::mechanism::solver::{ROUND, Solver};
-use crate::mechanism::summary::Summary;
+use cognate_mechanism_solver::prepared_mechanism::{ROUND, PreparedMechanism};
+use cognate_mechanism_solver::summary::Summary;
 use crate::output::mechanisms::listing::{Finished, Listing, Sink};
 use crate::output::mechanisms::table::Table;
 use crate::output::mechanisms::{View, csv, folder, json};
@@ -106,12 +106,12 @@ fn respond(
     degrees: bool,
 ) -> Result<Exit, ClientError> {
     let start = Instant::now();
-    let solver = Solver::new(&read.mechanism, question, &options(&a.solving));
-    let solver = solver.map_err(|e| described(&e))?;
+    let prepared = PreparedMechanism::new(&read.mechanism, question, &options(&a.solving));
+    let prepared = prepared.map_err(|e| described(&e))?;
     let view = View {
         mechanism: &read.mechanism,
         problem: question.problem,
-        preparation: solver.preparation(),
+        preparation: prepared.preparation(),
         degrees,
         only_within_limits: a.within_limits,
         complex: a.complex,
@@ -133,13 +133,13 @@ fn respond(
         [] => &lone[..],
         targets => targets,
     };
-    let mut summary = Summary::of(solver.preparation());
+    let mut summary = Summary::of(prepared.preparation());
     let mut progress = match targets.len() > ROUND {
         true => Progress::new(true, start),
         false => Progress::silent(),
     };
     for round in targets.chunks(ROUND) {
-        for answer in solver.solve(round).map_err(|e| described(&e))? {
+        for answer in prepared.solve(round).map_err(|e| described(&e))? {
             for listing in &mut listings {
                 listing.target(summary.targets, &answer)?;
             }

@@ -3,7 +3,7 @@
 use super::listing::{Finished, Listing, Sink};
 use super::view::{View, pose_columns, pose_numbers};
 use crate::error::ClientError;
-use crate::mechanism::target_answer::{Position, TargetAnswer};
+use cognate_mechanism_solver::postures::{Position, Postures};
 
 /// The real positions of targets. `solution` counts the positions of a target from 1, as in the table.
 pub struct Positions<'a> {
@@ -44,7 +44,7 @@ const KNOWN: [&str; 6] = [
 ];
 
 impl Listing for Positions<'_> {
-    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+    fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         if let (false, Some(first)) = (self.has_header, answer.positions.first()) {
             self.header(Some(first))?;
         }

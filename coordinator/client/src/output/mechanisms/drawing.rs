@@ -5,7 +5,7 @@ use super::listing::{Finished, Listing};
 use super::path::ShownPath;
 use super::view::View;
 use crate::error::ClientError;
-use crate::mechanism::target_answer::{Counts, Position, TargetAnswer};
+use cognate_mechanism_solver::postures::{Counts, Position, Postures};
 use crate::output::files::write_file;
 use cognate_kinematics::compile::Configuration;
 use cognate_kinematics::mechanism::chain::JointValue;
@@ -60,7 +60,7 @@ impl<'a> Drawing<'a> {
     }
 
     /// Takes the real positions of a target that are listed.
-    pub fn take(&mut self, index: u64, answer: &TargetAnswer) {
+    pub fn take(&mut self, index: u64, answer: &Postures) {
         self.counts.add(&answer.counts);
         let listed = answer.positions.iter();
         let listed = listed.filter(|p| p.is_real && self.view.lists(p));
@@ -198,7 +198,7 @@ impl<'a> Pages<'a> {
 }
 
 impl Listing for Pages<'_> {
-    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+    fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         self.drawing.take(index, answer);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Families that are solved already, and a member that was solved anew.
 
 use crate::error::ClientError;
-use crate::mechanism::families::SolvedMember;
+use cognate_mechanism_solver::families::SolvedMember;
 use crate::output::files::{make_folder, write_file};
 use crate::output::text::{Columns, Look};
 use cognate_kinematics::compile::families::{SOLVED, SolvedFamily};

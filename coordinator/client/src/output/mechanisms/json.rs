@@ -3,7 +3,7 @@
 use super::listing::{Finished, Listing, Sink};
 use super::view::{View, digest, snapped_json};
 use crate::error::ClientError;
-use crate::mechanism::target_answer::{Position, TargetAnswer};
+use cognate_mechanism_solver::postures::{Position, Postures};
 use cognate_kinematics::compile::{Problem, Target};
 use cognate_kinematics::mechanism::Space;
 use cognate_kinematics::mechanism::chain::JointValue;
@@ -82,7 +82,7 @@ pub(super) fn position_json(view: &View<'_>, position: &Position) -> Value {
 }
 
 /// A target's answer.
-fn target(view: &View<'_>, index: u64, target: &TargetAnswer) -> Value {
+fn target(view: &View<'_>, index: u64, target: &Postures) -> Value {
     let listed = target.positions.iter().filter(|p| view.lists(p));
     let solutions: Vec<Value> = listed.map(|p| position_json(view, p)).collect();
     let mut value = target_counts(view, index, target);
@@ -91,7 +91,7 @@ fn target(view: &View<'_>, index: u64, target: &TargetAnswer) -> Value {
 }
 
 /// A target's answer on a line of a stream, whose number it has.
-pub fn line(view: &View<'_>, number: u64, answer: &TargetAnswer) -> Value {
+pub fn line(view: &View<'_>, number: u64, answer: &Postures) -> Value {
     let mut value = target(view, 0, answer);
     if let Some(fields) = value.as_object_mut() {
         fields.remove("index");
@@ -101,7 +101,7 @@ pub fn line(view: &View<'_>, number: u64, answer: &TargetAnswer) -> Value {
 }
 
 /// A target's answer without its positions.
-pub(super) fn target_counts(view: &View<'_>, index: u64, target: &TargetAnswer) -> Value {
+pub(super) fn target_counts(view: &View<'_>, index: u64, target: &Postures) -> Value {
     let counts = &target.counts;
     let given = match &target.target {
         Target::Pose(pose) => pose_json(pose, view.mechanism.space == Space::Planar),
@@ -187,7 +187,7 @@ impl<'a> Object<'a> {
 }
 
 impl Listing for Object<'_> {
-    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+    fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         let comma = if std::mem::take(&mut self.is_first) {
             ""
         } else {
@@ -225,7 +225,7 @@ impl<'a> Lines<'a> {
 }
 
 impl Listing for Lines<'_> {
-    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+    fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         self.sink
             .write(&format!("{}\n", target(&self.view, index, answer)))
     }

@@ -2,8 +2,8 @@
 //! targets.
 
 use crate::error::ClientError;
-use crate::mechanism::summary::Summary;
-use crate::mechanism::target_answer::TargetAnswer;
+use cognate_mechanism_solver::summary::Summary;
+use cognate_mechanism_solver::postures::Postures;
 use crate::output::files::Written;
 use crate::output::unless_gone;
 use std::io::{BufWriter, Stdout, Write};
@@ -22,7 +22,7 @@ pub struct Finished<'a> {
 /// Writes answers in some form.
 pub trait Listing {
     /// Takes the answer for the target of this number, counted from 0; targets come in their order.
-    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError>;
+    fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError>;
     /// Writes what comes after the last target.
     fn finish(self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError>;
 }

@@ -2,7 +2,7 @@
 
 use super::json::{mechanism, position_json, target_counts};
 use super::view::{View, pose_columns, pose_numbers};
-use crate::mechanism::follow::{Branch, BranchEnd, Path};
+use cognate_mechanism_solver::follow::{Branch, BranchEnd, Path};
 use crate::output::text::{Columns, Look, counted, real, seconds};
 use serde_json::{Value, json};
 use std::fmt::Write as _;

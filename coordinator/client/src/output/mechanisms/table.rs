@@ -3,7 +3,7 @@
 use super::listing::{Finished, Listing};
 use super::view::{View, pose_columns, pose_numbers};
 use crate::error::ClientError;
-use crate::mechanism::target_answer::{Position, TargetAnswer};
+use cognate_mechanism_solver::postures::{Position, Postures};
 use crate::output;
 use crate::output::text::{Columns, Look, count, counted, magnitude, real, seconds};
 use cognate_kinematics::compile::Problem;
@@ -30,7 +30,7 @@ pub struct Table<'a> {
 }
 
 impl Listing for Table<'_> {
-    fn target(&mut self, index: u64, answer: &TargetAnswer) -> Result<(), ClientError> {
+    fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         let counts = &answer.counts;
         let mut row = vec![counts.complex, counts.real];
         self.has_proofs |= counts.certified_real.is_some();

@@ -1,7 +1,7 @@
 //! View: how positions of a mechanism are shown, in whatever form.
 
-use crate::mechanism::preparation::Preparation;
-use crate::mechanism::target_answer::Position;
+use cognate_mechanism_solver::preparation::Preparation;
+use cognate_mechanism_solver::postures::Position;
 use cognate_kinematics::compile::Problem;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;

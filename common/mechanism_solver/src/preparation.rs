@@ -1,6 +1,6 @@
 //! How targets are answered, and what is known of a mechanism before them.
 
-use super::prepare::Prepared;
+use super::start_positions::StartPositions;
 use cognate_kinematics::compile::Family;
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ pub struct Preparation {
     pub family: Family,
     /// Names of the inputs that targets give.
     pub inputs: Vec<String>,
-    /// Positions of this mechanism at a general target; `None` where it was not prepared.
+    /// Positions of this mechanism at a general target; `None` where it was not start.
     pub here: Option<u64>,
     /// Why that is less than the family's number; empty where it is not.
     pub reason: String,
@@ -38,27 +38,27 @@ pub struct Preparation {
 
 impl Preparation {
     /// Takes over what preparing has found.
-    pub fn note(&mut self, prepared: &Prepared) {
-        self.here = Some(prepared.count);
-        self.from_cache = prepared.from_cache;
-        self.settled &= prepared.settled;
-        self.warnings.extend(prepared.warnings.iter().cloned());
+    pub fn note(&mut self, start: &StartPositions) {
+        self.here = Some(start.count);
+        self.from_cache = start.from_cache;
+        self.settled &= start.settled;
+        self.warnings.extend(start.warnings.iter().cloned());
         let Some(expected) = self.family.expected else {
             return;
         };
-        if prepared.count < expected {
-            let others = &prepared.others;
+        if start.count < expected {
+            let others = &start.others;
             let rest = if others.is_empty() {
                 String::new()
             } else {
                 format!(", {others}")
             };
-            self.reason = format!("special: {} of {expected}{rest}", prepared.count);
-        } else if prepared.count > expected {
+            self.reason = format!("special: {} of {expected}{rest}", start.count);
+        } else if start.count > expected {
             self.settled = false;
             self.warnings.push(format!(
                 "{} positions were found where the family has {expected} ({})",
-                prepared.count, self.family.source
+                start.count, self.family.source
             ));
         }
     }

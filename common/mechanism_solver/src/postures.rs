@@ -1,6 +1,6 @@
 //! Positions of a mechanism for one target, counted so that nothing is missing unsaid.
 
-use super::prepare::in_order;
+use super::start_positions::in_order;
 use cognate_kinematics::compile::{CLOSES, Configuration, Formulation, Lifted, Target};
 use cognate_kinematics::mechanism::Mechanism;
 use cognate_solutions::solution::Solution;
@@ -90,7 +90,7 @@ impl Position {
 
 /// The answer for one target.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TargetAnswer {
+pub struct Postures {
     /// The given joint values, or the given pose.
     pub target: Target,
     /// Paths of the solve, by how they ended.
@@ -103,7 +103,7 @@ pub struct TargetAnswer {
     pub warnings: Vec<String>,
 }
 
-impl TargetAnswer {
+impl Postures {
     /// Holds the counts against the number of positions of a general target, where it is known.
     pub fn compare(&mut self, here: Option<u64>) {
         let Some(here) = here.filter(|here| *here != self.counts.sum()) else {
@@ -152,7 +152,7 @@ pub fn of_positions(
     mechanism: &Mechanism,
     target: &Target,
     found: Vec<Configuration>,
-) -> TargetAnswer {
+) -> Postures {
     let position = |configuration: Configuration| Position {
         violated: violated(mechanism, &configuration),
         configuration,
@@ -164,7 +164,7 @@ pub fn of_positions(
     };
     let positions: Vec<Position> = found.into_iter().map(position).collect();
     let count = positions.len() as u64;
-    TargetAnswer {
+    Postures {
         target: target.clone(),
         counts: Counts {
             complex: count,
@@ -198,7 +198,7 @@ pub fn of_set(
     (target, parameters): (&Target, &[Complex64]),
     set: &SolutionSet,
     certify: bool,
-) -> TargetAnswer {
+) -> Postures {
     let mut counts = Counts {
         singular: set.paths.singular,
         at_infinity: set.paths.at_infinity,
@@ -254,7 +254,7 @@ pub fn of_set(
         });
     }
     sort(&mut positions);
-    TargetAnswer {
+    Postures {
         target: target.clone(),
         settled: set.settled() && closes,
         counts,

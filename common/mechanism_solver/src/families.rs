@@ -1,6 +1,6 @@
 //! A general member of a family, solved anew from a start system, and how it compares with the published number.
 
-use super::prepare::{draw, in_order, solve};
+use super::start_positions::{draw, in_order, solve};
 use cognate_algorithms::SolveOptions;
 use cognate_kinematics::compile::families::SolvedFamily;
 use num_complex::Complex64;

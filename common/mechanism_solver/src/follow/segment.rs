@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::fold::FoldSystem;
-use crate::mechanism::solver::PathEquations;
+use crate::prepared_mechanism::PathEquations;
 use cognate_continuation::certification::certified_system;
 use cognate_systems::evaluation::Interpreter;
 use cognate_systems::expression::Node;

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// Where targets start, and how that came about.
 #[derive(Clone, Debug)]
-pub struct Prepared {
+pub struct StartPositions {
     /// Parameters of the member from which targets are followed.
     pub parameters: Vec<Complex64>,
     /// Its solutions that are positions, point after point.
@@ -97,12 +97,12 @@ fn positions(
 }
 
 /// A prepared formulation with parameters: from the cache, where it holds one that passes its check, or made now.
-pub fn prepared(
+pub fn start_positions(
     formulation: &dyn Formulation,
     system: &System,
     seed: u64,
     cache: Option<&Cache>,
-) -> Result<Prepared, String> {
+) -> Result<StartPositions, String> {
     let (Some(cache), Some(member)) = (cache, general_member(formulation, seed, 0)) else {
         return prepare(formulation, system, seed);
     };
@@ -112,7 +112,7 @@ pub fn prepared(
         Entry::Absent => {}
         Entry::Unusable(reason) => warnings.push(reason),
         Entry::Found(kept) => {
-            let found = Prepared {
+            let found = StartPositions {
                 parameters: member.clone(),
                 count: (kept.points.len() / system.variables.len().max(1)) as u64,
                 points: kept.points,
@@ -139,7 +139,7 @@ pub fn prepared(
     Ok(found)
 }
 
-impl Prepared {
+impl StartPositions {
     /// Why these are not the positions at the member's parameters; `None` where they are as far as each shows by itself.
     /// That each is a solution is seen again when a path begins there.
     fn fault(&self, formulation: &dyn Formulation, system: &System) -> Option<&'static str> {
@@ -191,7 +191,7 @@ pub fn draw(seed: u64, number: u64) -> impl FnMut() -> Complex64 {
 
 /// Prepares a formulation with parameters. A number that is not the family's is believed when two general
 /// members have it.
-fn prepare(formulation: &dyn Formulation, system: &System, seed: u64) -> Result<Prepared, String> {
+fn prepare(formulation: &dyn Formulation, system: &System, seed: u64) -> Result<StartPositions, String> {
     let mut first = prepare_once(formulation, system, seed, 0)?;
     if Some(first.count) == formulation.family().expected {
         return Ok(first);
@@ -218,7 +218,7 @@ fn prepare_once(
     system: &System,
     seed: u64,
     number: u64,
-) -> Result<Prepared, String> {
+) -> Result<StartPositions, String> {
     let known = formulation.known_member();
     let member = general_member(formulation, seed, number);
     let dimension = system.variables.len();
@@ -236,7 +236,7 @@ fn prepare_once(
     };
     let (sets, parameters) = match (known, member) {
         (Some(known), None) => {
-            return Ok(Prepared {
+            return Ok(StartPositions {
                 count: (known.points.len() / dimension.max(1)) as u64,
                 parameters: known.parameters,
                 points: known.points,
@@ -287,7 +287,7 @@ fn prepare_once(
             set.counts.singular
         ));
     }
-    Ok(Prepared {
+    Ok(StartPositions {
         parameters,
         points,
         count,

@@ -9,8 +9,8 @@ mod segment;
 mod tube;
 
 use super::parallel;
-use super::solver::Solver;
-use super::target_answer::{Position, TargetAnswer};
+use super::prepared_mechanism::PreparedMechanism;
+use super::postures::{Position, Postures};
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_kinematics::mechanism::MechanismError;
@@ -24,7 +24,7 @@ pub struct Path {
     /// The samples.
     pub samples: Vec<Sample>,
     /// Positions at each of the samples.
-    pub answers: Vec<TargetAnswer>,
+    pub answers: Vec<Postures>,
     /// The branches: those within limits first, longer ones first.
     pub branches: Vec<Branch>,
     /// Where two branches meet and vanish, or appear.
@@ -97,8 +97,8 @@ impl Branch {
 }
 
 /// Solves the samples and joins their positions.
-pub fn follow(solver: &Solver<'_>, samples: Vec<Sample>) -> Result<Path, MechanismError> {
-    let path = solver.path_equations()?;
+pub fn follow(prepared: &PreparedMechanism<'_>, samples: Vec<Sample>) -> Result<Path, MechanismError> {
+    let path = prepared.path_equations()?;
     let equations = Equations::new(&path).map_err(|message| {
         MechanismError::of_file(
             "follow",
@@ -107,13 +107,13 @@ pub fn follow(solver: &Solver<'_>, samples: Vec<Sample>) -> Result<Path, Mechani
     })?;
     let mut parameters = Vec::new();
     for sample in &samples {
-        parameters.push(solver.parameters(&sample.target)?);
+        parameters.push(prepared.parameters(&sample.target)?);
     }
     let targets: Vec<_> = samples.iter().map(|s| s.target.clone()).collect();
-    let answers = solver.solve(&targets)?;
+    let answers = prepared.solve(&targets)?;
     let real: Vec<Vec<usize>> = answers.iter().map(followed).collect();
     let count = samples.len().saturating_sub(1);
-    let links = parallel::map(count, solver.threads(), |k| {
+    let links = parallel::map(count, prepared.threads(), |k| {
         if is_interrupted() {
             return None;
         }
@@ -133,7 +133,7 @@ pub fn follow(solver: &Solver<'_>, samples: Vec<Sample>) -> Result<Path, Mechani
 }
 
 /// The positions of a sample that take part: real and regular.
-fn followed(answer: &TargetAnswer) -> Vec<usize> {
+fn followed(answer: &Postures) -> Vec<usize> {
     let all = answer.positions.iter().enumerate();
     all.filter(|(_, p)| p.is_real && !p.is_singular)
         .map(|(k, _)| k)
@@ -143,7 +143,7 @@ fn followed(answer: &TargetAnswer) -> Vec<usize> {
 /// Branches that are being put together.
 struct Assembly<'a> {
     real: &'a [Vec<usize>],
-    answers: &'a [TargetAnswer],
+    answers: &'a [Postures],
     branches: Vec<Branch>,
     folds: Vec<FoldOnPath>,
     warnings: Vec<String>,
@@ -226,7 +226,7 @@ impl Assembly<'_> {
 impl Path {
     fn assemble(
         samples: Vec<Sample>,
-        answers: Vec<TargetAnswer>,
+        answers: Vec<Postures>,
         real: &[Vec<usize>],
         links: &[Joint],
     ) -> Self {

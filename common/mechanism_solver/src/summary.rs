@@ -1,7 +1,7 @@
 //! What is said of all targets of a question together, as their answers come.
 
 use super::preparation::Preparation;
-use super::target_answer::TargetAnswer;
+use super::postures::Postures;
 
 /// What is known of the targets that were answered so far.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ impl Summary {
     }
 
     /// Takes up the answer for the next target.
-    pub fn note(&mut self, answer: &TargetAnswer) {
+    pub fn note(&mut self, answer: &Postures) {
         self.targets += 1;
         self.settled &= answer.settled;
         let of_target = |warning: &String| format!("target {}: {warning}", self.targets);

@@ -1,4 +1,4 @@
-//! Solver: a question about a mechanism, ready for targets. What belongs to the mechanism is done once.
+//! PreparedMechanism: a question about a mechanism, ready for targets. What belongs to the mechanism is done once.
 //!
 //! Targets are followed from the prepared mechanism in batches, a batch a thread. What is said of a target does not
 //! depend on its batch: one whose paths do not all end regularly at the first attempt is solved again alone.
@@ -6,13 +6,14 @@
 use super::cache::Cache;
 use super::parallel;
 use super::preparation::{AnswerOptions, Preparation};
-use super::prepare::{prepared, solve_in_family};
-use super::target_answer::{TargetAnswer, of_positions, of_set};
+use super::start_positions::{start_positions, solve_in_family};
+use super::postures::{Postures, of_positions, of_set};
 use cognate_algorithms::SolveOptions;
 use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
 use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
+use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -28,7 +29,7 @@ const BATCHES_A_THREAD: usize = 2;
 pub const ROUND: usize = 1024;
 
 /// A question about a mechanism, ready for targets.
-pub struct Solver<'m> {
+pub struct PreparedMechanism<'m> {
     mechanism: &'m Mechanism,
     formulation: Box<dyn Formulation>,
     preparation: Preparation,
@@ -61,7 +62,7 @@ pub struct PathEquations<'a> {
     pub blocks: Vec<Vec<usize>>,
 }
 
-impl<'m> Solver<'m> {
+impl<'m> PreparedMechanism<'m> {
     /// Compiles and prepares.
     pub fn new(
         mechanism: &'m Mechanism,
@@ -142,18 +143,30 @@ impl<'m> Solver<'m> {
         Ok(all.split_off(own))
     }
 
+    /// All positions of the joints in which the output has each of these poses; one answer a pose, in their order.
+    pub fn inverse(&self, poses: &[Pose]) -> Result<Vec<Postures>, MechanismError> {
+        let targets: Vec<Target> = poses.iter().copied().map(Target::Pose).collect();
+        self.solve(&targets)
+    }
+
+    /// All positions in which the inputs have each of these values, in radians or lengths; one answer for each, in their order.
+    pub fn forward(&self, inputs: &[Vec<f64>]) -> Result<Vec<Postures>, MechanismError> {
+        let targets: Vec<Target> = inputs.iter().cloned().map(Target::Inputs).collect();
+        self.solve(&targets)
+    }
+
     /// Answers targets, on as many threads as there are batches; in their order.
-    pub fn solve(&self, targets: &[Target]) -> Result<Vec<TargetAnswer>, MechanismError> {
+    pub fn solve(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError> {
         let [least, most] = BATCH;
         let size = targets.len().div_ceil(BATCHES_A_THREAD * self.threads);
         let batches: Vec<&[Target]> = targets.chunks(size.clamp(least, most)).collect();
         let answers = parallel::map(batches.len(), self.threads, |k| self.batch(batches[k]));
-        let answers: Vec<Vec<TargetAnswer>> = answers.into_iter().collect::<Result<_, _>>()?;
+        let answers: Vec<Vec<Postures>> = answers.into_iter().collect::<Result<_, _>>()?;
         Ok(answers.into_iter().flatten().collect())
     }
 
     /// Answers targets side by side in this thread.
-    fn batch(&self, targets: &[Target]) -> Result<Vec<TargetAnswer>, MechanismError> {
+    fn batch(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError> {
         let Some(tracked) = &self.equations else {
             let direct = |target: &Target| {
                 of_positions(self.mechanism, target, self.formulation.direct(target))
@@ -238,7 +251,7 @@ fn tracked(
         return Ok(Some(tracked));
     }
     let cache = options.cache.as_deref().map(Cache::new);
-    let found = prepared(formulation, &tracked.system, options.seed, cache.as_ref());
+    let found = start_positions(formulation, &tracked.system, options.seed, cache.as_ref());
     let found = found.map_err(|message| mechanism.error(message))?;
     preparation.note(&found);
     if found.count == 0 {
