@@ -525,57 +525,97 @@ fn assert_same<R: Real>(name: &str, a: &[Complex<R>], b: &[Complex<R>]) {
     }
 }
 
-struct Both<'a, R: Real, E: Evaluate<R>> {
-    case: &'a Case,
+/// An evaluator at one point. Each of its calls is a job of its own: the compiler takes several times as long for all of
+/// them in one function.
+struct Calls<'a, R: Real, E: Evaluate<R>> {
     evaluator: &'a E,
-    context: R::Context,
     scratch: &'a mut E::Scratch,
+    x: Vec<Complex<R>>,
+    p: Vec<Complex<R>>,
+    dp: Vec<Complex<R>>,
 }
 
-impl<R: Real, E: Evaluate<R>> Job for Both<'_, R, E> {
-    type Output = (Vec<Complex<R>>, Vec<Complex<R>>);
+struct Linearize<'c, 'a, R: Real, E: Evaluate<R>>(&'c mut Calls<'a, R, E>, &'c mut Matrix<R>);
+
+impl<R: Real, E: Evaluate<R>> Job for Linearize<'_, '_, R, E> {
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> Self::Output {
-        let (n, m, rows) = (
-            self.case.variables,
-            self.case.parameters,
-            self.case.equations.len(),
-        );
-        let mut out = Matrix::zeros(self.context, rows, n + 2);
-        let mut alone = Matrix::zeros(self.context, rows, n + 2);
-        let mut values = vec![Complex::zero(self.context); rows];
-        // The first point must leave no trace in what the second one gives.
-        for index in [1, 2] {
-            let x = lane_point::<R>(self.context, n, 3 * index);
-            let p = lane_point::<R>(self.context, m, 3 * index + 1);
-            let dp = lane_point::<R>(self.context, m, 3 * index + 2);
-            self.evaluator
-                .linearize(&x, &p, &dp, &mut out, self.scratch);
-            self.evaluator.jacobian(&x, &p, &mut alone, self.scratch);
-            self.evaluator.value(&x, &p, &mut values, self.scratch);
-        }
-        values.extend(alone.entries);
-        (out.entries, values)
+    fn run(self) {
+        let Calls {
+            evaluator,
+            scratch,
+            x,
+            p,
+            dp,
+        } = self.0;
+        evaluator.linearize(x, p, dp, self.1, scratch);
     }
 }
 
+struct JacobianAlone<'c, 'a, R: Real, E: Evaluate<R>>(&'c mut Calls<'a, R, E>, &'c mut Matrix<R>);
+
+impl<R: Real, E: Evaluate<R>> Job for JacobianAlone<'_, '_, R, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Calls {
+            evaluator,
+            scratch,
+            x,
+            p,
+            ..
+        } = self.0;
+        evaluator.jacobian(x, p, self.1, scratch);
+    }
+}
+
+struct ValueAlone<'c, 'a, R: Real, E: Evaluate<R>>(&'c mut Calls<'a, R, E>, &'c mut [Complex<R>]);
+
+impl<R: Real, E: Evaluate<R>> Job for ValueAlone<'_, '_, R, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Calls {
+            evaluator,
+            scratch,
+            x,
+            p,
+            ..
+        } = self.0;
+        evaluator.value(x, p, self.1, scratch);
+    }
+}
+
+/// [J | H | H_t], and then H and [J | H] as calls of their own give them, on one instruction set.
 fn both<R: Real, E: Evaluate<R>>(
     case: &Case,
     evaluator: &E,
     context: R::Context,
     set: InstructionSet,
 ) -> (Vec<Complex<R>>, Vec<Complex<R>>) {
+    let (n, m, rows) = (case.variables, case.parameters, case.equations.len());
     let mut scratch = evaluator.scratch(context);
-    dispatch_on(
-        set,
-        Both {
-            case,
+    let mut out = Matrix::zeros(context, rows, n + 2);
+    let mut alone = Matrix::zeros(context, rows, n + 2);
+    let mut values = vec![Complex::zero(context); rows];
+    // The first point must leave no trace in what the second one gives.
+    for index in [1, 2] {
+        let mut calls = Calls {
             evaluator,
-            context,
             scratch: &mut scratch,
-        },
-    )
+            x: lane_point::<R>(context, n, 3 * index),
+            p: lane_point::<R>(context, m, 3 * index + 1),
+            dp: lane_point::<R>(context, m, 3 * index + 2),
+        };
+        dispatch_on(set, Linearize(&mut calls, &mut out));
+        dispatch_on(set, JacobianAlone(&mut calls, &mut alone));
+        dispatch_on(set, ValueAlone(&mut calls, &mut values));
+    }
+    values.extend(alone.entries);
+    (out.entries, values)
 }
 
 /// The naive reference, bit for bit.
