@@ -1,6 +1,6 @@
 //! A file of fields and values, JSON or TOML, in which every value knows its line; and what is wrong with one.
 
-use super::exact::{Number, ReadAngle, read_angle};
+use super::exact::{Number, ReadAngle, looks_like_radians, read_angle};
 use cognate_systems::formats::Source;
 use cognate_systems::formats::json_value;
 use std::cell::RefCell;
@@ -329,6 +329,14 @@ impl<'a> Entry<'a> {
             Ok(double)
         } else {
             Err(self.wrong("a number that a double can hold"))
+        }
+    }
+
+    /// Whether it is a number without a unit that is a right angle in radians.
+    pub fn looks_like_radians(&self) -> bool {
+        match &self.tree.kind {
+            Kind::Number(text) | Kind::Text(text) => looks_like_radians(text),
+            _ => false,
         }
     }
 

@@ -215,6 +215,17 @@ pub fn read_angle(text: &str, degrees: bool, snap: bool) -> Option<ReadAngle> {
     Some(plain(Angle::of_radians(nearest(&value.plain))))
 }
 
+/// Whether a number without a unit is a right angle, a half turn or a whole one in radians, to 0.005, which no file means in
+/// degrees.
+pub fn looks_like_radians(text: &str) -> bool {
+    let Some(value) = Value::read(text).filter(|value| value.turns == 0) else {
+        return false;
+    };
+    let radians = value.to_f64().abs();
+    let quarters = (radians / (PI / 2.0)).round();
+    (1.0..=4.0).contains(&quarters) && (radians - quarters * (PI / 2.0)).abs() < 5e-3
+}
+
 /// The multiple of pi/2 that a decimal is, rounded to the digits that it has; at least three of them.
 fn rounded_quarters(text: &str, value: &Rational) -> Option<i64> {
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {

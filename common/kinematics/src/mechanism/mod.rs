@@ -8,7 +8,7 @@ pub mod graph;
 pub mod line;
 pub mod pose;
 pub mod read;
-mod read_bodies;
+pub(crate) mod read_bodies;
 pub mod read_options;
 mod read_parts;
 pub mod targets;

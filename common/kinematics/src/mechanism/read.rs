@@ -19,8 +19,7 @@ pub fn read(
     if start.starts_with('<') {
         return urdf::read(&document, options);
     }
-    let first = start.lines().next().unwrap_or_default();
-    if dh::is_header(first) {
+    if dh::is_table(start) {
         return dh::read(&document, options);
     }
     let tree = document.tree()?;
@@ -51,7 +50,9 @@ fn mechanism(root: &Entry<'_>, options: &ReadOptions) -> Result<Mechanism, Mecha
             }
         },
     };
-    let degrees = match fields.optional("angles") {
+    let unit = fields.optional("angles");
+    let unit_is_named = unit.is_some();
+    let degrees = match unit {
         None => true,
         Some(entry) => match entry.text("deg or rad")? {
             "deg" => true,
@@ -65,6 +66,7 @@ fn mechanism(root: &Entry<'_>, options: &ReadOptions) -> Result<Mechanism, Mecha
     let mut context = Context {
         space,
         degrees,
+        unit_is_named,
         snap: !options.no_snap,
         snapped: Vec::new(),
     };
@@ -215,6 +217,7 @@ fn output(entry: &Entry<'_>, mechanism: &Mechanism) -> Result<Output, MechanismE
             let context = Context {
                 space: mechanism.space,
                 degrees: mechanism.degrees,
+                unit_is_named: true,
                 snap: false,
                 snapped: Vec::new(),
             };
@@ -287,6 +290,10 @@ mod tests {
                 "m:3: framework.points[0]: expected a name, found the number 1",
             ),
             ("space = \"planar\"\nspace = \"planar\"\n", "m:2:"),
+            (
+                "{\"serial\": {\"joints\": [\n{\"name\": \"a\", \"alpha\": 1.5708}]}}",
+                "m:2: serial.joints[0].alpha: a right angle in radians",
+            ),
             (
                 "type,theta,d,a,alpha\nR,0,0,0,x\n",
                 "m:2: alpha: expected an angle, found \"x\"",

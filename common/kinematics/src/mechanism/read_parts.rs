@@ -10,6 +10,8 @@ use num_complex::Complex64;
 pub(crate) struct Context {
     pub space: Space,
     pub degrees: bool,
+    /// Whether the file names the unit of its angles.
+    pub unit_is_named: bool,
     pub snap: bool,
     pub snapped: Vec<Snapped>,
 }
@@ -17,6 +19,12 @@ pub(crate) struct Context {
 impl Context {
     /// An angle, its snapping noted.
     pub fn angle(&mut self, entry: &Entry<'_>) -> Result<Angle, MechanismError> {
+        if !self.unit_is_named && entry.looks_like_radians() {
+            return Err(entry.error(
+                "a right angle in radians, and the file does not name the unit of its angles, which is degrees then: \
+                 add \"angles\": \"rad\", or \"angles\": \"deg\" where degrees are meant",
+            ));
+        }
         let read = entry.angle(self.degrees, self.snap)?;
         Ok(noted(read, &entry.path, &mut self.snapped))
     }

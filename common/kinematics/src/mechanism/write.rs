@@ -25,13 +25,7 @@ pub fn json(mechanism: &Mechanism, content: &[u8]) -> Result<String, MechanismEr
 }
 
 fn is_table(document: &Document<'_>) -> bool {
-    let first = document
-        .text
-        .trim_start()
-        .lines()
-        .next()
-        .unwrap_or_default();
-    crate::import::dh::is_header(first)
+    crate::import::dh::is_table(document.text)
 }
 
 fn quoted(text: &str) -> String {
