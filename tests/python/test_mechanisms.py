@@ -65,6 +65,45 @@ def test_a_matrix_is_a_pose(arm: cg.Mechanism) -> None:
     assert numpy.allclose(sorted(again.array().tolist()), sorted(one.array().tolist()), atol=1e-6)
 
 
+def test_an_arm_goes_forward_and_back(arm: cg.Mechanism) -> None:
+    values = dict(zip(arm.joints, (0.3, -0.8, 1.1, 0.4, -1.2, 2.0), strict=True))
+    there = arm.forward(values)
+    assert len(there) == 1 and there.settled
+    rows = json.loads((EXAMPLES / "arm_6r.json").read_text())["serial"]["joints"]
+    reached = numpy.eye(4)
+    for angle, row in zip(values.values(), rows, strict=True):
+        reached = reached @ chain(angle + row.get("theta", 0), row["d"], row["a"], row["alpha"])
+    assert numpy.allclose(there[0].output.matrix(), reached, atol=1e-12)
+    back = arm.inverse(there[0].output)
+    assert min(numpy.abs(q - list(values.values())).max() for q in back.array(arm.joints)) < 1e-6
+    held = cg.Mechanism.read(EXAMPLES / "arm_6r.json", lock={"q4": 0.4})
+    others = {name: value for name, value in values.items() if name != "q4"}
+    assert numpy.allclose(held.forward(others)[0].output.matrix(), reached, atol=1e-12)
+
+
+def test_rows_are_an_arm() -> None:
+    rows = [(0, 0.1625, 0, math.pi / 2), (0, 0, -0.425, 0), (0, 0, -0.3922, 0)]
+    rows += [(0, 0.1333, 0, math.pi / 2), (0, 0.0997, 0, -math.pi / 2), (0, 0.0996, 0, 0)]
+    arm = cg.Mechanism.from_dh(rows)
+    reached = numpy.eye(4)
+    angles = (0.2, -1.0, 0.7, 0.4, 0.9, -0.3)
+    for angle, row in zip(angles, rows, strict=True):
+        reached = reached @ chain(angle + row[0], *row[1:])
+    there = arm.forward(dict(zip(arm.joints, angles, strict=True)))
+    assert numpy.allclose(there[0].output.matrix(), reached, atol=1e-12)
+    with pytest.raises(cg.InputError, match="four numbers"):
+        cg.Mechanism.from_dh([(0, 0, 0)])
+
+
+def test_a_table_in_radians_names_its_unit(tmp_path: Path) -> None:
+    file = tmp_path / "arm.csv"
+    file.write_text("theta,d,a,alpha\n0,0.1625,0,1.5707963\n0,0,-0.425,0\n")
+    with pytest.raises(cg.InputError, match="# angles: rad"):
+        cg.Mechanism.read(file).info()
+    file.write_text("# angles: rad\n" + file.read_text())
+    assert cg.Mechanism.read(file).forward(q1=0, q2=0)[0].output is not None
+
+
 def test_a_platform_has_forty_positions() -> None:
     platform = cg.Mechanism.read(EXAMPLES / "hexapod.toml")
     lengths = json.loads((EXAMPLES / "hexapod_lengths.json").read_text())[0]

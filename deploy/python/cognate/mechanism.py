@@ -149,7 +149,7 @@ Target = Mapping[str, float]
 class Mechanism:
     """Links and joints. Angles are radians here, whatever the file says.
 
-    Made by `from_json`, `from_urdf` or `read`.
+    Made by `from_json`, `from_dh`, `from_urdf` or `read`.
 
     >>> import cognate as cg
     >>> arm = cg.Mechanism.from_json({"name": "arm", "space": "planar", "angles": "rad",
@@ -207,6 +207,48 @@ class Mechanism:
         path = folder.path / "mechanism.json"
         path.write_text(json.dumps(mechanism), encoding="utf-8")
         return cls(path, _file_options(lock, snap), folder)
+
+    @classmethod
+    def from_dh(
+        cls,
+        rows: Iterable[Sequence[float]],
+        *,
+        convention: str = "standard",
+        types: Sequence[str] | None = None,
+        names: Sequence[str] | None = None,
+        lock: Target | None = None,
+        snap: bool = True,
+    ) -> Mechanism:
+        """An arm from its rows of Denavit and Hartenberg: (theta, d, a, alpha), angles in radians.
+
+        `theta` is the angle of a revolute joint at 0, `d` the place of a prismatic one. `convention`: "standard", or
+        "modified" (Craig). `types`: "R" or "P" for each joint, by default R. `names`: by default q1, q2, ...
+
+        >>> import cognate as cg
+        >>> arm = cg.Mechanism.from_dh([(0, 0, 0.4, 0), (0, 0, 0.3, 0)])
+        >>> arm.joints
+        ('q1', 'q2')
+        >>> [round(x, 3) for x in arm.forward(q1=0, q2=1.5707963267948966)[0].output.position]
+        [0.4, 0.3, 0.0]
+        """
+        table = [[float(value) for value in row] for row in rows]
+        if any(len(row) != 4 for row in table):
+            raise InputError("expected rows of four numbers: theta, d, a, alpha", field="rows")
+        for what, given in (("types", types), ("names", names)):
+            if given is not None and len(given) != len(table):
+                raise InputError(f"expected one for each of {len(table)} rows, found {len(given)}", field=what)
+        joints = []
+        for i, (theta, d, a, alpha) in enumerate(table):
+            name = f"q{i + 1}" if names is None else names[i]
+            kind = "R" if types is None else types[i]
+            joints.append({"name": name, "type": kind, "theta": theta, "d": d, "a": a, "alpha": alpha})
+        mechanism = {"angles": "rad", "serial": {"convention": convention, "joints": joints}}
+        return cls.from_json(mechanism, lock=lock, snap=snap)
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints that have a value, in the order of the file."""
+        return tuple(str(joint["name"]) for joint in self.info()["joints"])
 
     def info(self) -> dict[str, Any]:
         """Links, joints, freedoms, the family and its number of positions: `cognate mechanism info`."""

@@ -25,12 +25,7 @@ pub fn compile(
     inputs: Vec<String>,
 ) -> Result<Box<dyn Formulation>, MechanismError> {
     if !chain.closed && question.problem == Problem::Forward {
-        if question.inputs.is_some() || !question.locks.is_empty() {
-            return Err(mechanism.error(
-                "all joints of an open chain are its inputs; --input and --lock say nothing here",
-            ));
-        }
-        return Ok(Box::new(Open::new(chain)));
+        return Ok(Box::new(Open::new(mechanism, chain, question)?));
     }
     if chain.closed && question.problem == Problem::Inverse {
         return Err(mechanism
@@ -124,26 +119,54 @@ fn refuse(
 struct Open {
     postures: Postures,
     inputs: Vec<String>,
+    /// Number of the joint of each input.
+    joints: Vec<usize>,
+    /// Values of all joints, those of inputs being 0.
+    locked: Vec<f64>,
     family: Family,
 }
 
 impl Open {
-    fn new(chain: &Chain) -> Self {
+    fn new(
+        mechanism: &Mechanism,
+        chain: &Chain,
+        question: &Question,
+    ) -> Result<Self, MechanismError> {
+        let lock = |name: &String| {
+            let mut locks = question.locks.iter();
+            locks.find(|(locked, _)| locked == name).map(|lock| lock.1)
+        };
+        let names: Vec<String> = chain.joints.iter().map(|j| j.name.clone()).collect();
+        let free: Vec<String> = names.iter().filter(|n| lock(n).is_none()).cloned().collect();
+        let inputs = question.inputs.as_ref().unwrap_or(&free).clone();
+        if let Some(missing) = free.iter().find(|name| !inputs.contains(name)) {
+            return Err(mechanism.error(format!(
+                "all joints of an open chain are its inputs; {missing} is missing among them"
+            )));
+        }
+        if let Some(held) = inputs.iter().find(|name| lock(name).is_some()) {
+            return Err(mechanism.error(format!("{held} is locked and an input")));
+        }
+        let place = |input: &String| names.iter().position(|name| name == input);
+        let joints = inputs.iter().filter_map(place).collect();
+        let locked = names.iter().map(|name| lock(name).unwrap_or(0.0)).collect();
         let letters: Vec<&str> = chain
             .joints
             .iter()
             .map(|j| if j.is_angle { "R" } else { "P" })
             .collect();
-        Self {
+        Ok(Self {
             postures: Postures::of(chain.clone()),
-            inputs: chain.joints.iter().map(|j| j.name.clone()).collect(),
+            inputs,
+            joints,
+            locked,
             family: Family {
                 name: letters.concat(),
                 expected: Some(1),
                 source: "rows multiplied out",
                 representation: "none: closed form",
             },
-        }
+        })
     }
 }
 
@@ -170,13 +193,13 @@ impl Formulation for Open {
         let Target::Inputs(values) = target else {
             return Vec::new();
         };
-        let joints = &self.postures.chain.joints;
-        let values: Vec<JointValue> = values
-            .iter()
-            .zip(joints)
-            .map(|(x, j)| JointValue::of_real(*x, j.is_angle))
-            .collect();
-        vec![self.postures.position(values, |_| 0.0)]
+        let mut reals = self.locked.clone();
+        for (value, &joint) in values.iter().zip(&self.joints) {
+            reals[joint] = *value;
+        }
+        let joints = self.postures.chain.joints.iter().zip(reals);
+        let values = joints.map(|(joint, x)| JointValue::of_real(x, joint.is_angle));
+        vec![self.postures.position(values.collect(), |_| 0.0)]
     }
 }
 
@@ -498,5 +521,45 @@ impl Member {
             gap = gap.max(modulus(c * c + s * s - 1.0) / (1.0 + c.norm_sqr() + s.norm_sqr()));
         }
         (gap, growth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::{Body, ReadOptions, read};
+
+    /// Inputs in any order, and joints that are locked: the frames are those of the rows.
+    #[test]
+    fn an_open_chain_forward_takes_all_joints_that_are_free() {
+        let table = b"theta,d,a,alpha\n0,0.4,0.1,90\n0,0,0.5,-90\n30,0.2,0,0\n";
+        let arm = read("arm.csv", table, &ReadOptions::default()).expect("a table of this test");
+        let Body::Chain(chain) = &arm.body else {
+            panic!("a table is a chain");
+        };
+        let question = |inputs: &[&str], locks: &[(&str, f64)]| Question {
+            problem: Problem::Forward,
+            inputs: (!inputs.is_empty()).then(|| inputs.iter().map(|n| n.to_string()).collect()),
+            locks: locks.iter().map(|(n, x)| (n.to_string(), *x)).collect(),
+        };
+        let pose = |question: &Question, values: &[f64]| {
+            let formulation = super::super::compile(&arm, question)?;
+            let target = Target::Inputs(values.to_vec());
+            Ok::<_, MechanismError>(formulation.direct(&target)[0].output)
+        };
+        let turns = [0.3, -0.7, 1.1].map(|x| JointValue::of_real(x, true));
+        let expected = Some(chain.tool_pose(&turns));
+        for (question, values) in [
+            (question(&[], &[]), vec![0.3, -0.7, 1.1]),
+            (question(&["q3", "q1", "q2"], &[]), vec![1.1, 0.3, -0.7]),
+            (question(&[], &[("q2", -0.7)]), vec![0.3, 1.1]),
+            (question(&["q3", "q1"], &[("q2", -0.7)]), vec![1.1, 0.3]),
+        ] {
+            assert_eq!(pose(&question, &values), Ok(expected), "{question:?}");
+        }
+        let missing = pose(&question(&["q3", "q1"], &[]), &[0.0, 0.0]).unwrap_err();
+        assert!(missing.to_string().contains("q2 is missing"), "{missing}");
+        let both = pose(&question(&["q1", "q2", "q3"], &[("q2", 0.0)]), &[0.0; 3]).unwrap_err();
+        assert!(both.to_string().contains("q2 is locked and an input"), "{both}");
     }
 }
