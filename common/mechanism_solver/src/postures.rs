@@ -148,11 +148,7 @@ fn violated(mechanism: &Mechanism, configuration: &Configuration) -> Vec<String>
 }
 
 /// The answer for a target from positions of a closed form.
-pub fn of_positions(
-    mechanism: &Mechanism,
-    target: &Target,
-    found: Vec<Configuration>,
-) -> Postures {
+pub fn of_positions(mechanism: &Mechanism, target: &Target, found: Vec<Configuration>) -> Postures {
     let position = |configuration: Configuration| Position {
         violated: violated(mechanism, &configuration),
         configuration,

@@ -5,9 +5,9 @@
 
 use super::cache::Cache;
 use super::parallel;
-use super::preparation::{AnswerOptions, Preparation};
-use super::start_positions::{start_positions, solve_in_family};
 use super::postures::{Postures, of_positions, of_set};
+use super::preparation::{AnswerOptions, Preparation};
+use super::start_positions::{solve_in_family, start_positions};
 use cognate_algorithms::SolveOptions;
 use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
 use cognate_continuation::prepared_family::PreparedFamily;

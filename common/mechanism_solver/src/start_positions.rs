@@ -191,7 +191,11 @@ pub fn draw(seed: u64, number: u64) -> impl FnMut() -> Complex64 {
 
 /// Prepares a formulation with parameters. A number that is not the family's is believed when two general
 /// members have it.
-fn prepare(formulation: &dyn Formulation, system: &System, seed: u64) -> Result<StartPositions, String> {
+fn prepare(
+    formulation: &dyn Formulation,
+    system: &System,
+    seed: u64,
+) -> Result<StartPositions, String> {
     let mut first = prepare_once(formulation, system, seed, 0)?;
     if Some(first.count) == formulation.family().expected {
         return Ok(first);

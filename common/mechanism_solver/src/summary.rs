@@ -1,7 +1,7 @@
 //! What is said of all targets of a question together, as their answers come.
 
-use super::preparation::Preparation;
 use super::postures::Postures;
+use super::preparation::Preparation;
 
 /// What is known of the targets that were answered so far.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -137,7 +137,11 @@ impl Open {
             locks.find(|(locked, _)| locked == name).map(|lock| lock.1)
         };
         let names: Vec<String> = chain.joints.iter().map(|j| j.name.clone()).collect();
-        let free: Vec<String> = names.iter().filter(|n| lock(n).is_none()).cloned().collect();
+        let free: Vec<String> = names
+            .iter()
+            .filter(|n| lock(n).is_none())
+            .cloned()
+            .collect();
         let inputs = question.inputs.as_ref().unwrap_or(&free).clone();
         if let Some(missing) = free.iter().find(|name| !inputs.contains(name)) {
             return Err(mechanism.error(format!(
@@ -560,6 +564,9 @@ mod tests {
         let missing = pose(&question(&["q3", "q1"], &[]), &[0.0, 0.0]).unwrap_err();
         assert!(missing.to_string().contains("q2 is missing"), "{missing}");
         let both = pose(&question(&["q1", "q2", "q3"], &[("q2", 0.0)]), &[0.0; 3]).unwrap_err();
-        assert!(both.to_string().contains("q2 is locked and an input"), "{both}");
+        assert!(
+            both.to_string().contains("q2 is locked and an input"),
+            "{both}"
+        );
     }
 }

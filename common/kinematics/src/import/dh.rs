@@ -405,7 +405,12 @@ mod tests {
         let arm = chain(fixed);
         assert_eq!(arm.joints.len(), 2);
         let pose = arm.tool_pose(&[a, b]);
-        for (x, y) in pose.rotation.iter().flatten().zip(expected.rotation.iter().flatten()) {
+        for (x, y) in pose
+            .rotation
+            .iter()
+            .flatten()
+            .zip(expected.rotation.iter().flatten())
+        {
             assert!((x - y).norm_sqr() < 1e-28, "{pose:?} {expected:?}");
         }
         for (x, y) in pose.position.iter().zip(&expected.position) {

@@ -9,8 +9,8 @@ mod segment;
 mod tube;
 
 use super::parallel;
-use super::prepared_mechanism::PreparedMechanism;
 use super::postures::{Position, Postures};
+use super::prepared_mechanism::PreparedMechanism;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_kinematics::mechanism::MechanismError;
@@ -97,7 +97,10 @@ impl Branch {
 }
 
 /// Solves the samples and joins their positions.
-pub fn follow(prepared: &PreparedMechanism<'_>, samples: Vec<Sample>) -> Result<Path, MechanismError> {
+pub fn follow(
+    prepared: &PreparedMechanism<'_>,
+    samples: Vec<Sample>,
+) -> Result<Path, MechanismError> {
     let path = prepared.path_equations()?;
     let equations = Equations::new(&path).map_err(|message| {
         MechanismError::of_file(

@@ -3,11 +3,11 @@
 //! What has come is answered as soon as nothing more is waiting, so that one line is answered at once and many are
 //! answered side by side. Never more than a round is held.
 
-use cognate_mechanism_solver::prepared_mechanism::{ROUND, PreparedMechanism};
-use cognate_mechanism_solver::postures::Postures;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::line::{Line, LineId};
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
+use cognate_mechanism_solver::postures::Postures;
+use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
 use serde_json::{Value, json};
 use std::io::{BufRead, Read, Write};
 use std::sync::mpsc::{Receiver, RecvError, SyncSender, sync_channel};
@@ -236,9 +236,9 @@ fn with_id(mut value: Value, id: Option<&LineId>) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate_mechanism_solver::preparation::AnswerOptions;
     use cognate_kinematics::compile::{Problem, Question};
     use cognate_kinematics::mechanism::{ReadOptions, read};
+    use cognate_mechanism_solver::preparation::AnswerOptions;
 
     const ARM: &[u8] = br#"{"angles": "rad", "serial": {"joints": [
         {"name": "q1", "a": 0.1, "d": 0.2}, {"name": "q2", "a": 0.3, "alpha": 0.4}]}}"#;

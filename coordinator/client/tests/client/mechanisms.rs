@@ -2,18 +2,18 @@
 //!
 //! `meta.json` of each instance says what is expected and by which independent programs that was found.
 
-use cognate_mechanism_solver::follow::samples::{Sample, samples};
-use cognate_mechanism_solver::follow::{BranchEnd, Path, follow};
-use cognate_mechanism_solver::preparation::{AnswerOptions, Preparation};
-use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
-use cognate_mechanism_solver::summary::Summary;
-use cognate_mechanism_solver::postures::Postures;
 use cognate_kinematics::compile::{Configuration, Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::{
     Body, Mechanism, MechanismError, ReadOptions, Space, read, targets,
 };
 use cognate_kinematics::shape::Shape;
+use cognate_mechanism_solver::follow::samples::{Sample, samples};
+use cognate_mechanism_solver::follow::{BranchEnd, Path, follow};
+use cognate_mechanism_solver::postures::Postures;
+use cognate_mechanism_solver::preparation::{AnswerOptions, Preparation};
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
+use cognate_mechanism_solver::summary::Summary;
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -752,7 +752,8 @@ fn follow_path(mechanism: &Mechanism, problem: Problem, samples: Vec<Sample>) ->
         inputs: (problem == Problem::Forward).then(|| mechanism.inputs.clone()),
         ..question(problem)
     };
-    let prepared = PreparedMechanism::new(mechanism, &asked, &options).unwrap_or_else(|e| panic!("{e}"));
+    let prepared =
+        PreparedMechanism::new(mechanism, &asked, &options).unwrap_or_else(|e| panic!("{e}"));
     follow(&prepared, samples).unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -4,11 +4,11 @@ use super::read::wrong;
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{FamilyAction, MechanismFamilies};
-use cognate_mechanism_solver::families::solve_member;
 use crate::output;
 use crate::output::mechanisms::families as shown;
 use crate::output::text::Look;
 use cognate_kinematics::compile::families::SOLVED;
+use cognate_mechanism_solver::families::solve_member;
 
 /// `cognate mechanism families`.
 pub fn run(a: &MechanismFamilies) -> Result<Exit, ClientError> {

@@ -3,15 +3,15 @@
 use super::read::{Read, cpu_seconds, described, options, some, wrong};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{MechanismFollow, MechanismFormat};
-use cognate_mechanism_solver::follow::samples::samples;
-use cognate_mechanism_solver::follow::{Path, follow};
-use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 use crate::output;
 use crate::output::mechanisms::path::{self, ShownPath};
 use crate::output::mechanisms::{View, folder};
 use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, size};
 use cognate_kinematics::mechanism::targets::{self, MOST_TARGETS};
+use cognate_mechanism_solver::follow::samples::samples;
+use cognate_mechanism_solver::follow::{Path, follow};
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 use std::time::Instant;
 
 /// `cognate mechanism follow`.

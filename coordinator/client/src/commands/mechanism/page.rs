@@ -1,11 +1,5 @@
 //! Mechanisms on the page of a coordinator: their positions and branches, solved in this process.
 
-use cognate_mechanism_solver::cache::Cache;
-use cognate_mechanism_solver::follow::follow;
-use cognate_mechanism_solver::follow::samples::samples;
-use cognate_mechanism_solver::preparation::AnswerOptions;
-use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
-use cognate_mechanism_solver::summary::Summary;
 use crate::output::mechanisms::View;
 use crate::output::mechanisms::drawing::{Drawing, of_path};
 use crate::output::mechanisms::path::ShownPath;
@@ -13,6 +7,12 @@ use cognate_coordinator::page::mechanisms::{MechanismQuestion, Mechanisms};
 use cognate_kinematics::compile::{Problem, Question, Target, compile, size};
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::{self, Body, LegKind, Mechanism, ReadOptions, Space, targets};
+use cognate_mechanism_solver::cache::Cache;
+use cognate_mechanism_solver::follow::follow;
+use cognate_mechanism_solver::follow::samples::samples;
+use cognate_mechanism_solver::preparation::AnswerOptions;
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
+use cognate_mechanism_solver::summary::Summary;
 use serde_json::{Value, json};
 
 /// Most targets of one question; a page shows no more.

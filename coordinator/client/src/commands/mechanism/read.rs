@@ -2,12 +2,12 @@
 
 use crate::error::ClientError;
 use crate::mechanism::arguments::{AngleUnit, MechanismFile, MechanismSolving};
-use cognate_mechanism_solver::cache::Cache;
-use cognate_mechanism_solver::preparation::AnswerOptions;
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::read_options::ChainEnds;
 use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets};
+use cognate_mechanism_solver::cache::Cache;
+use cognate_mechanism_solver::preparation::AnswerOptions;
 use std::path::Path;
 
 /// The error of a mechanism as one of the command line.

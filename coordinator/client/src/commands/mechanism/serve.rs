@@ -4,9 +4,9 @@ use super::read::{Read, described, options, some, wrong};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismServe;
 use crate::mechanism::serve::{LineKind, serve};
-use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 use crate::output::mechanisms::{View, json};
 use cognate_kinematics::compile::{Problem, Question};
+use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 
 /// `cognate mechanism serve`.
 pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
@@ -27,7 +27,8 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
         locks: read.locks(&a.mechanism)?,
     };
     let options = options(&a.solving);
-    let prepared = PreparedMechanism::new(&read.mechanism, &question, &options).map_err(|e| described(&e))?;
+    let prepared =
+        PreparedMechanism::new(&read.mechanism, &question, &options).map_err(|e| described(&e))?;
     let preparation = prepared.preparation();
     for warning in &preparation.warnings {
         eprintln!("warning: {warning}");

@@ -5,8 +5,6 @@ use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{
     MechanismAnswer, MechanismFormat, MechanismForward, MechanismInverse,
 };
-use cognate_mechanism_solver::prepared_mechanism::{ROUND, PreparedMechanism};
-use cognate_mechanism_solver::summary::Summary;
 use crate::output::mechanisms::listing::{Finished, Listing, Sink};
 use crate::output::mechanisms::table::Table;
 use crate::output::mechanisms::{View, csv, folder, json};
@@ -14,6 +12,8 @@ use crate::output::progress::{Progress, Standing};
 use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
 use cognate_kinematics::mechanism::targets;
+use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
+use cognate_mechanism_solver::summary::Summary;
 use std::time::Instant;
 
 /// `cognate mechanism inverse`.

@@ -1,10 +1,10 @@
 //! Families that are solved already, and a member that was solved anew.
 
 use crate::error::ClientError;
-use cognate_mechanism_solver::families::SolvedMember;
 use crate::output::files::{make_folder, write_file};
 use crate::output::text::{Columns, Look};
 use cognate_kinematics::compile::families::{SOLVED, SolvedFamily};
+use cognate_mechanism_solver::families::SolvedMember;
 use num_complex::Complex64;
 use serde_json::{Map, Value, json};
 use std::path::Path;

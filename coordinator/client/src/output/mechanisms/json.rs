@@ -3,11 +3,11 @@
 use super::listing::{Finished, Listing, Sink};
 use super::view::{View, digest, snapped_json};
 use crate::error::ClientError;
-use cognate_mechanism_solver::postures::{Position, Postures};
 use cognate_kinematics::compile::{Problem, Target};
 use cognate_kinematics::mechanism::Space;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
+use cognate_mechanism_solver::postures::{Position, Postures};
 use serde_json::{Map, Value, json};
 
 fn pose_json(pose: &Pose, planar: bool) -> Value {

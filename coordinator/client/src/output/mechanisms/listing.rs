@@ -2,10 +2,10 @@
 //! targets.
 
 use crate::error::ClientError;
-use cognate_mechanism_solver::summary::Summary;
-use cognate_mechanism_solver::postures::Postures;
 use crate::output::files::Written;
 use crate::output::unless_gone;
+use cognate_mechanism_solver::postures::Postures;
+use cognate_mechanism_solver::summary::Summary;
 use std::io::{BufWriter, Stdout, Write};
 
 /// What is known when all targets are answered.

@@ -2,8 +2,8 @@
 
 use super::json::{mechanism, position_json, target_counts};
 use super::view::{View, pose_columns, pose_numbers};
-use cognate_mechanism_solver::follow::{Branch, BranchEnd, Path};
 use crate::output::text::{Columns, Look, counted, real, seconds};
+use cognate_mechanism_solver::follow::{Branch, BranchEnd, Path};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 

@@ -3,10 +3,10 @@
 use super::listing::{Finished, Listing};
 use super::view::{View, pose_columns, pose_numbers};
 use crate::error::ClientError;
-use cognate_mechanism_solver::postures::{Position, Postures};
 use crate::output;
 use crate::output::text::{Columns, Look, count, counted, magnitude, real, seconds};
 use cognate_kinematics::compile::Problem;
+use cognate_mechanism_solver::postures::{Position, Postures};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 

@@ -1,11 +1,11 @@
 //! View: how positions of a mechanism are shown, in whatever form.
 
-use cognate_mechanism_solver::preparation::Preparation;
-use cognate_mechanism_solver::postures::Position;
 use cognate_kinematics::compile::Problem;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Mechanism, Space};
+use cognate_mechanism_solver::postures::Position;
+use cognate_mechanism_solver::preparation::Preparation;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
