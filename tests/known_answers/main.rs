@@ -17,6 +17,7 @@ mod mechanisms;
 mod nine_point;
 mod overdetermined;
 mod parameter_homotopies;
+mod paths_alone;
 mod planted;
 mod polyhedral;
 mod scaled_units;

@@ -2,7 +2,7 @@
 
 use cognate_tests::dice::Dice;
 use cognate_tests::planted::kinds::{KINDS, planted};
-use cognate_tests::planted::verdict::{Verdict, solve, start};
+use cognate_tests::planted::verdict::{Verdict, options, solve, start};
 use std::time::Duration;
 
 /// Systems of each kind in the sample.
@@ -36,7 +36,7 @@ const ONCE_WRONG: [(u64, u64); 20] = [
     (5, 2424),
 ];
 
-/// No system of the sample is answered wrongly by an answer that is called settled.
+/// No system of the sample is answered wrongly by an answer that is called settled, with an exact count and without.
 #[test]
 fn no_silent_error_among_planted_systems() {
     let mut wrong = Vec::new();
@@ -46,14 +46,18 @@ fn no_silent_error_among_planted_systems() {
         let mut dice = Dice(of ^ number.rotate_left(20));
         let start = start(&mut dice);
         let seed = dice.below(1 << 32);
-        let verdict = solve(&system, start.clone(), seed, Duration::from_secs(10));
-        if let Verdict::Silent(what) = verdict {
-            let answer = system.file("");
-            wrong.push(format!(
-                "{number} of {of}, {}, {}, {seed}:{what}\n{answer}",
-                system.kind,
-                start.name()
-            ));
+        for no_exact_count in [false, true] {
+            let options = options(start.clone(), seed, no_exact_count);
+            let verdict = solve(&system, &options, Duration::from_secs(10));
+            if let Verdict::Silent(what) = verdict {
+                let answer = system.file("");
+                wrong.push(format!(
+                    "{number} of {of}, {}, {}, {seed}, count {}:{what}\n{answer}",
+                    system.kind,
+                    start.name(),
+                    !no_exact_count
+                ));
+            }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
