@@ -45,8 +45,8 @@ impl ExactCounting {
             Ok(counted) => compare(set, counted),
             Err(reason) => set.no_exact_count = Some(reason),
         }
-        let agrees = set.counts.exact_count.as_ref().is_some_and(is_equal(set));
-        if !agrees {
+        let exact = set.counts.exact_count.as_ref();
+        if !exact.is_some_and(|exact| confirms(exact, set)) {
             doubt_clusters(set);
         }
     }
@@ -94,24 +94,19 @@ fn without_weak_evidence(set: &SolutionSet) -> SolutionSet {
 }
 
 /// Whether a count is that of the answer, so that no verdict on a path needs more evidence.
-fn is_equal(set: &SolutionSet) -> impl Fn(&ExactCount) -> bool {
+fn confirms(exact: &ExactCount, set: &SolutionSet) -> bool {
     let counts = &set.counts;
-    let (with_multiplicity, distinct) = (counts.with_multiplicity, counts.distinct);
-    let (nonsingular, on_sets) = (
-        counts.nonsingular,
-        counts.positive_dimensional == Some(true),
-    );
-    move |exact| {
-        exact.agrees
-            && match exact.with_multiplicity {
-                Some(exact_multiplicity) => {
-                    !on_sets
-                        && exact_multiplicity == with_multiplicity
-                        // Where no solution is multiple each counts once.
-                        && exact.distinct.unwrap_or(with_multiplicity) == distinct
-                }
-                None => !exact.is_general && exact.nonsingular == Some(nonsingular),
-            }
+    if !exact.agrees {
+        return false;
+    }
+    match exact.with_multiplicity {
+        Some(with_multiplicity) => {
+            counts.positive_dimensional != Some(true)
+                && counts.with_multiplicity == with_multiplicity
+                // Where no solution is multiple each counts once.
+                && counts.distinct == exact.distinct.unwrap_or(with_multiplicity)
+        }
+        None => !exact.is_general && exact.nonsingular == Some(counts.nonsingular),
     }
 }
 
@@ -188,8 +183,8 @@ fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
             )
         }
     };
-    let is_equal = is_equal(set)(&exact);
-    if is_equal {
+    let is_confirmed = confirms(&exact, set);
+    if is_confirmed {
         set.paths.decided_by_precision_limit -= set.weak_evidence.paths();
         set.weak_evidence = WeakEvidence::default();
     }
@@ -200,7 +195,7 @@ fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
             format!("the equations have {contradiction}: paths were taken for what they are not");
         counts.complete_reason = Some(found.clone());
         set.warnings.push(found);
-    } else if is_equal && exact.with_multiplicity.is_some() {
+    } else if is_confirmed && exact.with_multiplicity.is_some() {
         counts.complete = Completeness::Yes;
         let why = match is_general {
             true => "as many solutions as the equations have for general values of their numbers",

@@ -94,8 +94,10 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
     let closings = options.closings;
     let counting = ExactCounting {
         switched_off: closings.no_exact_count,
-        parameters: match options.target_parameters.as_slice() {
-            [values] => values.clone(),
+        // Start points lead to some of the solutions, which need not be all.
+        parameters: match (&options.method, options.target_parameters.as_slice()) {
+            (SolveMethod::Given(_) | SolveMethod::Monodromy(_), _) => Vec::new(),
+            (_, [values]) => values.clone(),
             _ => Vec::new(),
         },
     };

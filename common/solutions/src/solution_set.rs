@@ -956,6 +956,7 @@ mod tests {
             complete_start: true,
             may_miss: None,
             images: 0,
+            least_on_sets: 0,
         };
         let set = set_of(&results, &history);
         assert_eq!((set.paths.finite, set.paths.failed), (1, 2));

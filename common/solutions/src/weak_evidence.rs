@@ -138,7 +138,8 @@ fn has_fine_numbers(system: &System) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_results::{affine_shape, regular};
+    use crate::test_results::{affine_shape, regular, roots_of_unity};
+    use cognate_numeric::rational::ComplexRational;
 
     #[test]
     fn the_more_sheets_the_more_must_be_shown() {
@@ -169,5 +170,44 @@ mod tests {
             &regular(0, &[(0.0, 0.0), (1.0, 0.0)]),
             &shape
         ));
+    }
+
+    /// Of the eight paths of three quadrics none or at least two end on a set.
+    #[test]
+    fn a_set_has_as_many_paths_as_the_lowest_degree_says() {
+        let (system, shape) = (roots_of_unity(2), affine_shape(1));
+        let of = |verdicts: &[Verdict], least| {
+            let results: Vec<PathResult> = (0..verdicts.len() as u64)
+                .map(|path| regular(path, &[(1.0, 0.0), (0.5, 0.0)]))
+                .collect();
+            let decisions = verdicts.iter().map(|&verdict| Decision {
+                verdict,
+                by_precision_limit: false,
+            });
+            let decisions: Vec<Decision> = decisions.collect();
+            WeakEvidence::of(&system, &shape, &results, &decisions, least).paths()
+        };
+        let (point, set) = (Verdict::Finite, Verdict::PositiveDimensional);
+        assert_eq!(of(&[point, point, set], 2), 1);
+        assert_eq!(of(&[point, set, set], 2), 0);
+        assert_eq!(of(&[point, Verdict::AtInfinity, set], 2), 0);
+        assert_eq!(of(&[point, point, set], 1), 0);
+    }
+
+    #[test]
+    fn numbers_below_the_digits_of_the_paths_are_seen() {
+        let system = |constant: Rational| {
+            let mut system = roots_of_unity(2);
+            let e = &mut system.expressions;
+            let c = e.constant(ComplexRational::real(constant));
+            system.equations[0] = e.add(system.equations[0], c);
+            system
+        };
+        let fine = |constant| has_fine_numbers(&system(constant));
+        assert!(!fine(Rational::from((355, 113))));
+        assert!(!fine(Rational::from((1, 1_000_000_000))));
+        let tiny = Rational::from((1, 1_000_000_000_000_000_000i64));
+        assert!(fine(tiny.clone()) && fine(tiny.clone().recip()));
+        assert!(fine(Rational::from(1) - tiny.clone() * tiny));
     }
 }

@@ -186,8 +186,8 @@ impl<'a> Constants<'a> {
                 continue;
             }
             let root = radicand(expressions, id);
-            let known = root.and_then(|root| self.radicands.iter().position(|r| *r == root));
-            if let Some(root) = known {
+            let number = root.and_then(|root| self.radicands.iter().position(|r| *r == root));
+            if let Some(root) = number {
                 self.irrational.insert(id, Irrational::SquareRoot(root));
                 continue;
             }
@@ -298,12 +298,12 @@ impl<'a> Constants<'a> {
 
 /// The positive rational number, no square, of which a node is the square root.
 fn radicand(expressions: &Expressions, id: NodeId) -> Option<Rational> {
-    let of = match expressions.node(id) {
+    let argument = match expressions.node(id) {
         Node::Function(Function::SquareRoot, a) => *a,
         Node::Root(a, exponent) if *exponent == Rational::from((1, 2)) => *a,
         _ => return None,
     };
-    let c = expressions.as_constant(of)?;
+    let c = expressions.as_constant(argument)?;
     (c.is_real() && c.re > 0 && !is_square(&c.re)).then(|| c.re.clone())
 }
 
@@ -329,35 +329,37 @@ fn are_independent(numbers: &[Rational]) -> bool {
 /// tangent of half of a rational number (F. Lindemann, Über die Zahl pi, 1882). `None` where a node is none, as far as
 /// is known.
 fn transcendental_source(expressions: &Expressions, id: NodeId) -> Option<Node> {
-    let Node::Function(function, of) = *expressions.node(id) else {
+    let Node::Function(function, argument) = *expressions.node(id) else {
         return None;
     };
     if function == Function::Pi {
-        return Some(Node::Function(Function::Pi, of));
+        return Some(Node::Function(Function::Pi, argument));
     }
-    let c = expressions.as_constant(of)?;
+    let c = expressions.as_constant(argument)?;
     let is_trivial = c.is_zero() || (function == Function::Logarithm && c.is_one());
     if is_trivial || !c.is_real() {
         return None;
     }
     match function {
         Function::Sine | Function::Cosine | Function::Tangent => {
-            Some(Node::Function(Function::Tangent, of))
+            Some(Node::Function(Function::Tangent, argument))
         }
-        Function::Exponential | Function::Logarithm => Some(Node::Function(function, of)),
+        Function::Exponential | Function::Logarithm => Some(Node::Function(function, argument)),
         Function::SquareRoot | Function::Pi => None,
     }
 }
 
 /// A random residue of a constant; sine, cosine and tangent of one number fit together.
 fn residue_of(node: &Node, id: NodeId) -> u64 {
-    let Node::Function(function @ (Function::Sine | Function::Cosine | Function::Tangent), of) =
-        node
+    let Node::Function(
+        function @ (Function::Sine | Function::Cosine | Function::Tangent),
+        argument,
+    ) = node
     else {
         return random_residue(3, u64::from(id.0));
     };
     // From the tangent u of half of the angle: (1 - u^2, 2 u)/(1 + u^2).
-    let u = random_residue(4, u64::from(of.0));
+    let u = random_residue(4, u64::from(argument.0));
     let square = FIELD.mul(u, u);
     let [more, less, double] = [FIELD.add(1, square), FIELD.sub(1, square), FIELD.add(u, u)];
     let [numerator, denominator] = match function {
