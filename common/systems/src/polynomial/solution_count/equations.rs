@@ -34,7 +34,7 @@ pub(super) struct CountedEquations {
 }
 
 impl CountedEquations {
-    /// Those of a system whose parameters have these values.
+    /// The equations of a system whose parameters have these values.
     pub fn of(system: &System, parameters: &[Complex64]) -> Result<Self, NotCounted> {
         if parameters.len() != system.parameters.len() {
             return Err(NotCounted::Parameters);
