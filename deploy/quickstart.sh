@@ -11,23 +11,10 @@ cd "$root"
 say() { printf '\033[1m==>\033[0m %s\n' "$*" >&2; }
 fail() { printf 'quickstart: %s\n' "$*" >&2; exit 3; }
 
-# --- what the build needs: m4 and make for GMP, MPFR and MPC; a C compiler; Rust -----------------
-packages=()
-command -v m4 >/dev/null || packages+=(m4)
-command -v make >/dev/null || packages+=(make)
-command -v cc >/dev/null || packages+=(gcc libc6-dev)
-if [ ${#packages[@]} -gt 0 ]; then
-  command -v apt-get >/dev/null || fail "please install ${packages[*]} (no apt-get here), then run this again"
-  as_root=()
-  if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || fail "please install ${packages[*]} as root, then run this again"
-    as_root=(sudo)
-  fi
-  say "installing ${packages[*]}"
-  install=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${packages[@]}")
-  # The package lists of a fresh machine may be empty or old.
-  "${install[@]}" >/dev/null 2>&1 || { "${as_root[@]}" apt-get update -qq; "${install[@]}" >/dev/null; }
-fi
+# --- what the build needs: GMP, MPFR and MPC; a C compiler; Rust ----------------------------------
+# shellcheck source=deploy/packages.sh
+. deploy/packages.sh
+prepare_build || fail "what the build needs is missing"
 [ -x "$(command -v cargo)" ] || [ ! -x "$HOME/.cargo/bin/cargo" ] || PATH="$HOME/.cargo/bin:$PATH"
 command -v cargo >/dev/null || fail "Rust is missing: see https://rustup.rs, then run this again"
 

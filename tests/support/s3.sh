@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # A server of S3 for tests, on loopback: s3s-fs, which keeps objects as files, so that they outlive it.
-#   tests/support/s3.sh install         builds it into target/s3
+#   tests/support/s3.sh install         builds it where it is not there, and keeps it in the user's cache
 #   tests/support/s3.sh start FOLDER    makes it where it is not there, and waits until it answers
 #   tests/support/s3.sh kill FOLDER     kill -9; `start` brings it up again
 #   tests/support/s3.sh stop FOLDER     stops it and removes the folder
+# `start` takes the program COGNATE_S3_SERVER, s3s-fs on the PATH, or the one that `install` kept in the user's cache.
 # FOLDER/environment has what clients need, as lines of NAME=VALUE. Exit code 77: it is not installed.
 set -euo pipefail
 verb=$1
 folder=${2:-}
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-installed=$root/target/s3/bin/s3s-fs
+version=0.14.1
+installed=${XDG_CACHE_HOME:-$HOME/.cache}/cognate/tools/s3s-fs-$version/bin/s3s-fs
 
 program=${COGNATE_S3_SERVER:-$(command -v s3s-fs || echo "$installed")}
 if [ "$verb" = start ] && [ ! -x "$program" ]; then
@@ -52,8 +53,9 @@ serve() {
 
 case $verb in
   install)
-    [ -x "$installed" ] && exit 0
-    cargo install --quiet --debug --locked s3s-fs --version 0.14.1 --features binary --root "$root/target/s3"
+    [ -x "$program" ] && exit 0
+    cargo install --quiet --debug --locked s3s-fs --version "$version" --features binary \
+      --root "$(dirname "$(dirname "$installed")")"
     ;;
   start)
     of=$(pid)

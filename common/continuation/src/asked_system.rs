@@ -10,7 +10,7 @@ use crate::homotopies::prepare::normalize;
 use crate::local_dimension::series::{Constants, Monomials, Series};
 use crate::path_result::{AskedFit, PathResult};
 use crate::tracker::outcome::PathOutcome;
-use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -120,7 +120,7 @@ impl AskedSystem {
         let p: Vec<_> = self.targets[target as usize].iter().map(native).collect();
         let (rows, n) = (self.program.shape().equations, point.len());
         let mut matrix = Matrix::zeros((), rows, n + 2);
-        dispatch_single(Linearize {
+        dispatch_baseline(Linearize {
             program: &self.program,
             x: &x,
             p: &p,
@@ -150,7 +150,7 @@ impl AskedSystem {
         let p: Vec<_> = self.targets[target as usize].iter().map(number).collect();
         let (rows, n) = (self.program.shape().equations, point.len());
         let mut matrix = Matrix::zeros((), rows, n + 2);
-        dispatch_single(Linearize {
+        dispatch_baseline(Linearize {
             program: &self.program,
             x: point,
             p: &p,

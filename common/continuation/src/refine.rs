@@ -2,7 +2,7 @@
 
 use crate::chart::norm;
 use crate::homotopies::Homotopy;
-use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::condition::condition_number;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
@@ -181,7 +181,7 @@ impl<'a, S: Real> Refiner<'a, S> {
         target: u64,
         most: u32,
     ) -> Report {
-        dispatch_single(Newton {
+        dispatch_baseline(Newton {
             refiner: self,
             point,
             begin,

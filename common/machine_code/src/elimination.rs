@@ -10,7 +10,7 @@ use crate::executable::{Arrays, Executable, as_lanes_mut, vector_set};
 use crate::registers::assemble;
 use crate::routine::{OUTPUT, Operation, Pair, Routine, Step, Sum, Value};
 use cognate_numeric::lanes::Lanes;
-use cognate_numeric::lanes::dispatch::InstructionSet;
+use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::lu;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::sparse::SparseElimination;
@@ -94,13 +94,14 @@ impl Elimination {
             a.rows() == self.n && a.columns() == self.n + 2,
             "the matrix has the size that the elimination was made for"
         );
-        if let Some(sparse) = &self.sparse {
-            return sparse.eliminate::<R, RHS>(a, exchanges);
-        }
         if !self.run::<8, R>(|code| &code.eight, RHS, a, exchanges)
             && !self.run::<16, R>(|code| &code.sixteen, RHS, a, exchanges)
         {
-            lu::eliminate::<R, RHS>(a, exchanges);
+            dispatch_baseline(Loop::<R, RHS> {
+                sparse: self.sparse.as_deref(),
+                a,
+                exchanges,
+            });
         }
     }
 
@@ -141,6 +142,25 @@ impl Elimination {
             return true;
         }
         false
+    }
+}
+
+/// Elimination without machine code, by lists where the places of the entries are known; a function of its own, as
+/// the interpreter is.
+struct Loop<'a, R: Real, const RHS: usize> {
+    sparse: Option<&'a SparseElimination>,
+    a: &'a mut Matrix<R>,
+    exchanges: &'a mut R::Control,
+}
+
+impl<R: Real, const RHS: usize> Job for Loop<'_, R, RHS> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        match self.sparse {
+            Some(sparse) => sparse.eliminate::<R, RHS>(self.a, self.exchanges),
+            None => lu::eliminate::<R, RHS>(self.a, self.exchanges),
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::executable::{Arrays, Executable, as_lanes, as_lanes_mut, vector_set};
 use crate::lower::{Constants, lower};
 use crate::registers::assemble;
 use cognate_numeric::lanes::Lanes;
-use cognate_numeric::lanes::dispatch::InstructionSet;
+use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter, Program, Shape};
@@ -111,6 +111,25 @@ impl Evaluator {
         Some(executable.len())
     }
 
+    /// Interprets the program, in a function of its own: what is inlined into a function of many loops takes the
+    /// optimiser time that grows with the square of its size (`tests/benches/build.md`).
+    #[inline(always)]
+    fn interpret<R: Real>(
+        &self,
+        program: Program,
+        inputs: [&[Complex<R>]; 3],
+        out: &mut Matrix<R>,
+        scratch: &mut <Interpreter as Evaluate<R>>::Scratch,
+    ) {
+        dispatch_baseline(Interpreted {
+            interpreter: &self.interpreter,
+            program,
+            inputs,
+            out,
+            scratch,
+        });
+    }
+
     /// Runs the machine code, if there is some for such numbers.
     #[inline(always)]
     fn run<R: Real>(
@@ -155,6 +174,30 @@ impl Evaluator {
     }
 }
 
+/// The interpreter's derivatives at one point of each lane.
+struct Interpreted<'a, R: Real> {
+    interpreter: &'a Interpreter,
+    /// [`Program::Linearize`] or [`Program::Jacobian`].
+    program: Program,
+    /// Point, parameters, and how these change.
+    inputs: [&'a [Complex<R>]; 3],
+    out: &'a mut Matrix<R>,
+    scratch: &'a mut <Interpreter as Evaluate<R>>::Scratch,
+}
+
+impl<R: Real> Job for Interpreted<'_, R> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let [x, p, dp] = self.inputs;
+        if self.program == Program::Linearize {
+            self.interpreter.linearize(x, p, dp, self.out, self.scratch);
+        } else {
+            self.interpreter.jacobian(x, p, self.out, self.scratch);
+        }
+    }
+}
+
 /// Makes room for a program that is used for the first time.
 #[cold]
 fn grow(spills: &mut Vec<Lanes<8>>, length: usize) {
@@ -186,8 +229,8 @@ impl<R: Real> Evaluate<R> for Evaluator {
     ) {
         assert_sizes(self.interpreter.shape(), [x, p, dp], out);
         if !self.run(Program::Linearize, [x, p, dp], &mut out.entries, s) {
-            self.interpreter
-                .linearize(x, p, dp, out, &mut s.interpreter);
+            let program = Program::Linearize;
+            self.interpret(program, [x, p, dp], out, &mut s.interpreter);
         }
     }
 
@@ -201,7 +244,8 @@ impl<R: Real> Evaluate<R> for Evaluator {
     ) {
         assert_sizes(self.interpreter.shape(), [x, p, p], out);
         if !self.run(Program::Jacobian, [x, p, &[]], &mut out.entries, s) {
-            self.interpreter.jacobian(x, p, out, &mut s.interpreter);
+            let program = Program::Jacobian;
+            self.interpret(program, [x, p, &[]], out, &mut s.interpreter);
         }
     }
 

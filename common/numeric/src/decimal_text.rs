@@ -9,7 +9,7 @@ const PLAIN: i64 = 21;
 
 /// The place of a number's first digit: p with 10^p <= |value| < 10^(p+1); `None` for 0.
 pub fn first_place(value: &Rational) -> Option<i64> {
-    if value.is_zero() {
+    if *value == 0 {
         return None;
     }
     let value = Rational::from(value.abs_ref());

@@ -45,17 +45,17 @@ impl ComplexRational {
 
     /// True for exactly 0.
     pub fn is_zero(&self) -> bool {
-        self.re.is_zero() && self.im.is_zero()
+        self.re == 0 && self.im == 0
     }
 
     /// True for exactly 1.
     pub fn is_one(&self) -> bool {
-        self.re == 1 && self.im.is_zero()
+        self.re == 1 && self.im == 0
     }
 
     /// True when the imaginary part is exactly 0.
     pub fn is_real(&self) -> bool {
-        self.im.is_zero()
+        self.im == 0
     }
 
     /// `re - i*im`.

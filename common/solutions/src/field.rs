@@ -319,10 +319,10 @@ impl Field for ManyBits {
         Complex::with_val(self.0, a * b)
     }
     fn divide(&self, a: &Complex, b: &Complex) -> Option<Complex> {
-        (!b.is_zero()).then(|| Complex::with_val(self.0, a / b))
+        (*b != 0).then(|| Complex::with_val(self.0, a / b))
     }
     fn root(&self, a: &Complex, exponent: &Rational) -> Option<Complex> {
-        if a.is_zero() {
+        if *a == 0 {
             return (*exponent > 0).then(|| a.clone());
         }
         let exponent = Float::with_val(self.0, exponent);
@@ -337,7 +337,7 @@ impl Field for ManyBits {
             Function::SquareRoot => a.sqrt(),
             Function::Exponential => a.exp(),
             Function::Logarithm => {
-                if a.is_zero() {
+                if a == 0 {
                     return None;
                 }
                 a.ln()

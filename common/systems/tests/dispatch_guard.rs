@@ -74,6 +74,7 @@ impl<R: Real<Context = ()>> Paths<R> {
 }
 
 #[test]
+#[ignore = "its verdict is a ratio of times: `tests/run.sh long` runs it alone"]
 fn sixteen_lanes_are_at_least_two_and_a_half_times_faster() {
     if cfg!(debug_assertions) || InstructionSet::detect() == InstructionSet::Software {
         eprintln!("not measured: needs a release build and fused multiply-add");

@@ -118,7 +118,7 @@ impl Factor {
     /// With `x` put in.
     fn of(&self, x: &Polynomial, n: usize) -> Polynomial {
         let linear = x.minus(&Polynomial::constant(n, self.a.clone()));
-        let factor = match self.b.is_zero() {
+        let factor = match self.b == 0 {
             true => linear,
             false => {
                 let square = Rational::from(&self.b * &self.b);
@@ -130,14 +130,14 @@ impl Factor {
 
     fn roots(&self) -> Vec<ComplexRational> {
         let one = ComplexRational::new(self.a.clone(), self.b.clone());
-        match self.b.is_zero() {
+        match self.b == 0 {
             true => vec![one],
             false => vec![one.conjugate(), one],
         }
     }
 
     fn degree(&self) -> u32 {
-        self.power * if self.b.is_zero() { 1 } else { 2 }
+        self.power * if self.b == 0 { 1 } else { 2 }
     }
 }
 
@@ -355,7 +355,7 @@ fn forms(dice: &mut Dice, planting: Planting) -> Planted {
         let mut of_equation = Vec::<Vec<Rational>>::new();
         for _ in 0..count {
             let mut form: Vec<Rational> = (0..n).map(|_| between(dice, -4, 4).into()).collect();
-            if form.iter().all(Rational::is_zero) {
+            if form.iter().all(|c| *c == 0) {
                 form[0] = Rational::from(1);
             }
             form.push(fraction(dice));
@@ -429,7 +429,7 @@ fn meetings(all: &[Vec<Vec<Rational>>]) -> (Points, bool) {
         for (x, c) in point.iter().zip(form) {
             sum += Rational::from(x * c);
         }
-        sum.is_zero()
+        sum == 0
     };
     found.retain(|point, _| {
         !sets
@@ -480,7 +480,7 @@ fn monomial_map(dice: &mut Dice) -> Planted {
     let of_u = factors(dice, style, 3);
     let mut of_y = factors(dice, style, 3);
     for factor in &mut of_y {
-        if factor.a.is_zero() {
+        if factor.a == 0 {
             factor.a = Rational::from(1);
         }
     }

@@ -20,7 +20,7 @@ pub fn solve(rows: &[Vec<Rational>]) -> Flat {
     let mut rank = 0;
     let mut pivots = Vec::new();
     for column in 0..n {
-        let Some(pivot) = (rank..rows.len()).find(|&i| !rows[i][column].is_zero()) else {
+        let Some(pivot) = (rank..rows.len()).find(|&i| rows[i][column] != 0) else {
             continue;
         };
         rows.swap(rank, pivot);
@@ -29,7 +29,7 @@ pub fn solve(rows: &[Vec<Rational>]) -> Flat {
         let row = rows[rank].clone();
         for (i, other) in rows.iter_mut().enumerate() {
             let factor = other[column].clone();
-            if i != rank && !factor.is_zero() {
+            if i != rank && factor != 0 {
                 for (entry, of_row) in other.iter_mut().zip(&row) {
                     *entry -= Rational::from(&factor * of_row);
                 }
@@ -38,7 +38,7 @@ pub fn solve(rows: &[Vec<Rational>]) -> Flat {
         pivots.push(column);
         rank += 1;
     }
-    if rows[rank..].iter().any(|row| !row[n].is_zero()) {
+    if rows[rank..].iter().any(|row| row[n] != 0) {
         return Flat::Empty;
     }
     match rank == n {

@@ -17,7 +17,7 @@ impl Polynomial {
     /// A constant.
     pub fn constant(variables: usize, value: Rational) -> Self {
         let mut terms = BTreeMap::new();
-        if !value.is_zero() {
+        if value != 0 {
             terms.insert(vec![0; variables], value);
         }
         Self { variables, terms }
@@ -50,7 +50,7 @@ impl Polynomial {
         for (exponents, c) in &other.terms {
             let term = sum.terms.entry(exponents.clone()).or_default();
             *term += c;
-            if term.is_zero() {
+            if *term == 0 {
                 sum.terms.remove(exponents);
             }
         }
@@ -74,7 +74,7 @@ impl Polynomial {
                 *term += Rational::from(c * d);
             }
         }
-        product.terms.retain(|_, c| !c.is_zero());
+        product.terms.retain(|_, c| *c != 0);
         product
     }
 

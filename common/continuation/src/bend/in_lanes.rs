@@ -9,7 +9,7 @@ use super::{
     RefinedPoint, SlicedEquations, WELL_CONDITIONED,
 };
 use cognate_numeric::lanes::called::{DoubleDoubleLanes, WIDTH};
-use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSet, dispatch_set};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::lanes::{LaneMask, Lanes};
 use cognate_numeric::linear_algebra::inverse::invert;
 use cognate_numeric::linear_algebra::matrix::Matrix;
@@ -23,18 +23,12 @@ const MOST_ROUNDS: usize = 6;
 /// rounds.
 const NEAR: f64 = 1e-6;
 
-/// Points whose bends are asked, some at a time.
-pub(super) trait BendsInLanes {
-    /// The bends of these points, as many as there are lanes at most; `None` where a point is to be looked at by itself.
-    fn bends(&mut self, points: &[Vec<Complex64>]) -> Vec<Option<(RefinedPoint, Bend)>>;
-}
-
 /// Work space for the witness points of these equations, whose parameters move in this direction; none where points are
 /// looked at by themselves.
 pub(super) fn bends_in_lanes<'a>(
     equations: &'a SlicedEquations,
     direction: &[Complex64],
-) -> Option<Box<dyn BendsInLanes + 'a>> {
+) -> Option<BendsInLanes<'a>> {
     let moving = equations.moving.as_ref()?;
     let square = equations.rows() == equations.variables && equations.slices.is_empty();
     let made = Made {
@@ -42,7 +36,7 @@ pub(super) fn bends_in_lanes<'a>(
         moving,
         direction,
     };
-    square.then(|| dispatch_set(InstructionSet::detect(), made))
+    square.then(|| BendsInLanes::new(made))
 }
 
 struct Made<'a, 'd> {
@@ -51,32 +45,24 @@ struct Made<'a, 'd> {
     direction: &'d [Complex64],
 }
 
-impl<'a> JobOfSet for Made<'a, '_> {
-    type Output = Box<dyn BendsInLanes + 'a>;
-    #[inline(always)]
-    fn run<S: CompiledSet>(self) -> Self::Output {
-        Box::new(InLanes::<S>::new(self))
-    }
-}
-
-type Wide<S> = DoubleDoubleLanes<S>;
+type Wide = DoubleDoubleLanes;
 type Doubles = Lanes<WIDTH>;
 type Lane = LaneMask<WIDTH>;
 
-/// For one instruction set.
-struct InLanes<'a, S: CompiledSet> {
+/// The bends of witness points, some at a time, with their work space.
+pub(super) struct BendsInLanes<'a> {
     equations: &'a Interpreter,
     moving: &'a Interpreter,
-    scratch: Scratch<Wide<S>>,
-    scratch_of_moving: Scratch<Wide<S>>,
-    parameters: Vec<Complex<Wide<S>>>,
-    direction: Vec<Complex<Wide<S>>>,
-    x: Vec<Complex<Wide<S>>>,
-    values: Vec<Complex<Wide<S>>>,
+    scratch: Scratch<Wide>,
+    scratch_of_moving: Scratch<Wide>,
+    parameters: Vec<Complex<Wide>>,
+    direction: Vec<Complex<Wide>>,
+    x: Vec<Complex<Wide>>,
+    values: Vec<Complex<Wide>>,
     /// [J | values | how these change with the parameters].
-    matrix: Matrix<Wide<S>>,
+    matrix: Matrix<Wide>,
     /// The same beside a point.
-    beside: Matrix<Wide<S>>,
+    beside: Matrix<Wide>,
     /// Sizes of the rows beside the point.
     sizes_beside: Vec<Doubles>,
     /// [the matrix with its rows scaled | its inverse] in doubles.
@@ -94,9 +80,9 @@ struct Refined {
 }
 
 /// How the points move.
-struct Moved<S> {
-    velocity: Vec<Complex<Wide<S>>>,
-    acceleration: Vec<Complex<Wide<S>>>,
+struct Moved {
+    velocity: Vec<Complex<Wide>>,
+    acceleration: Vec<Complex<Wide>>,
     error: Doubles,
 }
 
@@ -104,7 +90,7 @@ fn splat(value: f64) -> Doubles {
     Real::from_f64((), value)
 }
 
-impl<'a, S: CompiledSet> InLanes<'a, S> {
+impl<'a> BendsInLanes<'a> {
     fn new(made: Made<'a, '_>) -> Self {
         let n = made.equations.variables;
         let (equations, moving) = (&made.equations.equations, &made.moving.equations);
@@ -120,8 +106,8 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
         Self {
             equations,
             moving,
-            scratch: Evaluate::<Wide<S>>::scratch(equations, ()),
-            scratch_of_moving: Evaluate::<Wide<S>>::scratch(moving, ()),
+            scratch: Evaluate::<Wide>::scratch(equations, ()),
+            scratch_of_moving: Evaluate::<Wide>::scratch(moving, ()),
             parameters: made.equations.parameters.iter().map(constant).collect(),
             direction: made
                 .direction
@@ -138,8 +124,9 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
     }
 }
 
-impl<S: CompiledSet> BendsInLanes for InLanes<'_, S> {
-    fn bends(&mut self, points: &[Vec<Complex64>]) -> Vec<Option<(RefinedPoint, Bend)>> {
+impl BendsInLanes<'_> {
+    /// The bends of these points, as many as there are lanes at most; `None` where a point is to be looked at by itself.
+    pub(super) fn bends(&mut self, points: &[Vec<Complex64>]) -> Vec<Option<(RefinedPoint, Bend)>> {
         // Lanes without a point of their own have the last one.
         for lane in 0..WIDTH {
             let point = &points[lane.min(points.len() - 1)];
@@ -147,8 +134,8 @@ impl<S: CompiledSet> BendsInLanes for InLanes<'_, S> {
                 x.set_lane(lane, z);
             }
         }
-        let (refined, moved) = S::call(Bending(self));
-        let numbers = |numbers: &[Complex<Wide<S>>], lane: usize| -> Vec<Number> {
+        let (refined, moved) = dispatch_baseline(Bending(self));
+        let numbers = |numbers: &[Complex<Wide>], lane: usize| -> Vec<Number> {
             numbers.iter().map(|z| z.single(lane)).collect()
         };
         let answer = |lane: usize| {
@@ -173,10 +160,10 @@ impl<S: CompiledSet> BendsInLanes for InLanes<'_, S> {
 }
 
 /// The points of all lanes.
-struct Bending<'r, 'a, S: CompiledSet>(&'r mut InLanes<'a, S>);
+struct Bending<'r, 'a>(&'r mut BendsInLanes<'a>);
 
-impl<S: CompiledSet> Job for Bending<'_, '_, S> {
-    type Output = (Refined, Moved<S>);
+impl Job for Bending<'_, '_> {
+    type Output = (Refined, Moved);
     #[inline(always)]
     fn run(self) -> Self::Output {
         let mut refined = self.0.refine();
@@ -198,7 +185,7 @@ fn length(values: impl Iterator<Item = Complex<Doubles>>) -> Doubles {
 
 /// Length of the vectors, or 1, whichever is larger.
 #[inline(always)]
-fn at_least_one<S: CompiledSet>(x: &[Complex<Wide<S>>]) -> Doubles {
+fn at_least_one(x: &[Complex<Wide>]) -> Doubles {
     let mut size = length(x.iter().map(Complex::control));
     size.max(&splat(1.0));
     size
@@ -206,11 +193,7 @@ fn at_least_one<S: CompiledSet>(x: &[Complex<Wide<S>>]) -> Doubles {
 
 /// `y = A^-1 b` in doubles, where the inverse stands in the last columns.
 #[inline(always)]
-fn times_inverse<S: CompiledSet>(
-    inverse: &Matrix<Doubles>,
-    b: &[Complex<Wide<S>>],
-    row: usize,
-) -> Complex<Doubles> {
+fn times_inverse(inverse: &Matrix<Doubles>, b: &[Complex<Wide>], row: usize) -> Complex<Doubles> {
     let n = b.len();
     let mut sum = Complex::zero(());
     for (j, b) in b.iter().enumerate() {
@@ -219,7 +202,7 @@ fn times_inverse<S: CompiledSet>(
     sum
 }
 
-impl<S: CompiledSet> InLanes<'_, S> {
+impl BendsInLanes<'_> {
     /// Values and derivatives at the points, and the inverse of the Jacobian with its rows scaled; its condition number
     /// in Frobenius norms, and the sizes of the rows.
     #[inline(always)]
@@ -230,7 +213,7 @@ impl<S: CompiledSet> InLanes<'_, S> {
         self.equations
             .linearize(&self.x, p, q, &mut self.matrix, scratch);
         let size =
-            |matrix: &Matrix<Wide<S>>, i: usize| length((0..n).map(|j| matrix.at(i, j).control()));
+            |matrix: &Matrix<Wide>, i: usize| length((0..n).map(|j| matrix.at(i, j).control()));
         let mut sizes = Vec::with_capacity(n);
         let mut small = Lane::splat(false);
         for i in 0..n {
@@ -341,9 +324,9 @@ impl<S: CompiledSet> InLanes<'_, S> {
     #[inline(always)]
     fn solve(
         &mut self,
-        right: &[Complex<Wide<S>>],
+        right: &[Complex<Wide>],
         condition: &Doubles,
-    ) -> (Vec<Complex<Wide<S>>>, Doubles) {
+    ) -> (Vec<Complex<Wide>>, Doubles) {
         let n = right.len();
         let mut first = Vec::with_capacity(n);
         for i in 0..n {
@@ -396,7 +379,7 @@ impl<S: CompiledSet> InLanes<'_, S> {
 
     /// How the points move; and the largest of their equations, of which nothing was known yet.
     #[inline(always)]
-    fn bend(&mut self, refined: &mut Refined) -> Moved<S> {
+    fn bend(&mut self, refined: &mut Refined) -> Moved {
         let n = self.x.len();
         let (condition, sizes) = self.linearize(false);
         refined.good = refined.good.and(condition.less(&splat(WELL_CONDITIONED)));

@@ -9,7 +9,7 @@
 mod in_lanes;
 pub mod stage;
 
-use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::orthogonal::Orthogonal;
 use cognate_numeric::linear_algebra::svd::Svd;
@@ -333,7 +333,7 @@ impl SlicedEquations {
     fn linearize(&self, x: &[Number], scratch: &mut Space) -> Matrix<Double> {
         let (rows, n) = (self.rows(), self.variables);
         let mut matrix = Matrix::zeros((), rows, n + 2);
-        dispatch_single(Linearize {
+        dispatch_baseline(Linearize {
             equations: &self.equations,
             x,
             parameters: &self.parameters,
@@ -359,7 +359,7 @@ impl SlicedEquations {
     /// The values at a point, of equations and slices.
     fn values_at(&self, x: &[Number], scratch: &mut Space) -> Vec<Number> {
         let mut values = zeros(self.rows());
-        dispatch_single(Values {
+        dispatch_baseline(Values {
             equations: &self.equations,
             x,
             parameters: &self.parameters,
@@ -513,7 +513,7 @@ impl SlicedEquations {
         let mut error = last;
         for _ in 0..CORRECTIONS {
             let mut rest = right.to_vec();
-            dispatch_single(Rest {
+            dispatch_baseline(Rest {
                 matrix: &at.matrix,
                 y: &y,
                 rest: &mut rest,
@@ -540,7 +540,7 @@ impl SlicedEquations {
         let moving = moving.expect("where points move is asked of equations with parameters");
         let rows = self.rows();
         let mut values = zeros(2 * rows);
-        dispatch_single(Values {
+        dispatch_baseline(Values {
             equations: &moving.equations,
             x: &[],
             parameters: &[x, u, &self.parameters, q].concat(),

@@ -6,7 +6,7 @@ use super::candidate::Candidate;
 use super::limits::{FARTHEST, INFLATION, MOST_STEPS, SMALLEST_RADIUS, STRONG, TRIES};
 use super::proved::Proved;
 use cognate_numeric::lanes::called::{BallLanes, WIDTH};
-use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSet, dispatch_set};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::lanes::{LaneMask, Lanes};
 use cognate_numeric::linear_algebra::inverse::invert;
 use cognate_numeric::linear_algebra::lu::eliminate;
@@ -19,47 +19,26 @@ use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch};
 /// Bits of a double.
 const BITS: u32 = 53;
 
-/// The test for some points of one system.
-pub(super) trait TestInLanes {
-    /// What doubles prove of these points, as many as there are lanes at most, whose free variables are these.
-    fn prove(&mut self, free: &[usize], candidates: &[Candidate<'_>]) -> Vec<Option<Proved>>;
-}
-
-/// Work space for a square system.
-pub(super) fn test_in_lanes<'a>(program: &'a Interpreter) -> Box<dyn TestInLanes + 'a> {
-    dispatch_set(InstructionSet::detect(), Made(program))
-}
-
-struct Made<'a>(&'a Interpreter);
-
-impl<'a> JobOfSet for Made<'a> {
-    type Output = Box<dyn TestInLanes + 'a>;
-    #[inline(always)]
-    fn run<S: CompiledSet>(self) -> Self::Output {
-        Box::new(InLanes::<S>::new(self.0))
-    }
-}
-
 type Doubles = Lanes<WIDTH>;
 type Lane = LaneMask<WIDTH>;
-type Balls<S> = BallLanes<S>;
+type Balls = BallLanes;
 type Bound = Magnitude<Doubles>;
 
-/// For one instruction set.
-struct InLanes<'a, S: CompiledSet> {
+/// The test for some points of one square system, with its work space.
+pub(super) struct TestInLanes<'a> {
     program: &'a Interpreter,
     of_points: Scratch<Doubles>,
-    of_balls: Scratch<Balls<S>>,
+    of_balls: Scratch<Balls>,
     parameters: Vec<Complex<Doubles>>,
-    ball_parameters: Vec<Complex<Balls<S>>>,
+    ball_parameters: Vec<Complex<Balls>>,
     /// Where Newton's method begins, and where it is.
     start: Vec<Complex<Doubles>>,
     x: Vec<Complex<Doubles>>,
     /// [J | F | -] for all variables.
     whole: Matrix<Doubles>,
-    boxes: Vec<Complex<Balls<S>>>,
-    values: Vec<Complex<Balls<S>>>,
-    whole_of_boxes: Matrix<Balls<S>>,
+    boxes: Vec<Complex<Balls>>,
+    values: Vec<Complex<Balls>>,
+    whole_of_boxes: Matrix<Balls>,
 }
 
 /// What was proved in each lane.
@@ -91,7 +70,7 @@ fn modulus(z: &Complex<Doubles>) -> Bound {
 
 /// Bounds of |Re z| and |Im z|.
 #[inline(always)]
-fn parts<S: CompiledSet>(z: &Complex<Balls<S>>) -> [Bound; 2] {
+fn parts(z: &Complex<Balls>) -> [Bound; 2] {
     [z.re.number().magnitude(), z.im.number().magnitude()]
 }
 
@@ -104,7 +83,7 @@ fn multiple(factor: f64, bound: &Bound) -> Bound {
 }
 
 #[inline(always)]
-fn around<S: CompiledSet>(z: &Complex<Doubles>, radius: &Bound) -> Complex<Balls<S>> {
+fn around(z: &Complex<Doubles>, radius: &Bound) -> Complex<Balls> {
     Complex {
         re: Balls::new(Ball::around(&z.re, radius)),
         im: Balls::new(Ball::around(&z.im, radius)),
@@ -112,15 +91,16 @@ fn around<S: CompiledSet>(z: &Complex<Doubles>, radius: &Bound) -> Complex<Balls
 }
 
 #[inline(always)]
-fn point<S: CompiledSet>(z: &Complex<Doubles>) -> Complex<Balls<S>> {
+fn point(z: &Complex<Doubles>) -> Complex<Balls> {
     Complex {
         re: Balls::new(Ball::point(&z.re)),
         im: Balls::new(Ball::point(&z.im)),
     }
 }
 
-impl<'a, S: CompiledSet> InLanes<'a, S> {
-    fn new(program: &'a Interpreter) -> Self {
+impl<'a> TestInLanes<'a> {
+    /// Work space for this system.
+    pub(super) fn new(program: &'a Interpreter) -> Self {
         let shape = Evaluate::<Doubles>::shape(program);
         let (n, variables) = (shape.equations, shape.variables);
         let (zero, nothing) = (Complex::zero(()), Complex::zero(()));
@@ -219,7 +199,7 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
 
     /// The approximate inverse of the Jacobian at `x`.
     #[inline(always)]
-    fn preconditioner(&mut self, free: &[usize]) -> Vec<Complex<Balls<S>>> {
+    fn preconditioner(&mut self, free: &[usize]) -> Vec<Complex<Balls>> {
         let n = free.len();
         self.program.jacobian(
             &self.x,
@@ -241,7 +221,7 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
 
     /// How far from the centre C F(c) leads, in either part.
     #[inline(always)]
-    fn correction(&mut self, n: usize, c: &[Complex<Balls<S>>]) -> Vec<Bound> {
+    fn correction(&mut self, n: usize, c: &[Complex<Balls>]) -> Vec<Bound> {
         for (to, z) in self.boxes.iter_mut().zip(&self.x) {
             *to = point(z);
         }
@@ -252,7 +232,7 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
             &mut self.of_balls,
         );
         let row = |i: usize| {
-            let mut sum = Complex::<Balls<S>>::zero(());
+            let mut sum = Complex::<Balls>::zero(());
             for (c, value) in c[i * n..(i + 1) * n].iter().zip(&self.values) {
                 sum.mul_add(c, value);
             }
@@ -270,7 +250,7 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
         free: &[usize],
         radius: &[Bound],
         correction: &[Bound],
-        c: &[Complex<Balls<S>>],
+        c: &[Complex<Balls>],
     ) -> (Bound, Vec<Bound>) {
         let n = free.len();
         for (&v, radius) in free.iter().zip(radius) {
@@ -288,7 +268,7 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
             let mut sum_of_moduli = Bound::zero();
             let mut need = correction[i];
             for (j, &v) in free.iter().enumerate() {
-                let mut slope = Complex::<Balls<S>>::from_f64((), f64::from(i == j), 0.0);
+                let mut slope = Complex::<Balls>::from_f64((), f64::from(i == j), 0.0);
                 for (k, c) in c[i * n..(i + 1) * n].iter().enumerate() {
                     slope.mul_sub(c, self.whole_of_boxes.at(k, v));
                 }
@@ -377,25 +357,38 @@ impl Boxes {
     }
 }
 
-/// The work of one group of points.
-struct Group<'t, 'a, 'f, S: CompiledSet> {
-    test: &'t mut InLanes<'a, S>,
-    free: &'f [usize],
-}
+// The two halves of the test are functions of their own, for the optimiser's sake (`tracker/lockstep.rs`).
 
-impl<S: CompiledSet> Job for Group<'_, '_, '_, S> {
-    type Output = Boxes;
+struct Refine<'t, 'a>(&'t mut TestInLanes<'a>, &'t [usize]);
+
+impl Job for Refine<'_, '_> {
+    type Output = Lane;
     #[inline(always)]
-    fn run(self) -> Boxes {
-        let good = self.test.refine(self.free);
-        self.test.contract(self.free, good)
+    fn run(self) -> Lane {
+        self.0.refine(self.1)
     }
 }
 
-impl<S: CompiledSet> TestInLanes for InLanes<'_, S> {
-    fn prove(&mut self, free: &[usize], candidates: &[Candidate<'_>]) -> Vec<Option<Proved>> {
+struct Contract<'t, 'a>(&'t mut TestInLanes<'a>, &'t [usize], Lane);
+
+impl Job for Contract<'_, '_> {
+    type Output = Boxes;
+    #[inline(always)]
+    fn run(self) -> Boxes {
+        self.0.contract(self.1, self.2)
+    }
+}
+
+impl TestInLanes<'_> {
+    /// What doubles prove of these points, as many as there are lanes at most, whose free variables are these.
+    pub(super) fn prove(
+        &mut self,
+        free: &[usize],
+        candidates: &[Candidate<'_>],
+    ) -> Vec<Option<Proved>> {
         self.load(candidates);
-        let boxes = S::call(Group { test: self, free });
+        let good = dispatch_baseline(Refine(self, free));
+        let boxes = dispatch_baseline(Contract(self, free, good));
         let proved = |lane: usize| -> Option<Proved> {
             let exact = |z: &Complex<Doubles>| {
                 let z = z.lane(lane);

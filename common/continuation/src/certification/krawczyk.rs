@@ -10,7 +10,7 @@
 use super::candidate::Candidate;
 use super::certificate::{Certificate, Certification, Uncertified};
 use super::chart::Chart;
-use super::in_lanes::{TestInLanes, test_in_lanes};
+use super::in_lanes::TestInLanes;
 use super::multiple_precision;
 use super::proved::Proved;
 use cognate_numeric::lanes::called::WIDTH;
@@ -109,7 +109,7 @@ impl Krawczyk {
             }
         }
         let mut proved = vec![None; candidates.len()];
-        let mut test: Option<Box<dyn TestInLanes + '_>> = None;
+        let mut test: Option<TestInLanes<'_>> = None;
         for (free, places) in alike {
             for places in places.chunks(WIDTH) {
                 let points: Vec<Candidate<'_>> = places
@@ -119,7 +119,7 @@ impl Krawczyk {
                         point: charts[place].as_ref().map_or(&[], |chart| &chart.point),
                     })
                     .collect();
-                let test = test.get_or_insert_with(|| test_in_lanes(&self.program));
+                let test = test.get_or_insert_with(|| TestInLanes::new(&self.program));
                 for (&place, found) in places.iter().zip(test.prove(free, &points)) {
                     proved[place] = found;
                 }

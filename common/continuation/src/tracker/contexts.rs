@@ -13,9 +13,7 @@ use crate::path_result::PathResult;
 use crate::stage::PreparedStage;
 use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::called::DoubleDoubleLanes;
-use cognate_numeric::lanes::dispatch::{
-    CompiledSet, InstructionSet, Job, JobOfSet, dispatch_on, dispatch_set, dispatch_single,
-};
+use cognate_numeric::lanes::dispatch::{InstructionSet, Job, dispatch_baseline, limited_to};
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE, rungs};
 use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
 use std::collections::VecDeque;
@@ -56,50 +54,31 @@ impl<R: Real> Job for Work<'_, R> {
     }
 }
 
-/// Paths in lanes of double-doubles.
-struct DoubleDoublePaths<'a> {
-    tracking: TrackingContext<'a>,
-    queue: Queue,
-    observer: Option<&'a mut dyn Observer>,
-}
-
-impl JobOfSet for DoubleDoublePaths<'_> {
-    type Output = Ended;
-    #[inline(always)]
-    fn run<S: CompiledSet>(self) -> Ended {
-        Work::<DoubleDoubleLanes<S>>::new(self.tracking, (), self.queue, self.observer).run()
-    }
-}
+/// The fewest lanes that the tracker is compiled for; one path alone leaves the others idle.
+const NARROWEST: usize = 8;
 
 /// Tracks the paths that wait for this context, `width` paths at a time where it has lanes.
 fn work<'a>(
     tracking: TrackingContext<'a>,
-    set: InstructionSet,
     width: usize,
     queue: Queue,
     observer: Option<&'a mut dyn Observer>,
 ) -> Ended {
     match (tracking.bits, width) {
-        (DOUBLE, 1) => dispatch_single(Work::<f64>::new(tracking, (), queue, observer)),
-        (DOUBLE, 8) => dispatch_on(set, Work::<Lanes<8>>::new(tracking, (), queue, observer)),
-        (DOUBLE, 16) => dispatch_on(set, Work::<Lanes<16>>::new(tracking, (), queue, observer)),
-        (DOUBLE_DOUBLE, 8 | 16) if queue.count() > 1 => {
-            let paths = DoubleDoublePaths {
-                tracking,
-                queue,
-                observer,
-            };
-            dispatch_set(set, paths)
-        }
-        (DOUBLE_DOUBLE, 1 | 8 | 16) => dispatch_single(Work::<DoubleDouble<f64>>::new(
+        (DOUBLE, 8) => dispatch_baseline(Work::<Lanes<8>>::new(tracking, (), queue, observer)),
+        (DOUBLE, 16) => dispatch_baseline(Work::<Lanes<16>>::new(tracking, (), queue, observer)),
+        (DOUBLE_DOUBLE, 8 | 16) if queue.count() > 1 => dispatch_baseline(
+            Work::<DoubleDoubleLanes>::new(tracking, (), queue, observer),
+        ),
+        (DOUBLE_DOUBLE, 8 | 16) => dispatch_baseline(Work::<DoubleDouble<f64>>::new(
             tracking,
             (),
             queue,
             observer,
         )),
         // Numbers of MPFR use no vector instructions.
-        (bits, 1 | 8 | 16) => Work::<MultiplePrecision>::new(tracking, bits, queue, observer).run(),
-        _ => panic!("there are lanes of width 1, 8 and 16, not {width}"),
+        (bits, 8 | 16) => Work::<MultiplePrecision>::new(tracking, bits, queue, observer).run(),
+        _ => panic!("there are widths of 1, 8 and 16, not {width}"),
     }
 }
 
@@ -112,7 +91,16 @@ impl PreparedStage {
     /// # Panics
     /// When `items` reaches beyond the stage or `width` is none of the three.
     pub fn track(&self, items: Range<u64>, width: usize) -> Vec<PathResult> {
-        self.track_on(InstructionSet::detect(), items, width)
+        assert!(items.end <= self.items(), "a chunk lies within its stage");
+        let first = items.start;
+        let mut results = match width {
+            1 => items
+                .flat_map(|item| track(self, item..item + 1, NARROWEST, None))
+                .collect(),
+            _ => track(self, items, width, None),
+        };
+        self.hold_against_asked(first, &mut results);
+        results
     }
 
     /// [`Self::track`] with one instruction set, for tests that compare them.
@@ -122,19 +110,14 @@ impl PreparedStage {
         items: Range<u64>,
         width: usize,
     ) -> Vec<PathResult> {
-        assert!(items.end <= self.items(), "a chunk lies within its stage");
-        let first = items.start;
-        let mut results = track(self, set, items, width, None);
-        self.hold_against_asked(first, &mut results);
-        results
+        limited_to(set, || self.track(items, width))
     }
 
     /// Tracks one path again and keeps every step.
     pub fn trace(&self, item: u64) -> (PathResult, Vec<StepEvent>) {
         assert!(item < self.items(), "the item lies within the stage");
         let mut recorder = Recorder::default();
-        let set = InstructionSet::detect();
-        let mut results = track(self, set, item..item + 1, 1, Some(&mut recorder));
+        let mut results = track(self, item..item + 1, NARROWEST, Some(&mut recorder));
         self.hold_against_asked(item, &mut results);
         (results.remove(0), recorder.0)
     }
@@ -143,7 +126,6 @@ impl PreparedStage {
 /// Tracks the paths of `items` through all contexts; results in item order.
 fn track(
     stage: &PreparedStage,
-    set: InstructionSet,
     items: Range<u64>,
     width: usize,
     mut observer: Option<&mut dyn Observer>,
@@ -182,7 +164,7 @@ fn track(
         handed_off: VecDeque::new(),
     };
     let watching = observer.as_mut().map(|o| &mut **o as &mut dyn Observer);
-    take(work(first, set, width, all, watching), 0, &mut queues);
+    take(work(first, width, all, watching), 0, &mut queues);
     while let Some(rung) = queues.iter().position(|paths| !paths.is_empty()) {
         let tracking = TrackingContext {
             stage,
@@ -197,11 +179,7 @@ fn track(
             handed_off: std::mem::take(&mut queues[rung]),
         };
         let watching = observer.as_mut().map(|o| &mut **o as &mut dyn Observer);
-        take(
-            work(tracking, set, width, arrived, watching),
-            rung,
-            &mut queues,
-        );
+        take(work(tracking, width, arrived, watching), rung, &mut queues);
     }
     results
         .into_iter()

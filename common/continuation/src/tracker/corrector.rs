@@ -8,6 +8,7 @@ use super::prediction::Prediction;
 use crate::chart::LEAST_NORM;
 use crate::homotopies::Homotopy;
 use cognate_machine_code::Evaluator;
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::Evaluate;
@@ -75,14 +76,14 @@ impl<'a, R: Real> Corrector<'a, R> {
         let n = x.len();
         let (evaluator, elimination) = (self.homotopy.evaluator(), self.homotopy.elimination());
         let (matrix, scratch) = (&mut self.matrix, &mut self.scratch);
-        self.homotopy.path().at(
-            self.context,
+        dispatch_baseline(ParametersAt {
+            homotopy: self.homotopy,
+            context: self.context,
             t,
-            &batch.a,
-            &batch.b,
-            &mut self.p,
-            &mut self.dp,
-        );
+            ends: [&batch.a, &batch.b],
+            p: &mut self.p,
+            dp: &mut self.dp,
+        });
         let mut relative: [R::Control; MOST_ROUNDS] = std::array::from_fn(|_| control::<R>(0.0));
         let mut size = control::<R>(0.0);
         for (round, correction) in relative.iter_mut().enumerate().take(self.rounds) {
@@ -115,5 +116,26 @@ impl<'a, R: Real> Corrector<'a, R> {
             tangent,
             corrections: Corrections { relative, size },
         }
+    }
+}
+
+/// The parameters at t in each lane, and their derivatives by t.
+struct ParametersAt<'a, R: Real> {
+    homotopy: &'a Homotopy,
+    context: R::Context,
+    t: &'a Complex<R::Control>,
+    /// Parameters at t = 1 and at t = 0.
+    ends: [&'a [Complex<R>]; 2],
+    p: &'a mut [Complex<R>],
+    dp: &'a mut [Complex<R>],
+}
+
+impl<R: Real> Job for ParametersAt<'_, R> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let [a, b] = self.ends;
+        let path = self.homotopy.path();
+        path.at(self.context, self.t, a, b, self.p, self.dp);
     }
 }

@@ -25,6 +25,7 @@ use super::tracking_context::{Ended, Queue, TrackingContext};
 use crate::endgames::circle::VERTICES;
 use crate::refine::Refiner;
 use crate::stage::PreparedStage;
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_numeric::scalar::{Mask, Real};
@@ -48,7 +49,7 @@ pub(super) struct Lockstep<'a, R: Real> {
     acceptance: AcceptanceRule,
     pub(super) refiner: Refiner<'a, R::Single>,
     /// Made when first wanted.
-    pub(super) newton_at_samples: Option<Box<dyn NewtonAtSamples + 'a>>,
+    pub(super) newton_at_samples: Option<Box<NewtonAtSamples<'a>>>,
     /// In robust mode.
     pub(super) probe: Option<TaylorProbe<'a, R::Single>>,
     /// Where each lane's path goes on, as its last Taylor series showed; in robust mode, on the way.
@@ -171,19 +172,31 @@ impl<'a, R: Real> Lockstep<'a, R> {
     /// One step of all lanes.
     #[inline(always)]
     fn step(&mut self) {
-        let around = around_zero::<R>(&self.lanes);
         let attempt = Attempt::next(&self.batch);
-        let predicted = self.predict(&attempt);
+        let predicted = dispatch_baseline(Predict(self, &attempt));
         let used = predicted.used;
         let corrected = self
             .corrector
             .correct(&mut self.batch, &attempt.t, predicted);
-        let (batch, corrections) = (&mut self.batch, &corrected.corrections);
+        let accepted = dispatch_baseline(Judge(self, &attempt, &corrected.corrections, &used));
+        dispatch_baseline(Advance(self, &attempt, corrected, &accepted));
+    }
+
+    /// Decides which lanes' steps are accepted, and how long their next ones are.
+    #[inline(always)]
+    fn judge(
+        &mut self,
+        attempt: &Attempt<R>,
+        corrections: &Corrections<R>,
+        used: &[R::Mask; 3],
+    ) -> Accepted<R> {
+        let around = around_zero::<R>(&self.lanes);
+        let batch = &mut self.batch;
         let accepted = self.acceptance.judge(batch, corrections, around);
         let noise = self.acceptance.on_the_way.settled;
         let (settings, moved) = (&self.settings, accepted.moved);
-        set_next_length(batch, &attempt, settings, noise, &used, corrections, moved);
-        self.advance(&attempt, corrected, &accepted);
+        set_next_length(batch, attempt, settings, noise, used, corrections, moved);
+        accepted
     }
 
     /// Predicts the points of all lanes: by Hermite's extrapolation, or in robust mode by Taylor series.
@@ -279,5 +292,48 @@ impl<'a, R: Real> Lockstep<'a, R> {
     /// Whether points have more digits than doubles.
     pub(super) fn fine(&self) -> bool {
         self.tracking.bits > DOUBLE
+    }
+}
+
+// The phases of a step are functions of their own: passes over loops take the optimiser time that grows with the square of
+// a function's size, and one function of all phases took it four times as long (`tests/benches/build.md`).
+
+struct Predict<'s, 'a, R: Real>(&'s mut Lockstep<'a, R>, &'s Attempt<R>);
+
+impl<R: Real> Job for Predict<'_, '_, R> {
+    type Output = Prediction<R>;
+    #[inline(always)]
+    fn run(self) -> Prediction<R> {
+        self.0.predict(self.1)
+    }
+}
+
+struct Judge<'s, 'a, R: Real>(
+    &'s mut Lockstep<'a, R>,
+    &'s Attempt<R>,
+    &'s Corrections<R>,
+    &'s [R::Mask; 3],
+);
+
+impl<R: Real> Job for Judge<'_, '_, R> {
+    type Output = Accepted<R>;
+    #[inline(always)]
+    fn run(self) -> Accepted<R> {
+        self.0.judge(self.1, self.2, self.3)
+    }
+}
+
+struct Advance<'s, 'a, R: Real>(
+    &'s mut Lockstep<'a, R>,
+    &'s Attempt<R>,
+    Corrected<R>,
+    &'s Accepted<R>,
+);
+
+impl<R: Real> Job for Advance<'_, '_, R> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        self.0.advance(self.1, self.2, self.3);
     }
 }

@@ -11,13 +11,12 @@ use crate::endgames::cauchy::PreciseSample;
 use crate::homotopies::Homotopy;
 use cognate_numeric::lanes::Lanes;
 use cognate_numeric::lanes::called::{DoubleDoubleLanes, WIDTH};
-use cognate_numeric::lanes::dispatch::{CompiledSet, InstructionSet, Job, JobOfSet, dispatch_set};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::scalar::{Complex, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
-use std::marker::PhantomData;
 
 /// A relative correction this small leaves an error that no decision sees.
 const SMALL: f64 = 1e-24;
@@ -38,54 +37,31 @@ pub(super) struct Found {
     pub evaluations: u32,
 }
 
-/// Newton's method at samples of paths of one homotopy.
-pub(super) trait NewtonAtSamples {
-    /// `places`: where the samples were taken, in t, and how far beside it the vertex is; `points`: the points there, one
-    /// after another; `target`: which of the homotopy's targets the path goes to.
-    fn precise(&mut self, places: &[[Complex64; 2]], points: &[Complex64], target: u64) -> Found;
-}
-
-/// Work space for one homotopy.
-pub(super) fn newton_at_samples<'a>(homotopy: &'a Homotopy) -> Box<dyn NewtonAtSamples + 'a> {
-    dispatch_set(InstructionSet::detect(), Made(homotopy))
-}
-
-struct Made<'a>(&'a Homotopy);
-
-impl<'a> JobOfSet for Made<'a> {
-    type Output = Box<dyn NewtonAtSamples + 'a>;
-    #[inline(always)]
-    fn run<S: CompiledSet>(self) -> Self::Output {
-        Box::new(InLanes::<S>::new(self.0))
-    }
-}
-
-/// For one instruction set.
-struct InLanes<'a, S: CompiledSet> {
+/// Newton's method at samples of paths of one homotopy, with its work space.
+pub(super) struct NewtonAtSamples<'a> {
     homotopy: &'a Homotopy,
-    scratch: <Interpreter as Evaluate<DoubleDoubleLanes<S>>>::Scratch,
+    scratch: <Interpreter as Evaluate<DoubleDoubleLanes>>::Scratch,
     /// [J | H | H_t], and [J | H] at the vertices, rounded.
-    matrix: Matrix<DoubleDoubleLanes<S>>,
+    matrix: Matrix<DoubleDoubleLanes>,
     rounded: Matrix<Lanes<WIDTH>>,
-    x: Vec<Complex<DoubleDoubleLanes<S>>>,
-    p: Vec<Complex<DoubleDoubleLanes<S>>>,
-    dp: Vec<Complex<DoubleDoubleLanes<S>>>,
-    set: PhantomData<S>,
+    x: Vec<Complex<DoubleDoubleLanes>>,
+    p: Vec<Complex<DoubleDoubleLanes>>,
+    dp: Vec<Complex<DoubleDoubleLanes>>,
 }
 
-impl<'a, S: CompiledSet> InLanes<'a, S> {
-    fn new(homotopy: &'a Homotopy) -> Self {
+impl<'a> NewtonAtSamples<'a> {
+    /// Work space for one homotopy.
+    pub(super) fn new(homotopy: &'a Homotopy) -> Self {
         let n = homotopy.dimension();
         let zero = Complex::zero(());
         Self {
             homotopy,
-            scratch: Evaluate::<DoubleDoubleLanes<S>>::scratch(homotopy.program(), ()),
+            scratch: Evaluate::<DoubleDoubleLanes>::scratch(homotopy.program(), ()),
             matrix: Matrix::zeros((), n, n + 2),
             rounded: Matrix::zeros((), n, n + 1),
             x: vec![zero; n],
             p: vec![zero; homotopy.parameter_count()],
             dp: vec![zero; homotopy.parameter_count()],
-            set: PhantomData,
         }
     }
 
@@ -99,8 +75,15 @@ impl<'a, S: CompiledSet> InLanes<'a, S> {
     }
 }
 
-impl<S: CompiledSet> NewtonAtSamples for InLanes<'_, S> {
-    fn precise(&mut self, places: &[[Complex64; 2]], points: &[Complex64], target: u64) -> Found {
+impl NewtonAtSamples<'_> {
+    /// `places`: where the samples were taken, in t, and how far beside it the vertex is; `points`: the points there, one
+    /// after another; `target`: which of the homotopy's targets the path goes to.
+    pub(super) fn precise(
+        &mut self,
+        places: &[[Complex64; 2]],
+        points: &[Complex64],
+        target: u64,
+    ) -> Found {
         let n = self.x.len();
         let mut samples = Vec::with_capacity(places.len());
         let mut evaluations = 0;
@@ -111,7 +94,7 @@ impl<S: CompiledSet> NewtonAtSamples for InLanes<'_, S> {
                 points,
                 target,
             };
-            let Corrections { last, rounds } = S::call(newton);
+            let Corrections { last, rounds } = dispatch_baseline(newton);
             evaluations += rounds * places.len() as u32;
             let Some(last) = last else {
                 return Found {
@@ -130,8 +113,8 @@ impl<S: CompiledSet> NewtonAtSamples for InLanes<'_, S> {
 }
 
 /// Newton's method at as many samples as there are lanes.
-struct Newton<'r, 'a, S: CompiledSet> {
-    space: &'r mut InLanes<'a, S>,
+struct Newton<'r, 'a> {
+    space: &'r mut NewtonAtSamples<'a>,
     places: &'r [[Complex64; 2]],
     points: &'r [Complex64],
     target: u64,
@@ -144,7 +127,7 @@ struct Corrections {
     rounds: u32,
 }
 
-impl<S: CompiledSet> Job for Newton<'_, '_, S> {
+impl Job for Newton<'_, '_> {
     type Output = Corrections;
     #[inline(always)]
     fn run(self) -> Corrections {
@@ -162,7 +145,7 @@ impl<S: CompiledSet> Job for Newton<'_, '_, S> {
             }
         }
         let (a, b) = space.homotopy.ends(self.target);
-        let native = |z: Complex64| Complex::<DoubleDoubleLanes<S>>::from_f64((), z.re, z.im);
+        let native = |z: Complex64| Complex::<DoubleDoubleLanes>::from_f64((), z.re, z.im);
         let a: Vec<_> = a.map(native).collect();
         let b: Vec<_> = b.map(native).collect();
         space
@@ -195,14 +178,14 @@ impl<S: CompiledSet> Job for Newton<'_, '_, S> {
     }
 }
 
-impl<S: CompiledSet> InLanes<'_, S> {
+impl NewtonAtSamples<'_> {
     /// A Newton step towards the path beside t in every lane; the corrections, relative to the largest coordinate.
     #[inline(always)]
     fn step(&mut self, beside: &Complex<Lanes<WIDTH>>) -> [f64; WIDTH] {
         let n = self.x.len();
         let (program, scratch) = (self.homotopy.program(), &mut self.scratch);
         program.linearize(&self.x, &self.p, &self.dp, &mut self.matrix, scratch);
-        let beside = Complex::<DoubleDoubleLanes<S>>::from_control((), beside);
+        let beside = Complex::<DoubleDoubleLanes>::from_control((), beside);
         for i in 0..n {
             for j in 0..n {
                 *self.rounded.at_mut(i, j) = self.matrix.at(i, j).control();

@@ -6,7 +6,7 @@
 //! sets of solutions, corrections do not become small relative to every coordinate.
 
 use crate::homotopies::Homotopy;
-use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::condition::condition_number;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
@@ -42,7 +42,7 @@ pub(super) fn regular_nearby(
             .collect(),
         target,
     };
-    dispatch_single(newton)
+    dispatch_baseline(newton)
 }
 
 struct ScaledNewton<'a> {

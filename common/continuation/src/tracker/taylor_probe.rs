@@ -10,7 +10,7 @@
 
 use crate::chart::norm;
 use crate::homotopies::Homotopy;
-use cognate_numeric::lanes::dispatch::{Job, dispatch_single};
+use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::svd::Svd;
@@ -105,7 +105,7 @@ impl<'a, S: Real> TaylorProbe<'a, S> {
 
     /// The estimate at a point of a path that goes on along the real axis.
     pub fn estimate(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> Estimate {
-        dispatch_single(EstimateJob {
+        dispatch_baseline(EstimateJob {
             probe: self,
             point,
             t,

@@ -10,7 +10,7 @@ use super::lane::{Phase, Step};
 use super::limits::ENDGAME_BITS;
 use super::lockstep::Lockstep;
 use super::outcome::{Failure, PathOutcome};
-use super::precise_samples::newton_at_samples;
+use super::precise_samples::NewtonAtSamples;
 use super::scaled_newton;
 use super::tracking_context::Handoff;
 use crate::chart::norm;
@@ -193,7 +193,7 @@ impl<R: Real> Lockstep<'_, R> {
     fn with_precise_samples(&mut self, lane: usize) -> cauchy::Next {
         let homotopy = self.tracking.homotopy;
         let newton = &mut self.newton_at_samples;
-        let newton = newton.get_or_insert_with(|| newton_at_samples(homotopy));
+        let newton = newton.get_or_insert_with(|| Box::new(NewtonAtSamples::new(homotopy)));
         let path = &mut self.lanes[lane];
         let (places, points) = path.cauchy.samples();
         let found = newton.precise(&places, points, path.target);

@@ -47,7 +47,7 @@ impl Number {
     /// A number as written: `0.25`, `1e-3`, `384/145`, `sqrt(3)/2`; `None` for anything else.
     pub fn read(text: &str) -> Option<Self> {
         let value = Value::read(text)?;
-        if value.turns.is_zero() {
+        if value.turns == 0 {
             return Some(Self {
                 value: value.plain,
                 exact: value.exact,
@@ -195,10 +195,10 @@ pub fn read_angle(text: &str, degrees: bool, snap: bool) -> Option<ReadAngle> {
         angle,
         snapped: None,
     };
-    if !value.turns.is_zero() {
+    if value.turns != 0 {
         // A multiple of pi is an angle in radians whatever the unit of the file.
         let quarters = Rational::from(&value.turns * 2u32);
-        if value.plain.is_zero() && *quarters.denom() == 1 {
+        if value.plain == 0 && *quarters.denom() == 1 {
             return Some(plain(Angle::quarters(quarters.numer().to_i64()?)));
         }
         return Some(plain(Angle::of_radians(value.to_f64())));
@@ -344,7 +344,7 @@ impl Reader<'_> {
                 total = times(&total, &self.factor(depth)?)?;
             } else if self.takes('/') {
                 let by = self.factor(depth)?;
-                total = match (by.turns.is_zero(), by.plain.is_zero()) {
+                total = match (by.turns == 0, by.plain == 0) {
                     (true, true) => return None,
                     (true, false) => Value {
                         plain: total.plain / &by.plain,
@@ -422,7 +422,7 @@ impl Reader<'_> {
 }
 
 fn times(a: &Value, b: &Value) -> Option<Value> {
-    if !a.turns.is_zero() && !b.turns.is_zero() {
+    if a.turns != 0 && b.turns != 0 {
         return Value::rounded(a.to_f64() * b.to_f64());
     }
     let turns = Rational::from(&a.turns * &b.plain) + Rational::from(&b.turns * &a.plain);
@@ -434,7 +434,7 @@ fn times(a: &Value, b: &Value) -> Option<Value> {
 }
 
 fn root(value: &Value) -> Option<Value> {
-    if value.turns.is_zero() && value.plain >= 0 {
+    if value.turns == 0 && value.plain >= 0 {
         let (p, q) = (value.plain.numer(), value.plain.denom());
         if p.is_perfect_square() && q.is_perfect_square() {
             return Some(Value {

@@ -33,7 +33,7 @@ impl Context {
     /// A direction, which is not 0.
     pub fn direction(&self, entry: &Entry<'_>, what: &str) -> Result<Vector, MechanismError> {
         let vector = self.vector(entry, what)?;
-        if vector.iter().all(|c| c.value.is_zero()) {
+        if vector.iter().all(|c| c.value == 0) {
             return Err(entry.error(format!("{what} has length 0; expected a direction")));
         }
         Ok(vector)

@@ -3,38 +3,33 @@
 //! One multiply-add of eight double-doubles is hundreds of instructions before they become vectors, and one of
 //! eight balls is dozens. Inlined wherever it is used, it multiplies the time that what uses it takes to compile,
 //! and its size, by ten; called, it costs a few nanoseconds more. Each operation is compiled once for each
-//! instruction set, which is a part of the type.
+//! instruction set, and each call takes the one of this machine.
 
 use super::Lanes;
-use super::dispatch::{CompiledSet, Job};
+use super::dispatch::{Job, call};
 use crate::rational::Rational;
 use crate::scalar::{Ball, Complex, DoubleDouble, Real};
-use std::marker::PhantomData;
 
 /// Numbers of so many paths.
 pub const WIDTH: usize = 8;
 
-/// A double-double in each of eight lanes, for the instruction set `S`.
-pub type DoubleDoubleLanes<S> = Called<S, DoubleDouble<Lanes<WIDTH>>>;
+/// A double-double in each of eight lanes.
+pub type DoubleDoubleLanes = Called<DoubleDouble<Lanes<WIDTH>>>;
 /// A ball in each of eight lanes.
-pub type BallLanes<S> = Called<S, Ball<Lanes<WIDTH>>>;
+pub type BallLanes = Called<Ball<Lanes<WIDTH>>>;
 
-/// Numbers `N` in eight lanes, whose operations are functions for the instruction set `S`.
+/// Numbers `N` in eight lanes, whose operations are functions for the instruction set of this machine.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub struct Called<S, N> {
+pub struct Called<N> {
     number: N,
-    set: PhantomData<S>,
 }
 
-impl<S, N> Called<S, N> {
+impl<N> Called<N> {
     /// This number, with operations that are called.
     #[inline(always)]
     pub fn new(number: N) -> Self {
-        Self {
-            number,
-            set: PhantomData,
-        }
+        Self { number }
     }
 
     /// The number as it is.
@@ -95,7 +90,7 @@ impl<N: Real> Job for Less<'_, N> {
     }
 }
 
-impl<S: CompiledSet> Complex<DoubleDoubleLanes<S>> {
+impl Complex<DoubleDoubleLanes> {
     /// The number in one lane, with all its digits.
     #[inline(always)]
     pub fn single(&self, lane: usize) -> Complex<DoubleDouble<f64>> {
@@ -106,7 +101,7 @@ impl<S: CompiledSet> Complex<DoubleDoubleLanes<S>> {
     }
 }
 
-impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
+impl<N: Real + Copy> Real for Called<N> {
     type Context = N::Context;
     type Mask = N::Mask;
     type Control = N::Control;
@@ -149,35 +144,35 @@ impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
     }
     #[inline(always)]
     fn add(&mut self, other: &Self) {
-        S::call(Add {
+        call(Add {
             number: &mut self.number,
             other: &other.number,
         });
     }
     #[inline(always)]
     fn sub(&mut self, other: &Self) {
-        S::call(Sub {
+        call(Sub {
             number: &mut self.number,
             other: &other.number,
         });
     }
     #[inline(always)]
     fn mul(&mut self, other: &Self) {
-        S::call(Mul {
+        call(Mul {
             number: &mut self.number,
             other: &other.number,
         });
     }
     #[inline(always)]
     fn div(&mut self, other: &Self) {
-        S::call(Div {
+        call(Div {
             number: &mut self.number,
             other: &other.number,
         });
     }
     #[inline(always)]
     fn mul_add(&mut self, a: &Self, b: &Self) {
-        S::call(MulAdd {
+        call(MulAdd {
             number: &mut self.number,
             a: &a.number,
             b: &b.number,
@@ -185,7 +180,7 @@ impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
     }
     #[inline(always)]
     fn mul_sub(&mut self, a: &Self, b: &Self) {
-        S::call(MulSub {
+        call(MulSub {
             number: &mut self.number,
             a: &a.number,
             b: &b.number,
@@ -193,14 +188,14 @@ impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
     }
     #[inline(always)]
     fn mul_single(&mut self, c: &N::Single) {
-        S::call(MulSingle {
+        call(MulSingle {
             number: &mut self.number,
             c,
         });
     }
     #[inline(always)]
     fn mul_add_single(&mut self, c: &N::Single, a: &Self) {
-        S::call(MulAddSingle {
+        call(MulAddSingle {
             number: &mut self.number,
             c,
             a: &a.number,
@@ -208,7 +203,7 @@ impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
     }
     #[inline(always)]
     fn mul_sub_single(&mut self, c: &N::Single, a: &Self) {
-        S::call(MulSubSingle {
+        call(MulSubSingle {
             number: &mut self.number,
             c,
             a: &a.number,
@@ -220,19 +215,19 @@ impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
     }
     #[inline(always)]
     fn abs(&mut self) {
-        S::call(Abs {
+        call(Abs {
             number: &mut self.number,
         });
     }
     #[inline(always)]
     fn sqrt(&mut self) {
-        S::call(Sqrt {
+        call(Sqrt {
             number: &mut self.number,
         });
     }
     #[inline(always)]
     fn less(&self, other: &Self) -> N::Mask {
-        S::call(Less {
+        call(Less {
             a: &self.number,
             b: &other.number,
             or_equal: false,
@@ -240,7 +235,7 @@ impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
     }
     #[inline(always)]
     fn less_equal(&self, other: &Self) -> N::Mask {
-        S::call(Less {
+        call(Less {
             a: &self.number,
             b: &other.number,
             or_equal: true,
@@ -270,7 +265,7 @@ impl<S: CompiledSet, N: Real + Copy> Real for Called<S, N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dispatch::{InstructionSet, JobOfSet, dispatch_set};
+    use super::super::dispatch::{InstructionSet, limited_to};
     use super::*;
     use crate::random::{Purpose, RandomStream};
     use crate::scalar::Mask;
@@ -305,22 +300,11 @@ mod tests {
         lanes.flat_map(|k| [r.lane(k), low.lane(k)]).collect()
     }
 
-    /// The formula in called operations of some numbers.
-    struct Formula<N>(PhantomData<N>);
-
-    impl<N: Real<Context = ()> + Copy> JobOfSet for Formula<N> {
-        type Output = Vec<f64>;
-        #[inline(always)]
-        fn run<S: CompiledSet>(self) -> Vec<f64> {
-            value::<Called<S, N>>()
-        }
-    }
-
     fn check<N: Real<Context = ()> + Copy>() {
         let expected = value::<N>();
         for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
-            let formula = Formula(PhantomData::<N>);
-            assert_eq!(dispatch_set(set, formula), expected, "{}", set.name());
+            let values = limited_to(set, value::<Called<N>>);
+            assert_eq!(values, expected, "{}", set.name());
         }
     }
 

@@ -4,7 +4,6 @@
 //! this machine. The only `unsafe` code of the mathematics stands here.
 
 use std::cell::Cell;
-use std::marker::PhantomData;
 
 /// Work that is compiled once per instruction set.
 ///
@@ -34,8 +33,13 @@ pub enum InstructionSet {
 
 impl InstructionSet {
     /// The best one that this machine has; within [`limited_to`], the one that is named there.
+    #[inline]
     pub fn detect() -> Self {
-        LIMIT.get().unwrap_or_else(Self::best)
+        SET.get().unwrap_or_else(|| {
+            let best = Self::best();
+            SET.set(Some(best));
+            best
+        })
     }
 
     fn best() -> Self {
@@ -91,8 +95,8 @@ fn run_avx2<J: Job>(job: J) -> J::Output {
 }
 
 std::thread_local! {
-    /// What [`limited_to`] says on this thread.
-    static LIMIT: Cell<Option<InstructionSet>> = const { Cell::new(None) };
+    /// The set that this thread uses: the best one, or what [`limited_to`] says; `None` before the first question.
+    static SET: Cell<Option<InstructionSet>> = const { Cell::new(None) };
 }
 
 /// Runs `work` with everything that it dispatches on this thread done with `set`, or with the best
@@ -102,12 +106,12 @@ pub fn limited_to<T>(set: InstructionSet, work: impl FnOnce() -> T) -> T {
     struct Before(Option<InstructionSet>);
     impl Drop for Before {
         fn drop(&mut self) {
-            LIMIT.set(self.0);
+            SET.set(self.0);
         }
     }
     let best = InstructionSet::best();
     let has_it = set == best || (best == InstructionSet::Avx512 && set == InstructionSet::Avx2);
-    let _before = Before(LIMIT.replace(Some(if has_it { set } else { best })));
+    let _before = Before(SET.replace(Some(if has_it { set } else { best })));
     work()
 }
 
@@ -146,18 +150,20 @@ pub fn dispatch_on<J: Job>(instruction_set: InstructionSet, job: J) -> J::Output
     }
 }
 
-/// Runs a job on single numbers, which gain nothing from AVX-512: it is compiled once, for AVX2 with
-/// fused multiply-add, which every machine with AVX-512 has too. The bits are those of [`dispatch`].
+/// Runs a job that is compiled once, for AVX2 with fused multiply-add, which every machine with AVX-512 has, too. So are
+/// single numbers, which gain nothing from AVX-512, and paths in lanes, whose equations and eliminations are machine code
+/// made for the set of this machine (`tests/benches/build.md` has what a second copy costs). The bits are those of
+/// [`dispatch`].
 ///
 /// # Panics
 /// On a machine without fused multiply-add, as [`dispatch_on`] does.
-pub fn dispatch_single<J: Job>(job: J) -> J::Output {
-    let best = InstructionSet::best();
-    assert!(best != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");
+pub fn dispatch_baseline<J: Job>(job: J) -> J::Output {
+    let set = InstructionSet::detect();
+    assert!(set != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");
     #[cfg(target_arch = "x86_64")]
     {
         // SAFETY: the features were detected on this machine just now: both sets have AVX2 and FMA;
-        // `single_numbers_are_the_same_on_every_instruction_set` compares.
+        // `the_baseline_is_the_same_on_every_instruction_set` compares.
         unsafe { run_avx2(job) }
     }
     #[cfg(not(target_arch = "x86_64"))]
@@ -166,96 +172,23 @@ pub fn dispatch_single<J: Job>(job: J) -> J::Output {
     }
 }
 
-/// An instruction set as a type: what has it as a parameter calls functions that are compiled for it, from
-/// code that need not be. Such a type is had from [`dispatch_set`] only.
-pub trait CompiledSet: Copy + Send + Sync + std::fmt::Debug + 'static {
-    /// Runs the job, as a function that is never inlined.
-    fn call<J: Job>(job: J) -> J::Output;
-}
-
-/// Work on numbers whose operations are functions compiled for an instruction set.
-pub trait JobOfSet {
-    /// What the work gives.
-    type Output;
-    /// Does the work; it and everything below it is `#[inline(always)]`, as for [`Job`].
-    fn run<S: CompiledSet>(self) -> Self::Output;
-}
-
-mod compiled {
-    //! The types, which nothing else can name.
-
-    use super::{CompiledSet, Job};
-
-    #[cfg(target_arch = "x86_64")]
-    #[derive(Clone, Copy, Debug)]
-    pub struct Avx512;
-
-    #[cfg(target_arch = "x86_64")]
-    #[derive(Clone, Copy, Debug)]
-    pub struct Avx2;
-
-    #[cfg(not(target_arch = "x86_64"))]
-    #[derive(Clone, Copy, Debug)]
-    pub struct Baseline;
-
-    #[cfg(target_arch = "x86_64")]
-    impl CompiledSet for Avx512 {
-        #[inline(always)]
-        fn call<J: Job>(job: J) -> J::Output {
-            // SAFETY: `dispatch_set`, which alone names this type, has detected the features.
-            unsafe { super::run_avx512(job) }
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    impl CompiledSet for Avx2 {
-        #[inline(always)]
-        fn call<J: Job>(job: J) -> J::Output {
-            // SAFETY: as above.
-            unsafe { super::run_avx2(job) }
-        }
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    impl CompiledSet for Baseline {
-        #[inline(never)]
-        fn call<J: Job>(job: J) -> J::Output {
-            job.run()
-        }
-    }
-}
-
-/// A job that knows its set.
-struct OfSet<S, J>(J, PhantomData<S>);
-
-impl<S: CompiledSet, J: JobOfSet> Job for OfSet<S, J> {
-    type Output = J::Output;
-    #[inline(always)]
-    fn run(self) -> J::Output {
-        self.0.run::<S>()
-    }
-}
-
-/// [`dispatch_on`] for work that has the instruction set as a type.
+/// Runs a small job that stands in a loop of another job, as a function that is never inlined, compiled for each
+/// instruction set; the one of this machine is taken, within [`limited_to`] the one that is named there.
 ///
 /// # Panics
 /// On a machine without fused multiply-add, as [`dispatch_on`] does.
-pub fn dispatch_set<J: JobOfSet>(instruction_set: InstructionSet, job: J) -> J::Output {
-    let best = InstructionSet::best();
-    assert!(best != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");
+#[inline(never)]
+pub fn call<J: Job>(job: J) -> J::Output {
     #[cfg(target_arch = "x86_64")]
-    {
-        if best == InstructionSet::Avx512 && instruction_set != InstructionSet::Avx2 {
-            compiled::Avx512::call(OfSet::<compiled::Avx512, J>(job, PhantomData))
-        } else {
-            compiled::Avx2::call(OfSet::<compiled::Avx2, J>(job, PhantomData))
-        }
+    match InstructionSet::detect() {
+        // SAFETY: `detect` gives a set whose features were detected on this machine.
+        InstructionSet::Avx512 => unsafe { run_avx512(job) },
+        // SAFETY: as above.
+        InstructionSet::Avx2 => unsafe { run_avx2(job) },
+        InstructionSet::Neon | InstructionSet::Software => panic!("{NO_FUSED_MULTIPLY_ADD}"),
     }
     #[cfg(not(target_arch = "x86_64"))]
-    {
-        let _ = instruction_set;
-        OfSet::<compiled::Baseline, J>(job, PhantomData).run()
-    }
+    job.run()
 }
 
 #[cfg(test)]
@@ -298,9 +231,9 @@ mod tests {
     }
 
     #[test]
-    fn single_numbers_are_the_same_on_every_instruction_set() {
+    fn the_baseline_is_the_same_on_every_instruction_set() {
         let x = std::array::from_fn(|i| (i as f64 - 7.3) / 9.1);
-        let single = dispatch_single(Horner(x));
+        let single = dispatch_baseline(Horner(x));
         for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
             let limited = limited_to(set, || {
                 assert!(

@@ -2,7 +2,7 @@
 //! differentiation of whatever is written for a scalar.
 
 use super::Real;
-use crate::lanes::dispatch::{Job, dispatch_single};
+use crate::lanes::dispatch::{Job, dispatch_baseline};
 use crate::rational::Rational;
 
 /// Coefficients that are kept: orders 0 to 4.
@@ -25,7 +25,7 @@ impl<S: Real> Jet<S> {
     /// `self += a*b`, or `self -= a*b`, term by term. A call of its own: written out at every place of the
     /// interpreter, with numbers of MPFR, it made a function of half a megabyte, the largest of the program.
     fn accumulate(&mut self, a: &Self, b: &Self, minus: bool) {
-        dispatch_single(Product {
+        dispatch_baseline(Product {
             sum: self,
             a,
             b,
@@ -141,7 +141,7 @@ impl<S: Real> Real for Jet<S> {
         self.accumulate(&a, other, false);
     }
     fn div(&mut self, other: &Self) {
-        dispatch_single(Quotient {
+        dispatch_baseline(Quotient {
             divided: self,
             by: other,
         });

@@ -235,7 +235,7 @@ fn node(node: &Node) -> v1::Node {
     let kind = match node {
         Node::Constant(z) => Kind::Constant(v1::ExactComplex {
             re: z.re.to_string(),
-            im: if z.im.is_zero() {
+            im: if z.im == 0 {
                 String::new()
             } else {
                 z.im.to_string()

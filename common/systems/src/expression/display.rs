@@ -236,9 +236,9 @@ impl Display<'_> {
         let whole = |n: &rug::Rational| *n.denom() == 1;
         if self.style.bracketed_constants || c.is_real() && whole(&c.re) && c.re >= 0 {
             ATOM
-        } else if c.is_real() || c.re.is_zero() && c.im != 1 {
+        } else if c.is_real() || c.re == 0 && c.im != 1 {
             PRODUCT
-        } else if c.re.is_zero() {
+        } else if c.re == 0 {
             ATOM
         } else {
             SUM
@@ -252,7 +252,7 @@ impl Display<'_> {
         }
         let constant = |id: NodeId| match self.expressions.node(id) {
             Node::Constant(c) if !self.shared.contains_key(&id) => {
-                c.is_real() && c.re < 0 || c.re.is_zero() && c.im < 0
+                c.is_real() && c.re < 0 || c.re == 0 && c.im < 0
             }
             _ => false,
         };
@@ -270,7 +270,7 @@ impl Display<'_> {
             }
             let first = match self.expressions.node(id) {
                 Node::Constant(c) => {
-                    let negative = c.re < 0 || c.re.is_zero() && c.im < 0;
+                    let negative = c.re < 0 || c.re == 0 && c.im < 0;
                     return negative && !self.style.bracketed_constants;
                 }
                 Node::Negate(_) => return true,
@@ -302,7 +302,7 @@ impl Display<'_> {
         };
         if self.style.bracketed_constants {
             let natural = c.is_real() && *c.re.denom() == 1 && c.re >= 0;
-            let text = match (natural, c.is_real(), c.re.is_zero()) {
+            let text = match (natural, c.is_real(), c.re == 0) {
                 (true, ..) => c.re.to_string(),
                 (_, true, _) => format!("({})", c.re),
                 (_, _, true) => format!("(({})*{unit})", c.im),
@@ -311,7 +311,7 @@ impl Display<'_> {
             out.push_str(&text);
         } else if c.is_real() {
             out.push_str(&c.re.to_string());
-        } else if c.re.is_zero() {
+        } else if c.re == 0 {
             out.push_str(&imaginary(&c.im));
         } else if c.im < 0 {
             let positive = rug::Rational::from(-&c.im);

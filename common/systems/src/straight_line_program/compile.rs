@@ -175,7 +175,7 @@ impl FlowGraph {
         let (constant, negative) = match constant {
             Constant::Exact(c) if c.is_zero() => return None,
             Constant::Exact(c) => {
-                let negative = c.re < 0 || (c.re.is_zero() && c.im < 0);
+                let negative = c.re < 0 || (c.re == 0 && c.im < 0);
                 let positive = if negative { c.negate() } else { c };
                 (Constant::Exact(positive), negative)
             }

@@ -168,7 +168,7 @@ fn times(out: &mut Expressions, node: NodeId, exponent: i64) -> NodeId {
 fn binary_exponent(c: &ComplexRational) -> Option<i64> {
     let part = |v: &Rational| {
         let bits = |n: &rug::Integer| i64::from(n.significant_bits());
-        (!v.is_zero()).then(|| bits(v.numer()) - bits(v.denom()))
+        (*v != 0).then(|| bits(v.numer()) - bits(v.denom()))
     };
     part(&c.re).into_iter().chain(part(&c.im)).max()
 }

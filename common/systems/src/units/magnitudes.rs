@@ -36,7 +36,7 @@ fn log2_rational(v: &Rational) -> Option<f64> {
         let mantissa = top.to_f64() / (1u64 << 53) as f64;
         f64::from(bits) + 2.0 * mantissa - 2.0
     };
-    (!v.is_zero()).then(|| part(v.numer()) - part(v.denom()))
+    (*v != 0).then(|| part(v.numer()) - part(v.denom()))
 }
 
 fn larger(a: Option<f64>, b: Option<f64>) -> Option<f64> {

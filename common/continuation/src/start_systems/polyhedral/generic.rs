@@ -16,6 +16,7 @@ use cognate_systems::polynomial::Polynomial;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use rug::Integer;
+use rug::ops::RemRounding;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Most operations that are spent on the mixed cells of a system that is solved, where they were
@@ -404,7 +405,7 @@ impl GenericSystem {
             }
             let degree = &matrix[i][i];
             let degree_word = degree.to_u64().expect("it divides the volume");
-            let angle = angle.modulo(&turn) + (Integer::from(rest % degree_word) << 128);
+            let angle = angle.rem_euc(&turn) + (Integer::from(rest % degree_word) << 128);
             rest /= degree_word;
             z.push(angle / degree);
         }
@@ -414,7 +415,7 @@ impl GenericSystem {
                 for (entry, z) in transform[j].iter().zip(&z) {
                     angle += Integer::from(entry * z);
                 }
-                let angle = angle.modulo(&turn);
+                let angle = Integer::from(angle.rem_euc(&turn));
                 on_the_circle(angle.to_u128().expect("it is below 2^128"))
             })
             .collect()

@@ -1,7 +1,6 @@
 //! What goes out comes in again, the same; the same things have the same names.
 
-mod support;
-
+use crate::support::Draw;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::start_points::StartPoints;
@@ -17,7 +16,6 @@ use cognate_solutions::witness::{
 use num_complex::Complex64;
 use proptest::prelude::*;
 use prost::Message;
-use support::Draw;
 
 /// Through the bytes of a message.
 fn sent<M: Message + Default>(message: &M) -> M {

@@ -1,12 +1,10 @@
 //! What is wrong with a message is said with the field, and nothing panics.
 
-mod support;
-
+use crate::support::Draw;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::Work;
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use prost::Message;
-use support::Draw;
 use v1::node::Kind;
 
 fn circle() -> v1::System {

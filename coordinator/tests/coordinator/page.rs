@@ -1,7 +1,6 @@
 //! The page for browsers: what it answers, and whom it does not.
 
-mod support;
-
+use crate::support::{FOUR_POINTS, House, durable_config};
 use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_coordinator::api::security::{Security, Tls, Tokens};
 use cognate_coordinator::config::Config;
@@ -13,7 +12,6 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
-use support::{FOUR_POINTS, House, durable_config};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 

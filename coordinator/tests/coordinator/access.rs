@@ -1,7 +1,6 @@
 //! Tenants, limits, the audit log, and what an operator's programs hear.
 
-mod support;
-
+use crate::support::{FOUR_POINTS, MANY_PATHS, text};
 use cognate_coordinator::api::security::{Security, Tokens};
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};
 use cognate_coordinator::server::{RunningServer, Server};
@@ -11,7 +10,6 @@ use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::{Bearer, CredentialFiles, Credentials, Role};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use support::{FOUR_POINTS, MANY_PATHS, text};
 use tonic::service::interceptor::InterceptedService;
 use tonic::transport::Channel;
 use tonic::{Code, Status};

@@ -4,14 +4,12 @@
 //! change of any is a change of the wire: `UPDATE_GOLDEN=1` rewrites them, and
 //! the difference is to be read before it is handed in.
 
-mod support;
-
+use crate::support::Draw;
 use cognate_protocol::submission::{Options, StartKind};
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use prost::Message;
 use std::fmt::Write;
 use std::path::PathBuf;
-use support::Draw;
 
 fn hex(bytes: &[u8]) -> String {
     let mut text = String::new();

@@ -1,10 +1,8 @@
 //! Hostile callers: what they send is bounded before it is believed, and the service stays up.
 
-mod support;
-
+use crate::support::{House, MANY_PATHS, WOKEN, text};
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
-use support::{House, MANY_PATHS, WOKEN, text};
 use tonic::Code;
 
 /// The most memory that this process has had, in MiB.
@@ -152,7 +150,7 @@ async fn leases_belong_to_who_has_them() {
             let mut forged = lease.clone();
             forged.id.as_mut().unwrap().epoch += ahead;
             let verdict = evil
-                .report(&forged, support::FakeWorker::results(&forged))
+                .report(&forged, crate::support::FakeWorker::results(&forged))
                 .await;
             assert_eq!(verdict.verdict(), v1::Verdict::Stale);
         }
@@ -165,7 +163,7 @@ async fn leases_belong_to_who_has_them() {
         assert!(!renewed.renewals[0].held);
     }
     assert_eq!(files(&house), before, "something forged is kept");
-    let results = support::FakeWorker::results(&lease);
+    let results = crate::support::FakeWorker::results(&lease);
     let verdict = honest.report(&lease, results).await;
     assert_eq!(
         verdict.verdict(),
@@ -240,7 +238,7 @@ async fn no_start_over_missing_results() {
     let folder = std::mem::replace(&mut house.folder, tempfile::tempdir().unwrap());
     house.server.shutdown().await;
     std::fs::remove_dir_all(folder.path().join("data/results")).unwrap();
-    let config = support::durable_config(folder.path());
+    let config = crate::support::durable_config(folder.path());
     let refused = cognate_coordinator::server::Server::start(config).await;
     let Err(refused) = refused.map(drop) else {
         panic!("it starts");
@@ -267,7 +265,7 @@ async fn ends_that_solve_no_equation_are_done_again() {
             break;
         }
         for lease in pulled.leases {
-            let mut results = support::FakeWorker::results(&lease);
+            let mut results = crate::support::FakeWorker::results(&lease);
             for result in &mut results {
                 result.outcome = v1::PathOutcome::Regular.into();
                 let at = |k: u64| ((result.origin * 37 + k * k * 11 + k) % 19) as f64 / 9.5 - 1.0;

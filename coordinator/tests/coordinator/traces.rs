@@ -1,7 +1,6 @@
 //! Traces: a collector hears of a job's submission, of each lease and of each report, under one number.
 
-mod support;
-
+use crate::support::{House, MANY_PATHS, text};
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};
 use cognate_coordinator::server::Server;
 use opentelemetry_proto::tonic::collector::trace::v1::trace_service_server::{
@@ -14,7 +13,6 @@ use opentelemetry_proto::tonic::common::v1::any_value::Value;
 use opentelemetry_proto::tonic::trace::v1::Span;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
-use support::{House, MANY_PATHS, text};
 use tonic::{Request, Response, Status};
 
 /// A collector that keeps what it gets.
@@ -85,7 +83,7 @@ async fn a_job_is_followed_from_submission_to_its_last_report() {
     let jobs = [
         client.submit("one", text(MANY_PATHS)).await.unwrap(),
         client
-            .submit("two", text(support::FOUR_POINTS))
+            .submit("two", text(crate::support::FOUR_POINTS))
             .await
             .unwrap(),
     ];

@@ -1,14 +1,12 @@
 //! The service behind its sockets, in one process: from a submission to the result, and what it
 //! refuses.
 
-mod support;
-
+use crate::support::{FOUR_POINTS, FakeWorker, House, LONG_WAIT, MANY_PATHS, WOKEN, text};
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};
 use cognate_coordinator::server::{Server, ServerError};
 use cognate_coordinator::transport::ListenError;
 use cognate_protocol::v1;
 use std::time::{Duration, Instant};
-use support::{FOUR_POINTS, FakeWorker, House, LONG_WAIT, MANY_PATHS, WOKEN, text};
 use tonic::Code;
 use tonic_types::StatusExt;
 

@@ -1,7 +1,6 @@
 //! One suite for every transport: a worker sees no difference between them but the time.
 
-mod support;
-
+use crate::support::{FakeWorker, House, LONG_WAIT, MANY_PATHS, WOKEN, text};
 use cognate_coordinator::chunks::leasing::Policy;
 use cognate_coordinator::chunks::sizing::Sizing;
 use cognate_coordinator::config::Rules;
@@ -10,7 +9,6 @@ use cognate_protocol::v1::Verdict;
 use cognate_worker::config::TransportChoice;
 use cognate_worker::transport::shared_memory::place::CALLS;
 use std::time::{Duration, Instant};
-use support::{FakeWorker, House, LONG_WAIT, MANY_PATHS, WOKEN, text};
 use tonic::Code;
 
 /// Chunks of 8 paths, leases and waits for work that are long enough for a test on any machine.
@@ -312,7 +310,7 @@ async fn where_shared_memory_ends_calls_go_on_by_grpc() {
 }
 
 /// Measured, not asserted:
-/// `cargo test --release -p cognate-coordinator --test transports -- --ignored --nocapture`.
+/// `cargo test --release -p cognate-coordinator --test coordinator transports -- --ignored --nocapture`.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "a measurement"]
 async fn round_trips() {

@@ -1,15 +1,13 @@
 //! Messages, records and objects that come from a network or a disk: any bytes end in a value or an error, and a value
 //! that is taken is the same again once it was sent.
 
-mod support;
-
+use crate::support::Draw;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_protocol::decoded_size::decoded_size;
 use cognate_protocol::{digest, from_proto, records, to_proto, v1};
 use cognate_tests::any_bytes::read_any_bytes;
 use num_complex::Complex64;
 use prost::Message;
-use support::Draw;
 
 /// What these seeds draw.
 fn drawn(seeds: u64, mut draw: impl FnMut(&mut Draw) -> Vec<u8>) -> Vec<Vec<u8>> {

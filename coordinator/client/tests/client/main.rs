@@ -1,0 +1,8 @@
+//! The command `cognate`: what it reads, prints and writes. One program, so that it is linked once.
+
+mod any_files;
+mod client_output;
+mod decompose;
+mod loci;
+mod mechanism_listings;
+mod mechanisms;
