@@ -124,7 +124,7 @@ fn has_fine_numbers(system: &System) -> bool {
             .numer()
             .significant_bits()
             .min(part.denom().significant_bits());
-        !part.is_zero() && (size < FINEST || size > 1.0 / FINEST || bits > MOST_BITS)
+        *part != 0 && (size < FINEST || size > 1.0 / FINEST || bits > MOST_BITS)
     };
     let nodes = below(&system.expressions, &system.equations);
     nodes

@@ -40,7 +40,7 @@ pub(super) fn enclose(arena: &Expressions, id: NodeId, bits: u32) -> Complex<Bou
                 value
             }
             Node::Power(a, exponent) => power(&values[a], *exponent, bits),
-            Node::Root(a, exponent) if *exponent == rug::Rational::from((1, 2)) => {
+            Node::Root(a, exponent) if *exponent.numer() == 1 && *exponent.denom() == 2 => {
                 square_root(&values[a], bits)
             }
             Node::Root(a, exponent) => real_function(&values[a], bits, |x| {

@@ -300,7 +300,7 @@ impl<'a> Constants<'a> {
 fn radicand(expressions: &Expressions, id: NodeId) -> Option<Rational> {
     let argument = match expressions.node(id) {
         Node::Function(Function::SquareRoot, a) => *a,
-        Node::Root(a, exponent) if *exponent == Rational::from((1, 2)) => *a,
+        Node::Root(a, exponent) if *exponent.numer() == 1 && *exponent.denom() == 2 => *a,
         _ => return None,
     };
     let c = expressions.as_constant(argument)?;
