@@ -104,8 +104,8 @@ pub fn may_be_finite(result: &PathResult, shape: &PointShape) -> bool {
                 let group = &point[span.range];
                 modulus(group[0]) / largest(group)
             });
-            // A coordinate that is no number counts as too large.
-            !(coordinates.fold(1.0, f64::min) <= FARTHEST)
+            // A coordinate that is no number counts as 1.
+            coordinates.fold(1.0, f64::min) > FARTHEST
         }
     }
 }
@@ -124,7 +124,7 @@ fn has_fine_numbers(system: &System) -> bool {
             .numer()
             .significant_bits()
             .min(part.denom().significant_bits());
-        *part != 0 && (size < FINEST || size > 1.0 / FINEST || bits > MOST_BITS)
+        *part != 0 && (!(FINEST..=1.0 / FINEST).contains(&size) || bits > MOST_BITS)
     };
     let nodes = below(&system.expressions, &system.equations);
     nodes
