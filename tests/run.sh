@@ -136,9 +136,10 @@ else
 fi
 
 step "the tests of the workspace"
-chosen=()
-if [ "$mode" = long ]; then chosen=(--run-ignored all); fi
-target/tools/bin/cargo-nextest nextest run --release --workspace --config-file tests/nextest.toml "${chosen[@]}"
+if [ "$mode" = long ]; then export COGNATE_LONG=yes; fi
+# One more at a time than there are cores: some wait for leases, servers and processes.
+target/tools/bin/cargo-nextest nextest run --release --workspace --config-file tests/nextest.toml \
+  --test-threads $(($(nproc) + 1))
 cargo test --quiet --release --workspace --doc
 
 step "the Python package, with the program that is built"

@@ -48,7 +48,9 @@ fn check_same_with(
                 "{at}: {:?}",
                 set.warnings
             );
-            assert!(set.settled(), "{at}");
+            // A start that misses singular solutions is not settled where they are counted.
+            let is_incomplete = set.counts.complete == Completeness::No;
+            assert_eq!(set.settled(), !is_incomplete, "{at}");
             let points: Vec<_> = set
                 .solutions
                 .iter()

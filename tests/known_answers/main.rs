@@ -8,6 +8,7 @@ mod classical_systems;
 mod close_paths;
 mod every_start;
 mod forty_systems;
+mod fractions;
 mod hard_paths;
 mod ill_conditioned;
 mod isolated_or_not;

@@ -187,7 +187,7 @@ fn a_zero_below_the_line_is_no_solution() {
         ..SolveOptions::default()
     };
     let (paths, sets) = solve(&system, &options, &|_| None);
-    assert_eq!((paths, sets[0].counts.nonsingular), (4, 4));
-    let at_zero = sets[0].counts.degenerate.get(ZERO_DENOMINATOR);
+    assert_eq!((paths, sets[0].counts.nonsingular), (4, 3));
+    let at_zero = sets[0].counts.removed.get(ZERO_DENOMINATOR);
     assert_eq!(at_zero.copied(), Some(1));
 }

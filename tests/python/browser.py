@@ -31,7 +31,7 @@ class Browser:
             stderr=subprocess.DEVNULL,
         )
         port = Path(self._folder) / "DevToolsActivePort"
-        end = time.monotonic() + 60
+        end = time.monotonic() + 600
         while not port.exists() or not port.read_text().strip():
             assert time.monotonic() < end, "the browser does not start"
             time.sleep(0.1)
@@ -92,7 +92,7 @@ class Browser:
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
 
-    async def until(self, condition: str, seconds: float = 30.0) -> None:
+    async def until(self, condition: str, seconds: float = 300.0) -> None:
         """Waits until an expression is true."""
         end = time.monotonic() + seconds
         while not await self.run(f"Boolean({condition})"):

@@ -58,7 +58,7 @@ def processes_with(word: str) -> list[str]:
     ]
 
 
-def until(condition, seconds: float = 20.0) -> bool:  # type: ignore[no-untyped-def]
+def until(condition, seconds: float = 300.0) -> bool:  # type: ignore[no-untyped-def]
     """Whether a condition holds before so many seconds have passed."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:

@@ -19,7 +19,7 @@ def tour() -> Any:
         import nbformat
 
         notebook = nbformat.read(REPOSITORY / "deploy" / "python" / "tour.ipynb", as_version=4)
-        nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+        nbclient.NotebookClient(notebook, timeout=900, kernel_name="python3").execute()
     return notebook
 
 

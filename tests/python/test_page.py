@@ -89,7 +89,7 @@ async def submitted(browser: Browser, file: Path) -> None:
     """Drops an example, and follows its job to the end."""
     await browser.run(drop(file.name, file.read_text()))
     await browser.until("location.hash.startsWith('#job/')")
-    await browser.until(shown("Every path is accounted for"), 120)
+    await browser.until(shown("Every path is accounted for"), 600)
 
 
 def test_a_job_from_a_dropped_file_to_its_results(page: str, pictures: Path) -> None:
@@ -173,7 +173,7 @@ def test_long_lists_come_in_pages_and_do_not_stutter(page: str) -> None:
             request = urllib.request.Request(
                 f"{page}api/jobs?name=many_{k}", data=content, headers={"X-Cognate": "page"}, method="POST"
             )
-            with urllib.request.urlopen(request, timeout=60) as answer:
+            with urllib.request.urlopen(request, timeout=600) as answer:
                 assert answer.status == 200
         async with Browser() as browser:
             await browser.go(page)
@@ -210,7 +210,7 @@ def test_parts_of_a_list_are_those_of_the_whole_over_all_targets(service: tuple[
         assert len(job.results().targets) == 3
 
     def read(path: str) -> bytes:
-        with urllib.request.urlopen(f"{url}api/results/{job.id}/{path}", timeout=60) as answer:
+        with urllib.request.urlopen(f"{url}api/results/{job.id}/{path}", timeout=600) as answer:
             content: bytes = answer.read()
             return content
 
@@ -235,7 +235,7 @@ def test_mechanisms_move(page: str, pictures: Path) -> None:
             await browser.until(shown("poses of its output"))
             await browser.run("document.getElementById('prove').click()")
             await browser.run(press("Show its positions"))
-            await browser.until(shown("Position 1.1, real and proved"), 60)
+            await browser.until(shown("Position 1.1, real and proved"), 600)
             assert await browser.run(shown("8 complex, 8 real, 8 proved real"))
             await browser.run("document.getElementById('ghosts').click()")
             await browser.picture(pictures / "mechanism_arm.png")
@@ -249,7 +249,7 @@ def test_mechanisms_move(page: str, pictures: Path) -> None:
             await browser.run("document.getElementById('targets').value = 'A0\\n0\\n3\\n6\\n'")
             await browser.run("document.getElementById('follow').click()")
             await browser.run(press("Show its positions"))
-            await browser.until(shown("branch 4"), 60)
+            await browser.until(shown("branch 4"), 600)
             await browser.run(press("branch 2"))
             await browser.run(press("Play"))
             await browser.until("Number(document.querySelector('input[type=range]').value) > 5")
@@ -261,7 +261,7 @@ def test_mechanisms_move(page: str, pictures: Path) -> None:
             await browser.run(press("Show its positions") + ";" + press("Cancel"))
             await browser.until(shown("Cancelled."))
             await browser.run(press("Show its positions"))
-            await browser.until(shown("branch 4"), 60)
+            await browser.until(shown("branch 4"), 600)
             await browser.run(drop("wrong.urdf", "<robot"))
             await browser.until(shown("wrong.urdf:1"))
             assert browser.log == [] or all("400" in line for line in browser.log), browser.log
@@ -327,6 +327,6 @@ def test_a_solve_has_a_page(tmp_path: Path) -> None:
     finally:
         time.sleep(0.2)
         solve.send_signal(2)
-        output, _ = solve.communicate(timeout=30)
+        output, _ = solve.communicate(timeout=600)
     assert json.loads(output)["solutions"]["distinct"] == 6
     assert solve.returncode == 0

@@ -125,7 +125,7 @@ def test_tables(solved: cg.Result) -> None:
     assert frame["real"].all()
     assert solved.real_array().dtype == float and solved.real_array().shape == (4, 2)
     html = solved._repr_html_()
-    assert html.count("<tr>") == 9 + 5 and "<script" not in html and "4 solutions, 4 real" in html
+    assert html.count("<tr>") == 10 + 5 and "<script" not in html and "4 solutions, 4 real" in html
     assert "4 solutions, 4 real" in str(solved)
 
 

@@ -62,7 +62,7 @@ def by_phc(polynomials: list[str], folder: Path) -> list[dict[str, complex]]:
     asked.write_text(phcpy.file_text(polynomials))
     # It takes the file's name for a path of at most 80 characters: the folder is where it runs.
     command = [program, "-b", f"-0{SEED}", asked.name, answered.name]
-    subprocess.run(command, cwd=folder, check=True, timeout=60, capture_output=True)
+    subprocess.run(command, cwd=folder, check=True, timeout=600, capture_output=True)
     return [phcpy.dictionary(s) for s in phcpack.read_solutions(answered.read_text())]
 
 

@@ -113,7 +113,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
     assert child.stdout is not None and child.stdout.readline() == "up\n"
     assert until(lambda: any("cognate solve" in line for line in processes_with(name)))
     child.send_signal(signal.SIGINT)
-    _, error = child.communicate(timeout=20)
+    _, error = child.communicate(timeout=600)
     assert "KeyboardInterrupt" in error and not processes_with(name)
 
 
@@ -246,3 +246,29 @@ def test_a_cancelled_task_leaves_nothing_behind(tmp_path: Path) -> None:
 
     asyncio.run(cancelled())
     assert until(lambda: not processes_with(name))
+
+
+def test_points_where_a_denominator_is_0_are_no_solutions() -> None:
+    equations = ["x/y + y/x - 5/2", "1/x + 1/y - 3/2"]
+    with pytest.warns(cg.CognateWarning, match="denominators are multiplied out"):
+        found = cg.solve(equations)
+    points = sorted((round(s["x"].real), round(s["y"].real)) for s in found.solutions)
+    assert points == [(1, 2), (2, 1)] and len(found.real) == 2
+    assert found.settled and found.complete and found.paths.adds_up
+    assert found.counts.removed == {"a denominator is 0": 1} and found.paths.removed == 2
+    with pytest.warns(cg.CognateWarning, match="denominators are multiplied out"):
+        components = cg.decompose(equations)
+    assert len(components) == 2 and components.settled
+    assert components.removed == {"a denominator is 0": [{"dimension": 0, "degree": 1, "count": 1}]}
+
+
+def test_no_isolated_solution_says_what_there_is() -> None:
+    found = cg.solve(["x*(x - y)", "x*(y - 1)*x"])
+    assert found.counts.positive_dimensional
+    lines = str(found).splitlines()
+    assert "a positive-dimensional" in lines[0]
+    found = cg.solve(["x - y", "(x - y)*x"])
+    assert str(found).splitlines()[0].startswith("no isolated solution, but a positive-dimensional")
+    assert "decompose" in str(found).splitlines()[0]
+    with pytest.raises(cg.CognateError, match="decompose"):
+        cg.solve(["x - y^2"])

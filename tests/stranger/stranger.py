@@ -25,7 +25,7 @@ INPUT
   f = x^2 - 2;
 END;
 """
-PATIENCE_SECONDS = 60
+PATIENCE_SECONDS = 600
 
 
 class Stranger:

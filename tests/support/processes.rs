@@ -67,7 +67,7 @@ pub struct Process {
 }
 
 /// How long a process may take to do what it was told.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub const PATIENCE: Duration = Duration::from_secs(600);
 
 impl Process {
     /// Starts `cognate` with these arguments; what it says goes to `folder/name.log`.

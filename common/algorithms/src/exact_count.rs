@@ -6,6 +6,7 @@ use cognate_solutions::summary::ExactCount;
 use cognate_solutions::weak_evidence::WeakEvidence;
 use cognate_systems::polynomial::{CountedSolutions, SolutionCount, solution_count};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +39,7 @@ pub(crate) struct ExactCounting {
 impl ExactCounting {
     /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points or
     /// on sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
-    /// `known`: the number, where it is known already.
+    /// `known`: the number of solutions of the equations as they are tracked, where it is known already.
     pub fn compare(&self, set: &mut SolutionSet, system: &System, known: Option<SolutionCount>) {
         let counted = self.count(set, system, known);
         match counted {
@@ -68,9 +69,11 @@ impl ExactCounting {
         if paths.finite == paths.total {
             return because(NOT_NEEDED);
         }
-        if !without_weak_evidence(set).settled() {
+        if !without_weak_evidence(set).is_settled_as_far_as_it_goes() {
             return because(IN_DOUBT);
         }
+        // The given equations have fewer where they have denominators.
+        let known = known.filter(|_| denominator_factors(system).is_empty());
         if let Some(count) = known {
             let is_general = false;
             return Ok(CountedSolutions { count, is_general });
@@ -290,7 +293,8 @@ mod tests {
         set.counts.complete = Completeness::NotKnown;
         let mut more = set.clone();
         compare(&mut more, exactly(finite(3, 3)));
-        assert!(more.settled() && more.counts.complete == Completeness::No);
+        assert_eq!(more.counts.complete, Completeness::No);
+        assert!(more.is_settled_as_far_as_it_goes() && !more.settled());
         compare(&mut set, exactly(finite(2, 2)));
         assert!(set.settled() && set.counts.complete == Completeness::Yes);
     }

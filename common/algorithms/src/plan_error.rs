@@ -12,9 +12,10 @@ use cognate_systems::polynomial::PolynomialError;
 pub enum PlanError {
     /// Underdetermined.
     #[error(
-        "not in this version: {equations} equations for {unknowns} unknowns, so that no solution \
-         is isolated. Add {0} to ask for points of the solution set (random linear ones: a slice, \
-         whose solutions are as many as the set's degree), or fix as many variables",
+        "{equations} equations for {unknowns} unknowns, so that no solution is isolated: \
+         `cognate decompose FILE` finds the curves, surfaces, ... of solutions. Add {0} to ask for points of the \
+         solution set (random linear ones: a slice, whose solutions are as many as the set's degree), or fix as many \
+         variables",
         .unknowns.checked_sub(*.equations).map_or(String::new(), |n| match n {
             1 => "one equation".to_string(),
             n => format!("{n} equations"),

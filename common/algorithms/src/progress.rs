@@ -52,6 +52,8 @@ impl VerdictCounts {
             Verdict::AtInfinity => &mut self.at_infinity,
             Verdict::PositiveDimensional => &mut self.positive_dimensional,
             Verdict::ExcessSolution => &mut self.excess,
+            // Decided when all paths have ended.
+            Verdict::ZeroDenominator => &mut self.finite,
             Verdict::Failed => &mut self.failed,
         } += 1;
     }

@@ -13,12 +13,13 @@ use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::{Function, Node, NodeId};
 use cognate_systems::scaling::{Scaling, times_power_of_two};
 use cognate_systems::system::{DegenerateSet, System, VariableGroup};
+use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 use rug::Complex;
 use serde::{Deserialize, Serialize};
 
 /// Values with a bound on the error beside each.
-struct Bounded(ManyBits);
+pub(crate) struct Bounded(pub(crate) ManyBits);
 
 type Value = (Complex, f64);
 
@@ -72,7 +73,7 @@ impl Bounded {
         variables
     }
 
-    fn parameters(&self, values: &[Complex64]) -> Vec<Value> {
+    pub(crate) fn parameters(&self, values: &[Complex64]) -> Vec<Value> {
         let known = |&p: &Complex64| Self::known(self.double(p));
         values.iter().map(known).collect()
     }
@@ -220,7 +221,7 @@ impl DeclaredSets {
     }
 }
 
-/// How many of some solutions, given with their errors, lie in each named set.
+/// How many of some solutions, given with their errors, lie in each named set that answers may hold points of.
 pub fn count(
     system: &System,
     parameters: &[Complex64],
@@ -231,6 +232,7 @@ pub fn count(
     system
         .degenerate
         .iter()
+        .filter(|(name, _)| *name != ZERO_DENOMINATOR)
         .map(|(name, set)| {
             let inside = solutions.iter().filter(|(point, accuracy)| {
                 let values = shape.to_variables(point);

@@ -6,7 +6,7 @@
 //! names the paths that must be tracked again; [`completeness`] says whether there are no more; [`real`] decides whether a
 //! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
 //! that add up; [`streamed`] does the same without holding every end; [`sharpened`] gives solutions more
-//! digits, [`certificates`] adds what was proved, [`weak_evidence`] says what the paths leave open; [`witness`] is for sets of solutions. Nothing here tracks a path: everything can be decided again
+//! digits, [`denominators`] says what is no solution of fractions, [`certificates`] adds what was proved, [`weak_evidence`] says what the paths leave open; [`witness`] is for sets of solutions. Nothing here tracks a path: everything can be decided again
 //! from stored results, with other tolerances.
 #![forbid(unsafe_code)]
 
@@ -15,6 +15,7 @@ pub mod classification;
 pub mod closing_options;
 pub mod completeness;
 pub mod degenerate;
+pub mod denominators;
 pub mod disjoint_sets;
 pub mod field;
 pub mod images;

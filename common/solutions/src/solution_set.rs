@@ -9,6 +9,7 @@ use crate::classification::{
 };
 use crate::completeness::Completeness;
 use crate::degenerate::{self, DeclaredSets};
+use crate::denominators::{AskedPoint, Denominator, Denominators};
 use crate::involution::Involution;
 use crate::path_crossing::{broken_cycles, coincidences, crossings, radius};
 use crate::point_shape::PointShape;
@@ -20,6 +21,7 @@ use crate::weak_evidence::{WeakEvidence, is_in_cluster};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -105,6 +107,9 @@ pub struct SolutionSet {
     pub failed: Vec<FailedPath>,
     /// The paths that end on positive-dimensional solution sets, ascending.
     pub on_positive_dimensional_sets: Vec<u64>,
+    /// The paths that end at points that were taken away from the answer, ascending.
+    #[serde(default)]
+    pub removed: Vec<u64>,
     /// What a reader should know.
     pub warnings: Vec<String>,
     /// What the certificates are of, where there are some.
@@ -121,10 +126,17 @@ pub struct SolutionSet {
 impl SolutionSet {
     /// True when no path failed, every crossing came apart, of every endpoint that is on no declared set it
     /// is known whether it is isolated, none is infinite but for digits beyond the accuracy of the data, none is finite or at infinity only by the limit of the precision, and
-    /// multiplicities are what the numbers of paths say, and no exact count says otherwise.
+    /// multiplicities are what the numbers of paths say, no exact count says otherwise, and the answer is not known to
+    /// be incomplete.
     pub fn settled(&self) -> bool {
+        self.is_settled_as_far_as_it_goes() && self.counts.complete != Completeness::No
+    }
+
+    /// The same of an answer that may be known to be incomplete.
+    pub fn is_settled_as_far_as_it_goes(&self) -> bool {
         self.paths.failed == 0
             && self.counts.undecided == 0
+            && self.counts.doubtful_denominators == 0
             && self.paths.within_data_accuracy == 0
             && self.paths.decided_by_precision_limit == 0
             && self.counts.doubtful_multiplicity == 0
@@ -167,6 +179,10 @@ struct Draft<'a> {
     decisions: Vec<Decision>,
     /// Which lie on a declared set of which no point was seen to be isolated.
     on_declared_sets: Vec<bool>,
+    /// The endpoints in each declared set, by their places.
+    in_declared_sets: Vec<(String, Vec<usize>)>,
+    /// First paths of the points of which it is not known whether a denominator is 0 there.
+    doubtful_denominators: Vec<u64>,
     set: SolutionSet,
 }
 
@@ -192,6 +208,8 @@ impl<'a> Draft<'a> {
             shape,
             decisions,
             on_declared_sets: vec![false; results.len()],
+            in_declared_sets: Vec::new(),
+            doubtful_denominators: Vec::new(),
             set: SolutionSet::default(),
         }
     }
@@ -201,6 +219,7 @@ impl<'a> Draft<'a> {
         self.settle_declared_sets();
         self.absorb_regular_ends();
         self.fail_what_coincides();
+        self.remove_zero_denominators();
         self.list_failures();
         self.weigh_evidence(history);
         self.count_paths(history);
@@ -259,8 +278,7 @@ impl<'a> Draft<'a> {
                     self.decisions[place].verdict = Verdict::PositiveDimensional;
                 }
             }
-            let counts = &mut self.set.paths.degenerate;
-            counts.insert(name.to_string(), members.len() as u64);
+            self.in_declared_sets.push((name.to_string(), members));
         }
     }
 
@@ -329,6 +347,59 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Takes away the points where a denominator of the given equations is 0.
+    fn remove_zero_denominators(&mut self) {
+        let (parameters, tolerances, seed) = (self.parameters, self.tolerances, self.seed);
+        let Some(denominators) = Denominators::of(self.system, parameters, tolerances, seed) else {
+            return;
+        };
+        let mut removed = 0;
+        for members in self.finite_points() {
+            let first = members[0];
+            let best = self.most_accurate(&members);
+            let result = &self.results[best];
+            let verdict = self.decisions[best].verdict;
+            let values = self.shape.to_variables(result.endpoint.to_double());
+            let decision = denominators.at(AskedPoint {
+                values: &values,
+                accuracy: result.accuracy,
+                singular: verdict != Verdict::Finite,
+                isolated: verdict != Verdict::PositiveDimensional,
+            });
+            match decision {
+                Denominator::Nonzero => {}
+                Denominator::Doubtful => {
+                    let path = self.results[first].origin.0;
+                    self.doubtful_denominators.push(path);
+                }
+                Denominator::Zero => {
+                    // Points of one set are not told apart.
+                    removed += u64::from(verdict != Verdict::PositiveDimensional);
+                    for member in members {
+                        self.decisions[member].verdict = Verdict::ZeroDenominator;
+                    }
+                }
+            }
+        }
+        let counts = &mut self.set.counts.removed;
+        counts.insert(ZERO_DENOMINATOR.into(), removed);
+    }
+
+    /// The finite endpoints, by their places: those that coincide together.
+    fn finite_points(&self) -> Vec<Vec<usize>> {
+        let verdict = |place: usize| self.decisions[place].verdict;
+        // No two are at one point: see `fail_what_coincides`.
+        let finite = (0..self.results.len()).filter(|&place| verdict(place) == Verdict::Finite);
+        let mut points: Vec<Vec<usize>> = finite.map(|place| vec![place]).collect();
+        let singular = |place: usize| {
+            verdict(place).may_be_multiple() || verdict(place) == Verdict::PositiveDimensional
+        };
+        let (results, shape) = (self.results, &self.shape);
+        let coinciding = coincidences(results, shape, self.tolerances, self.seed, singular);
+        points.extend(coinciding);
+        points
+    }
+
     fn list_failures(&mut self) {
         for (result, decision) in self.results.iter().zip(&self.decisions) {
             if decision.verdict != Verdict::Failed {
@@ -377,6 +448,7 @@ impl<'a> Draft<'a> {
             undecided: count(Verdict::Undecided),
             within_data_accuracy: count(Verdict::WithinDataAccuracy),
             excess: Some(count(Verdict::ExcessSolution)),
+            removed: count(Verdict::ZeroDenominator),
             at_infinity: count(Verdict::AtInfinity),
             failed: count(Verdict::Failed),
             retracked: history.retracked,
@@ -386,7 +458,15 @@ impl<'a> Draft<'a> {
                 let by_limit = self.decisions.iter().filter(|d| d.by_precision_limit);
                 by_limit.count() as u64 + self.set.weak_evidence.paths()
             },
-            degenerate: std::mem::take(&mut self.set.paths.degenerate),
+            degenerate: {
+                let sets = std::mem::take(&mut self.in_declared_sets).into_iter();
+                let kept = |k: &usize| self.decisions[*k].verdict != Verdict::ZeroDenominator;
+                sets.map(|(name, mut members)| {
+                    members.retain(kept);
+                    (name, members.len() as u64)
+                })
+                .collect()
+            },
             images: history.images,
             decided_by_exact_count: {
                 let aside = |result: &&PathResult| result.outcome == PathOutcome::PutAside;
@@ -400,11 +480,16 @@ impl<'a> Draft<'a> {
         paths.highest_precision_bits = paths.by_precision.keys().copied().max().unwrap_or(0);
         assert_eq!(paths.sum(), paths.total, "every path is in one class");
         self.set.paths = paths;
-        let places = self.results.iter().zip(&self.decisions);
-        self.set.on_positive_dimensional_sets = places
-            .filter(|(_, decision)| decision.verdict == Verdict::PositiveDimensional)
-            .map(|(result, _)| result.origin.0)
-            .collect();
+        let with = |verdict: Verdict| -> Vec<u64> {
+            let places = self.results.iter().zip(&self.decisions);
+            places
+                .filter(|(_, decision)| decision.verdict == verdict)
+                .map(|(result, _)| result.origin.0)
+                .collect()
+        };
+        let on_sets = with(Verdict::PositiveDimensional);
+        self.set.removed = with(Verdict::ZeroDenominator);
+        self.set.on_positive_dimensional_sets = on_sets;
     }
 
     /// Solutions from finite endpoints; returns the place of the result that stands for each.
@@ -499,15 +584,7 @@ impl<'a> Draft<'a> {
 
     /// The solution of some coinciding endpoints, and whose point it is: the most accurate.
     fn solution(&self, members: &[usize], verdict: Verdict) -> (usize, Solution) {
-        let best = *members
-            .iter()
-            .min_by(|&&a, &&b| {
-                let unasked = |m: usize| self.results[m].local_dimension.is_none();
-                let accuracy = |m: usize| self.results[m].accuracy;
-                let first = unasked(a).cmp(&unasked(b));
-                first.then(accuracy(a).total_cmp(&accuracy(b)))
-            })
-            .expect("a cluster has a member");
+        let best = self.most_accurate(members);
         let result = &self.results[best];
         let values = self.shape.to_variables(result.endpoint.to_double());
         let solution = Solution {
@@ -549,6 +626,19 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// The most accurate of some coinciding endpoints; one whose dual spaces were asked, where there is one.
+    fn most_accurate(&self, members: &[usize]) -> usize {
+        *members
+            .iter()
+            .min_by(|&&a, &&b| {
+                let unasked = |m: usize| self.results[m].local_dimension.is_none();
+                let accuracy = |m: usize| self.results[m].accuracy;
+                let first = unasked(a).cmp(&unasked(b));
+                first.then(accuracy(a).total_cmp(&accuracy(b)))
+            })
+            .expect("a cluster has a member")
+    }
+
     fn decide_reality(&mut self, representatives: &[usize]) {
         match Involution::of(self.system, self.parameters) {
             Err(reason) => self.set.counts.real_reason = Some(reason.to_string()),
@@ -584,12 +674,17 @@ impl<'a> Draft<'a> {
         counts.singular = set.solutions.iter().filter(|s| s.singular).count() as u64;
         counts.nonsingular = counts.distinct - counts.singular;
         counts.undecided = set.undecided.len() as u64;
+        counts.doubtful_denominators = self.doubtful_denominators.len() as u64;
         counts.with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
         // Every positive-dimensional set has an end of a complete start system's
         // paths on it, where the Jacobian is singular, if only at infinity.
         let ends = self.results.iter().zip(&self.decisions);
         let all_isolated = ends.into_iter().all(|(result, decision)| {
-            result.outcome == PathOutcome::Regular || decision.verdict == Verdict::Singular
+            let isolated = || isolation(result, self.tolerances);
+            result.outcome == PathOutcome::Regular
+                || decision.verdict == Verdict::Singular
+                || decision.verdict == Verdict::ZeroDenominator
+                    && matches!(isolated(), Isolation::Isolated { .. })
         });
         counts.positive_dimensional = if set.on_positive_dimensional_sets.is_empty() {
             (history.complete_start && all_isolated && set.failed.is_empty()).then_some(false)
@@ -655,6 +750,12 @@ impl<'a> Draft<'a> {
         );
         let multiplicities = self.set.counts.doubtful_multiplicity;
         say(multiplicities, "singular point", "of doubtful multiplicity");
+        let denominators = self.set.counts.doubtful_denominators;
+        say(
+            denominators,
+            "point",
+            "of which it is not known whether a denominator is 0",
+        );
         open.extend(history.may_miss.clone());
         let counts = &mut self.set.counts;
         (counts.complete, counts.complete_reason) = if !open.is_empty() {
@@ -691,6 +792,15 @@ impl<'a> Draft<'a> {
                 plural(paths.undecided as usize),
                 if paths.undecided == 1 { "s" } else { "" },
                 if set.counts.undecided == 1 { "is" } else { "are" },
+            ));
+        }
+        if !self.doubtful_denominators.is_empty() {
+            set.warnings.push(format!(
+                "at {} point{} (first paths: {}) a denominator is so near to 0 that digits do not tell whether it is: \
+                 if so, no solution is there",
+                self.doubtful_denominators.len(),
+                plural(self.doubtful_denominators.len()),
+                some_of(&self.doubtful_denominators),
             ));
         }
         if paths.crossings_found > paths.crossings_resolved {
@@ -754,228 +864,4 @@ fn some_of(paths: &[u64]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::test_results::{failed, isolated, regular, roots_of_unity, singular};
-    use cognate_numeric::random::{Purpose, RandomStream};
-    use cognate_systems::system::DegenerateSet;
-
-    /// x^5 = x: a real equation in one variable; x must not vanish.
-    fn system() -> System {
-        let mut system = roots_of_unity(5);
-        let x = system.expressions.variable(0);
-        system
-            .degenerate
-            .insert("zero".into(), DegenerateSet::Nonzero(x));
-        system
-    }
-
-    fn set_of(results: &[PathResult], history: &History) -> SolutionSet {
-        SolutionSet::new(&system(), &[], results, history, &Tolerances::default(), 42)
-    }
-
-    fn complete() -> History {
-        History {
-            complete_start: true,
-            ..History::default()
-        }
-    }
-
-    /// Which of inaccurate ends coincide depends on which are looked at together: a path is of one class all the same.
-    #[test]
-    fn regular_ends_that_nearly_coincide_are_counted_once() {
-        let mut random = RandomStream::new(3, Purpose::Test, 1);
-        let mut met = 0;
-        for _ in 0..400 {
-            let results: Vec<PathResult> = (0..5)
-                .map(|path| {
-                    let z = random.disc() * 2e-6;
-                    let accuracy = 1e-7 * (0.5 + random.uniform());
-                    PathResult {
-                        accuracy,
-                        ..regular(path, &[(0.5, 0.0), (0.5 + z.re, z.im)])
-                    }
-                })
-                .collect();
-            let set = set_of(&results, &complete());
-            assert_eq!(set.paths.finite + set.paths.failed, 5);
-            assert_eq!(set.counts.nonsingular, set.paths.finite);
-            let failed = |place: usize| set.failed.iter().any(|f| f.path == place as u64);
-            let shape = PointShape::of(&system());
-            let kept = |place: usize| !failed(place);
-            let points = coincidences(&results, &shape, &Tolerances::default(), 42, kept);
-            assert!(points.iter().all(|members| members.len() == 1));
-            met += set.paths.failed;
-        }
-        assert!((200..1800).contains(&met), "{met}");
-    }
-
-    #[test]
-    fn all_regular_is_all_decided() {
-        let results = [
-            regular(0, &[(0.5, 0.0), (0.5, 0.0)]),
-            regular(1, &[(0.0, 0.5), (0.0, -0.5)]),
-            regular(2, &[(0.5, 0.0), (0.0, 0.5)]),
-            regular(3, &[(0.5, 0.0), (0.0, -0.5)]),
-            regular(4, &[(1.0, 0.0), (1e-17, 1e-18)]),
-        ];
-        let set = set_of(&results, &complete());
-        assert_eq!((set.paths.total, set.paths.finite), (5, 5));
-        assert_eq!(set.paths.positive_dimensional, Some(0));
-        assert_eq!(set.counts.real, Some(3));
-        assert_eq!(set.counts.positive_dimensional, Some(false));
-        assert_eq!(set.counts.complete, Completeness::Yes);
-        let may_miss = History {
-            may_miss: Some("a level was left out".into()),
-            ..complete()
-        };
-        let counts = set_of(&results, &may_miss).counts;
-        assert_eq!(counts.complete, Completeness::NotKnown);
-        assert_eq!(
-            counts.complete_reason.as_deref(),
-            Some("a level was left out")
-        );
-        assert_eq!(set.counts.degenerate["zero"], 1);
-        assert!(
-            set.settled() && set.warnings.is_empty(),
-            "{:?}",
-            set.warnings
-        );
-        assert_eq!(set.solutions[1].real, Some(true));
-        assert_eq!(set.solutions[2].real, Some(false));
-        assert_eq!(
-            set.solutions[0].variables.0[0].value,
-            Complex64::new(1.0, 0.0)
-        );
-    }
-
-    #[test]
-    fn singular_endpoints_are_merged_with_their_cycles() {
-        let double = [(1.0, 0.0), (0.5, 0.0)];
-        let near = [(1.0, 0.0), (0.5, 3e-10)];
-        let results = [
-            isolated(0, &double, 2, &[0], 3),
-            isolated(1, &[(1.0, 0.0), (-0.5, 0.0)], 1, &[0], 1),
-            isolated(2, &near, 2, &[0], 3),
-            isolated(3, &near, 1, &[0], 3),
-            singular(4, &[(1e-14, 0.0), (1.0, 0.0)], 1, &[1]),
-        ];
-        let set = set_of(&results, &complete());
-        let paths = &set.paths;
-        assert_eq!((paths.finite, paths.singular, paths.at_infinity), (1, 3, 1));
-        assert_eq!(set.paths.positive_dimensional, Some(0));
-        assert_eq!(set.counts.positive_dimensional, None);
-        assert_eq!((set.counts.distinct, set.counts.with_multiplicity), (2, 4));
-        assert_eq!(set.solutions[0].paths, [0, 2, 3]);
-        assert_eq!(set.solutions[0].cycles, [1, 2]);
-        assert_eq!(set.solutions[0].real, Some(true));
-        assert!(set.settled() && set.warnings.is_empty());
-        let set = set_of(&results[..2], &complete());
-        let half = |warning: &String| warning.contains("winding numbers");
-        assert!(set.warnings.iter().any(half), "half a cycle is missing");
-    }
-
-    /// A singular point that may lie on a curve is in no count of solutions, and keeps the answer open.
-    #[test]
-    fn a_point_that_may_not_be_isolated_is_no_solution() {
-        let mut plane = system();
-        plane.variables.push("y".into());
-        plane.groups[0].variables.push(1);
-        let (zero, tolerances) = ((0.0, 0.0), Tolerances::default());
-        let results = [
-            regular(0, &[(0.5, 0.0), (0.5, 0.0), zero]),
-            singular(1, &[(1.0, 0.0), (0.5, 0.0), zero], 2, &[0]),
-            singular(2, &[(1.0, 0.0), (0.5, 3e-10), zero], 2, &[0]),
-        ];
-        let set = SolutionSet::new(&plane, &[], &results, &complete(), &tolerances, 42);
-        let counts = &set.counts;
-        assert_eq!(
-            (set.paths.finite, set.paths.undecided, set.paths.singular),
-            (1, 2, 0)
-        );
-        assert_eq!(
-            (counts.distinct, counts.singular, counts.undecided),
-            (1, 0, 1)
-        );
-        assert_eq!((counts.with_multiplicity, counts.real), (1, Some(1)));
-        assert!(!set.settled());
-        assert!(
-            set.warnings[0].contains("not decided"),
-            "{:?}",
-            set.warnings
-        );
-        assert_eq!(set.undecided[0].paths, [1, 2]);
-        assert!(set.undecided[0].undecided && set.points().count() == 2);
-        assert_eq!(counts.complete, Completeness::NotKnown);
-        let reason = counts.complete_reason.as_deref();
-        assert!(
-            reason.is_some_and(|why| why.contains("isolated")),
-            "{reason:?}"
-        );
-    }
-
-    /// (x - 1)^3 from the roots of unity: one path does not move, and its end looks regular.
-    #[test]
-    fn a_regular_end_at_a_singular_point_is_one_of_its_paths() {
-        let results = [
-            regular(0, &[(0.5, 0.0), (0.5, 0.0)]),
-            isolated(1, &[(0.5, 0.0), (0.5, 1e-12)], 2, &[0], 3),
-            isolated(2, &[(0.5, 0.0), (0.5, 1e-12)], 2, &[0], 3),
-        ];
-        let set = set_of(&results, &complete());
-        assert_eq!((set.paths.finite, set.paths.singular), (0, 3));
-        assert_eq!((set.counts.distinct, set.counts.with_multiplicity), (1, 3));
-        assert_eq!(set.counts.doubtful_multiplicity, 0);
-        let set = set_of(&results[1..], &complete());
-        assert_eq!(set.counts.doubtful_multiplicity, 1);
-        assert!(!set.settled(), "two paths at a triple point");
-    }
-
-    /// Two roots 5e-8 apart: turns in doubles take each for a singular point, with more digits the Jacobian is regular.
-    #[test]
-    fn a_singular_end_with_a_regular_jacobian_is_a_simple_root_unless_two_coincide() {
-        let near = |path, x| isolated(path, &[(0.5, 0.0), (x, 0.0)], 1, &[0], 1);
-        let set = set_of(&[near(0, 0.5), near(1, 0.50000005)], &complete());
-        assert_eq!((set.paths.finite, set.paths.singular), (2, 0));
-        assert_eq!((set.counts.distinct, set.counts.nonsingular), (2, 2));
-        assert!(set.settled());
-        let set = set_of(&[near(0, 0.5), near(1, 0.5)], &complete());
-        assert_eq!((set.paths.finite, set.paths.singular), (0, 2));
-        assert_eq!(set.counts.doubtful_multiplicity, 1);
-        assert!(!set.settled());
-    }
-
-    #[test]
-    fn an_unresolved_crossing_is_a_failed_path_and_said() {
-        let point = [(1.0, 0.0), (0.5, 0.0)];
-        let results = [regular(0, &point), failed(1), regular(2, &point)];
-        let history = History {
-            retracked: 6,
-            crossings_found: 2,
-            crossings_resolved: 1,
-            complete_start: true,
-            may_miss: None,
-            images: 0,
-            least_on_sets: 0,
-        };
-        let set = set_of(&results, &history);
-        assert_eq!((set.paths.finite, set.paths.failed), (1, 2));
-        assert_eq!(set.counts.distinct, 1);
-        assert!(!set.settled());
-        let reasons: Vec<_> = set.failed.iter().map(|f| (f.path, f.reason)).collect();
-        assert_eq!(
-            reasons,
-            [
-                (1, FailureReason::Tracking(Failure::StepTooSmall)),
-                (2, FailureReason::Crossing)
-            ]
-        );
-        assert_eq!(set.warnings.len(), 3, "{:?}", set.warnings);
-    }
-
-    #[test]
-    fn cycles_take_as_many_paths_as_they_turn() {
-        assert_eq!(cycles([2, 2, 1, 2, 2, 3, 3, 3].into_iter()), [1, 2, 2, 3]);
-        assert_eq!(cycles([3].into_iter()), [3]);
-    }
-}
+mod tests;

@@ -53,6 +53,9 @@ pub struct PathCounts {
     /// ends: all solutions are known, by an exact count.
     #[serde(default)]
     pub decided_by_exact_count: u64,
+    /// At points that were taken away from the answer (see [`SolutionCounts::removed`]).
+    #[serde(default)]
+    pub removed: u64,
 }
 
 impl PathCounts {
@@ -64,6 +67,7 @@ impl PathCounts {
             + self.undecided
             + self.within_data_accuracy
             + self.excess.unwrap_or(0)
+            + self.removed
             + self.at_infinity
             + self.failed
     }
@@ -110,6 +114,13 @@ pub struct SolutionCounts {
     /// What the equations say without a path; null where they were not asked, or it takes too much.
     #[serde(default)]
     pub exact_count: Option<ExactCount>,
+    /// Points that solve the equations that were tracked and are no solutions of those that were given, by the
+    /// reason; in no other count.
+    #[serde(default)]
+    pub removed: BTreeMap<String, u64>,
+    /// Points of which it is not known whether a denominator of the given equations is 0 there.
+    #[serde(default)]
+    pub doubtful_denominators: u64,
 }
 
 /// How many solutions the equations have by elimination over a prime field; for general values of numbers in the
@@ -172,7 +183,7 @@ mod tests {
              \"crossings_resolved\":0,\"decided_by_precision_limit\":0,\
              \"by_precision\":{\"53\":126,\"106\":2},\"highest_precision_bits\":0,\
              \"degenerate\":{},\"images\":0,\"undecided\":0,\"within_data_accuracy\":0,\
-             \"decided_by_exact_count\":0}"
+             \"decided_by_exact_count\":0,\"removed\":0}"
         );
         let back: PathCounts =
             serde_json::from_str(&serde_json::to_string(&paths).unwrap()).unwrap();
@@ -183,7 +194,7 @@ mod tests {
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
              \"degenerate\":{},\"sharpened\":null,\"undecided\":0,\
              \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null,\
-             \"exact_count\":null}"
+             \"exact_count\":null,\"removed\":{},\"doubtful_denominators\":0}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),

@@ -5,7 +5,8 @@ use super::about::{About, TimeBlock, WorkerBlock};
 use super::family::FamilyBlock;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
-    Decomposition, Dimension, Doubt, Irreducible, Proof, TrackedPaths, Verification, WitnessSet,
+    Decomposition, Dimension, Doubt, Irreducible, Proof, RemovedComponent, TrackedPaths,
+    Verification, WitnessSet,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -82,6 +83,20 @@ pub struct DecompositionBlock {
     /// What has become of the components of a general member of the family; `null` where none were known.
     #[serde(default)]
     pub family: Option<FamilyBlock>,
+    /// Components that were taken away from the answer, by the reason; in no other count.
+    #[serde(default)]
+    pub removed: BTreeMap<String, Vec<RemovedBlock>>,
+}
+
+/// Components of one dimension and degree that were taken away.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RemovedBlock {
+    /// The dimension of the components.
+    pub dimension: u32,
+    /// The degree of each.
+    pub degree: u64,
+    /// How many there are.
+    pub count: u64,
 }
 
 /// A component, or many that are alike.
@@ -152,6 +167,9 @@ pub struct DimensionBlock {
     pub superset: u64,
     /// ... and of these on sets of higher dimension.
     pub junk: u64,
+    /// ... and on components that were removed.
+    #[serde(default)]
+    pub removed: u64,
     /// Paths that ended at solutions of combinations of the equations alone.
     pub excess: u64,
     /// Paths that failed on the way.
@@ -196,6 +214,7 @@ impl DecompositionBlock {
             embedded: "not searched".into(),
             verification: found.verification.clone(),
             family: found.family.as_ref().map(FamilyBlock::new),
+            removed: removed(&found.removed),
             unsettled,
         }
     }
@@ -264,6 +283,27 @@ impl ComponentBlock {
     }
 }
 
+fn removed(components: &[RemovedComponent]) -> BTreeMap<String, Vec<RemovedBlock>> {
+    let mut by_reason: BTreeMap<String, Vec<RemovedBlock>> = BTreeMap::new();
+    for &RemovedComponent {
+        ref reason,
+        dimension,
+        degree,
+    } in components
+    {
+        let blocks = by_reason.entry(reason.clone()).or_default();
+        match blocks.last_mut() {
+            Some(last) if (last.dimension, last.degree) == (dimension, degree) => last.count += 1,
+            _ => blocks.push(RemovedBlock {
+                dimension,
+                degree,
+                count: 1,
+            }),
+        }
+    }
+    by_reason
+}
+
 fn component(set: &WitnessSet) -> ComponentBlock {
     let evidence = &set.evidence;
     ComponentBlock {
@@ -304,6 +344,7 @@ fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
         degree: dimension.degree,
         superset: dimension.superset,
         junk: dimension.junk,
+        removed: dimension.removed,
         excess: dimension.excess,
         failed: dimension.failed,
         found_by_loops: dimension.found_by_loops,

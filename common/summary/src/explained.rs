@@ -21,7 +21,8 @@ impl Summary {
         let paths = &self.paths;
         let mut lines = vec![format!(
             "paths: {} finite, {} singular, {} on positive-dimensional sets, {} undecided (isolated or not), {} within the \
-             accuracy of the data, {} excess (no solutions before randomisation), {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
+             accuracy of the data, {} excess (no solutions before randomisation), {} removed (where a denominator is 0), \
+             {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
             paths.finite,
             paths.singular,
             paths
@@ -30,6 +31,7 @@ impl Summary {
             paths.undecided,
             paths.within_data_accuracy,
             paths.excess.unwrap_or(0),
+            paths.removed,
             paths.at_infinity,
             paths.failed,
             paths.retracked,

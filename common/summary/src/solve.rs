@@ -190,6 +190,13 @@ impl Summary {
     }
 }
 
+/// Adds numbers to those of the same names.
+fn add_by_name<K: Ord + Clone>(sum: &mut BTreeMap<K, u64>, terms: &BTreeMap<K, u64>) {
+    for (name, number) in terms {
+        *sum.entry(name.clone()).or_default() += number;
+    }
+}
+
 /// The counts of several targets together.
 fn sum(sets: &[SolutionSet]) -> TargetBlock {
     /// A sum is known where every term is.
@@ -232,6 +239,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             undecided,
             within_data_accuracy,
             decided_by_exact_count,
+            removed,
         } = &set.paths;
         paths.total += total;
         paths.finite += finite;
@@ -244,17 +252,14 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         paths.crossings_found += crossings_found;
         paths.crossings_resolved += crossings_resolved;
         paths.decided_by_precision_limit += decided_by_precision_limit;
-        for (bits, number) in by_precision {
-            *paths.by_precision.entry(*bits).or_default() += number;
-        }
+        add_by_name(&mut paths.by_precision, by_precision);
         paths.highest_precision_bits = paths.highest_precision_bits.max(*highest_precision_bits);
-        for (name, number) in degenerate {
-            *paths.degenerate.entry(name.clone()).or_default() += number;
-        }
+        add_by_name(&mut paths.degenerate, degenerate);
         paths.images += images;
         paths.undecided += undecided;
         paths.within_data_accuracy += within_data_accuracy;
         paths.decided_by_exact_count += decided_by_exact_count;
+        paths.removed += removed;
         let SolutionCounts {
             distinct,
             nonsingular,
@@ -273,12 +278,16 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             complete_reason,
             // Each target has its own.
             exact_count: _,
+            removed,
+            doubtful_denominators,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;
         counts.singular += singular;
         counts.undecided += undecided;
         counts.doubtful_multiplicity += doubtful_multiplicity;
+        counts.doubtful_denominators += doubtful_denominators;
+        add_by_name(&mut counts.removed, removed);
         if counts.complete == Completeness::Yes && *complete != Completeness::Yes {
             counts.complete_reason.clone_from(complete_reason);
         }
@@ -292,9 +301,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             .positive_dimensional
             .zip(*positive_dimensional)
             .map(|(a, b)| a || b);
-        for (name, number) in degenerate {
-            *counts.degenerate.entry(name.clone()).or_default() += number;
-        }
+        add_by_name(&mut counts.degenerate, degenerate);
         if let Some(found) = sharpened {
             let sum = counts.sharpened.get_or_insert_default();
             sum.digits = found.digits;

@@ -74,8 +74,12 @@ impl<R: Real<Context = ()>> Paths<R> {
 }
 
 #[test]
-#[ignore = "its verdict is a ratio of times: `tests/run.sh long` runs it alone"]
 fn sixteen_lanes_are_at_least_two_and_a_half_times_faster() {
+    // Its verdict is a ratio of times, which a loaded machine may change: `tests/run.sh long` runs it.
+    if std::env::var_os("COGNATE_LONG").is_none() {
+        eprintln!("not measured: COGNATE_LONG is not set");
+        return;
+    }
     if cfg!(debug_assertions) || InstructionSet::detect() == InstructionSet::Software {
         eprintln!("not measured: needs a release build and fused multiply-add");
         return;

@@ -32,6 +32,8 @@ impl Recorded {
         for set in sets {
             counted += set.paths.finite;
             verdicts.extend(set.failed.iter().map(|f| (f.path, Verdict::Failed)));
+            let removed = set.removed.iter();
+            verdicts.extend(removed.map(|&path| (path, Verdict::ZeroDenominator)));
             let on_sets = set.on_positive_dimensional_sets.iter();
             verdicts.extend(on_sets.map(|&path| (path, Verdict::PositiveDimensional)));
             for solution in set.points() {

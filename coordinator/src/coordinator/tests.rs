@@ -564,7 +564,7 @@ async fn a_running_coordinator_needs_nobody_to_drive_it() {
     }
     let last = last.expect("progress is said at least once");
     assert_eq!(last.state, JobState::Solved, "{}", last.message);
-    assert!(begin.elapsed() < Duration::from_secs(20));
+    assert!(begin.elapsed() < Duration::from_secs(300));
     let row = coordinator
         .ledger()
         .job(accepted.job)
@@ -601,7 +601,7 @@ async fn what_cannot_be_solved_is_refused_at_the_door() {
     let fewer = "variable_group x, y; function f; f = x^2 - y;";
     let refused = submit(fewer).await.expect_err("too few equations");
     assert!(
-        refused.to_string().contains("not in this version"),
+        refused.to_string().contains("cognate decompose"),
         "{refused}"
     );
     assert!(coordinator_is_empty(cluster.coordinator(0)).await);

@@ -109,7 +109,7 @@ async fn bad_input_is_named_and_the_service_stays_up() {
         (
             "variable_group x, y; function f; f = x^2 - y;",
             Code::Unimplemented,
-            "not in this version",
+            "cognate decompose",
         ),
         (
             "variable_group x; function f; f = x^1000000;",

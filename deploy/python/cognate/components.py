@@ -147,6 +147,12 @@ class Decomposition:
                 return component
         raise KeyError(id)
 
+    @property
+    def removed(self) -> Mapping[str, Any]:
+        """Components that are none of the given equations, by the reason: `dimension`, `degree`, `count`."""
+        found: Mapping[str, Any] = self.summary["decomposition"].get("removed") or {}
+        return found
+
     def of_dimension(self, dimension: int) -> list[Component]:
         """The components of one dimension."""
         return [c for c in self.components if c.dimension == dimension]

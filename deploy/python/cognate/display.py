@@ -15,10 +15,16 @@ SOLUTIONS_SHOWN = 10
 VARIABLES_SHOWN = 6
 """Columns of coordinates in a table."""
 
+DECOMPOSE = "cognate.decompose(..), or `cognate decompose FILE`,"
+"""What finds sets of solutions."""
+
 
 def verdict(result: _Answer) -> str:
     """The answer in a line."""
     counts = result.counts
+    on_sets = counts.positive_dimensional or bool(result.paths.positive_dimensional)
+    if on_sets and counts.distinct == 0 and counts.undecided == 0:
+        return f"no isolated solution, but a positive-dimensional solution set: {DECOMPOSE} finds it"
     line = f"{counts.distinct} solution{'s' if counts.distinct != 1 else ''}"
     if counts.real is not None:
         line += f", {counts.real} real"
@@ -28,6 +34,8 @@ def verdict(result: _Answer) -> str:
         line += f", {counts.certified} proved"
     if counts.undecided:
         line += f", and {counts.undecided} undecided point{'s' if counts.undecided != 1 else ''}"
+    if on_sets:
+        line += ", and a positive-dimensional set"
     return line
 
 

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 class PathCounts:
     """Every path, counted once, in the first class that holds; the classes add up to `total`.
 
-    `failed`; `at_infinity`; `excess`: no solution before randomisation; `positive_dimensional`: on such a set;
+    `failed`; `at_infinity`; `removed`: where a denominator of the given equations is 0; `excess`: no solution before
+    randomisation; `positive_dimensional`: on such a set;
     `undecided`: at a singular point of which it is not known whether it is isolated; `within_data_accuracy`:
     another verdict within the accuracy of the decimals; `singular`; `finite`. None: not decided.
     """
@@ -41,6 +42,7 @@ class PathCounts:
     crossings_resolved: int = 0
     decided_by_precision_limit: int = 0
     images: int = 0
+    removed: int = 0
     highest_precision_bits: int = 53
     degenerate: Mapping[str, int] = field(default_factory=dict)
     by_precision: Mapping[str, int] = field(default_factory=dict)
@@ -51,6 +53,7 @@ class PathCounts:
         names = (
             "failed",
             "at_infinity",
+            "removed",
             "excess",
             "positive_dimensional",
             "undecided",
@@ -70,7 +73,8 @@ class PathCounts:
 class SolutionCounts:
     """Isolated finite points after merging: `distinct` = `nonsingular` + `singular`; `undecided` ones apart.
 
-    `complete`: `yes`, `no` or `not known`, and `complete_reason`. None: not asked, or not decided.
+    `complete`: `yes`, `no` or `not known`, and `complete_reason`. `removed`: points that are no solutions of the given
+    equations, by the reason, in no other count. None: not asked, or not decided.
     """
 
     distinct: int
@@ -87,6 +91,8 @@ class SolutionCounts:
     complete: str = "not known"
     complete_reason: str | None = None
     degenerate: Mapping[str, int] = field(default_factory=dict)
+    removed: Mapping[str, int] = field(default_factory=dict)
+    doubtful_denominators: int = 0
     sharpened: Mapping[str, int] | None = None
 
     @property
@@ -285,6 +291,9 @@ def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
     )
     unless_zero(paths.within_data_accuracy, "ends have another verdict within the accuracy of the decimals")
     unless_zero(counts.doubtful_multiplicity, "singular points have another multiplicity than paths that end there")
+    unless_zero(counts.doubtful_denominators, "points at which a denominator may be 0: digits do not tell")
+    if counts.complete == "no":
+        found.append(f"solutions are missing: {counts.complete_reason}")
     if not paths.adds_up:
         listed = sum(count or 0 for count in paths.classes.values())
         found.append(f"the classes of paths add up to {listed} of {paths.total}")

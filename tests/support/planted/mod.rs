@@ -4,6 +4,7 @@
 //! infinity or on a positive-dimensional set; [`kinds`] builds them, [`verdict`] solves one and
 //! compares. A count that is wrong and called settled is a silent error.
 
+pub mod fractions;
 pub mod kinds;
 pub mod linear;
 pub mod polynomial;

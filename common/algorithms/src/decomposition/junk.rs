@@ -393,6 +393,7 @@ impl JunkFilter {
             number: dimension as u32,
             superset: regular_ends + singular,
             junk,
+            removed: 0,
             excess: superset.excess,
             failed: superset.failed,
             found_by_loops: 0,

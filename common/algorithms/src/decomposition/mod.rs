@@ -24,6 +24,7 @@ pub(crate) mod operand;
 mod options;
 pub(crate) mod problem;
 pub(crate) mod proof;
+mod removal;
 mod resumed;
 mod search;
 mod slices;
@@ -61,6 +62,7 @@ pub use options::DecompositionOptions;
 use problem::Problem;
 pub use problem::ProblemError;
 use proof::Proving;
+pub(crate) use removal::remove_zero_denominators;
 use resumed::Resumed;
 use serde::{Deserialize, Serialize, Serializer};
 use slices::Slices;
@@ -400,7 +402,7 @@ impl DecompositionSolve {
         if self.state.method == Method::Slices {
             self.state.dimensions.iter_mut().for_each(account_for_lost);
         }
-        let mut found = ordered(Decomposition {
+        let mut found = Decomposition {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
@@ -411,7 +413,13 @@ impl DecompositionSolve {
             paths: self.state.paths,
             paths_of_loops: self.state.paths_of_loops,
             family: None,
-        });
+            removed: Vec::new(),
+        };
+        // A problem was made of the system at these values.
+        if let Ok(system) = self.system() {
+            remove_zero_denominators(&mut found, &system, self.state.options.seed);
+        }
+        let mut found = ordered(found);
         found.family = self.family(&found);
         found
     }
@@ -484,6 +492,7 @@ pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
         (by, key(set))
     });
     for dimension in &mut found.dimensions {
+        dimension.degree = 0;
         let own = found.components.iter_mut();
         let own = own.filter(|set| set.dimension() == dimension.number);
         for (number, set) in (1..).zip(own) {

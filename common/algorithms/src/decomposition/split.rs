@@ -720,6 +720,7 @@ impl Split {
             number: dimension,
             superset: 0,
             junk: 0,
+            removed: 0,
             excess: 0,
             failed: 0,
             found_by_loops: self.search.found() * self.set.multiplicity.tracked,

@@ -11,6 +11,7 @@ use cognate_solutions::witness::question::CurveWish;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::{Answer, Question, WitnessSet};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::denominator_factors;
 use cognate_systems::units::about_centre;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -35,6 +36,10 @@ pub(super) fn centred(
         question,
         Question::RealCurve(_) | Question::RealSurface { .. }
     ) {
+        return None;
+    }
+    // About its centre a system is written without what is attached to it.
+    if !denominator_factors(system).is_empty() {
         return None;
     }
     let system = with_values(system, &options.parameters).ok()?;

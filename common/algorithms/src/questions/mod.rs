@@ -7,6 +7,7 @@
 mod centred;
 mod certify;
 mod check;
+mod denominators;
 mod levels;
 mod locus;
 mod member;
@@ -45,6 +46,7 @@ use cognate_solutions::witness::question::SecondSet;
 use cognate_solutions::witness::{Answer, Question, TrackedPaths, WitnessSet};
 use cognate_systems::system::System;
 use cognate_systems::transform::MOST_CRITICAL_VARIABLES;
+use denominators::without_zero_denominators;
 use locus::{Locus, Wanted};
 use member::Member;
 use mobility::Mobility;
@@ -459,6 +461,10 @@ impl QuestionSolve {
                 }
                 Asking::Done(_) => return None,
             };
+            // A problem was made of the system at these values.
+            if let Ok(system) = with_values(&state.system, &state.options.parameters) {
+                without_zero_denominators(&mut answer, &system, state.options.seed);
+            }
             if !state.centre.is_empty() {
                 back(&mut answer, &state.centre, with.problem);
             }

@@ -13,6 +13,7 @@ use cognate_solutions::classification::Verdict;
 use cognate_systems::polynomial::{SolutionCount, solution_count};
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A start with more paths than this is not for systems that can be counted.
@@ -59,7 +60,12 @@ impl PutAside {
         let countable = affine && determined && system.parameters.is_empty();
         match all_count && countable && criteria.paths_per_target <= MOST_PATHS {
             true => Self::First {
-                system: Arc::new(system.clone()),
+                // Paths end at solutions of the equations as they are tracked, where a denominator of the given ones is
+                // 0, too.
+                system: Arc::new(System {
+                    degenerate: BTreeMap::new(),
+                    ..system.clone()
+                }),
                 count: None,
             },
             false => Self::Never,
@@ -111,6 +117,7 @@ impl PutAside {
                 | Verdict::Singular => paths.get_mut(path),
                 Verdict::Finite
                 | Verdict::AtInfinity
+                | Verdict::ZeroDenominator
                 | Verdict::ExcessSolution
                 | Verdict::WithinDataAccuracy => None,
             };

@@ -31,18 +31,7 @@ pub(super) fn bends_in_lanes<'a>(
 ) -> Option<BendsInLanes<'a>> {
     let moving = equations.moving.as_ref()?;
     let square = equations.rows() == equations.variables && equations.slices.is_empty();
-    let made = Made {
-        equations,
-        moving,
-        direction,
-    };
-    square.then(|| BendsInLanes::new(made))
-}
-
-struct Made<'a, 'd> {
-    equations: &'a SlicedEquations,
-    moving: &'a Moving,
-    direction: &'d [Complex64],
+    square.then(|| BendsInLanes::new(equations, moving, direction))
 }
 
 type Wide = DoubleDoubleLanes;
@@ -91,9 +80,9 @@ fn splat(value: f64) -> Doubles {
 }
 
 impl<'a> BendsInLanes<'a> {
-    fn new(made: Made<'a, '_>) -> Self {
-        let n = made.equations.variables;
-        let (equations, moving) = (&made.equations.equations, &made.moving.equations);
+    fn new(sliced: &'a SlicedEquations, moving: &'a Moving, direction: &[Complex64]) -> Self {
+        let n = sliced.variables;
+        let (equations, moving) = (&sliced.equations, &moving.equations);
         let zero = Complex::zero(());
         let constant = |z: &Number| {
             let mut value = Complex::zero(());
@@ -108,9 +97,8 @@ impl<'a> BendsInLanes<'a> {
             moving,
             scratch: Evaluate::<Wide>::scratch(equations, ()),
             scratch_of_moving: Evaluate::<Wide>::scratch(moving, ()),
-            parameters: made.equations.parameters.iter().map(constant).collect(),
-            direction: made
-                .direction
+            parameters: sliced.parameters.iter().map(constant).collect(),
+            direction: direction
                 .iter()
                 .map(|z| Complex::from_f64((), z.re, z.im))
                 .collect(),

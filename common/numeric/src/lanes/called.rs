@@ -8,7 +8,9 @@
 use super::Lanes;
 use super::dispatch::{Job, call};
 use crate::rational::Rational;
-use crate::scalar::{Ball, Complex, DoubleDouble, Real};
+use crate::scalar::{
+    Ball, Complex, DoubleDouble, Real, add_product, set_product, subtract_product,
+};
 
 /// Numbers of so many paths.
 pub const WIDTH: usize = 8;
@@ -69,6 +71,32 @@ operations! {
     MulSubSingle: mul_sub_single(c: N::Single, a: N);
     Abs: abs();
     Sqrt: sqrt();
+}
+
+/// Products of complex numbers as work of their own.
+macro_rules! products {
+    ($($job:ident: $function:ident;)*) => {$(
+        struct $job<'a, N: Real> {
+            re: &'a mut N,
+            im: &'a mut N,
+            a: [&'a N; 2],
+            b: [&'a N; 2],
+        }
+
+        impl<N: Real> Job for $job<'_, N> {
+            type Output = ();
+            #[inline(always)]
+            fn run(self) {
+                $function(self.re, self.im, self.a, self.b);
+            }
+        }
+    )*};
+}
+
+products! {
+    SetProduct: set_product;
+    AddProduct: add_product;
+    SubtractProduct: subtract_product;
 }
 
 /// A comparison as work of its own.
@@ -187,6 +215,33 @@ impl<N: Real + Copy> Real for Called<N> {
         });
     }
     #[inline(always)]
+    fn set_product(sum: &mut Complex<Self>, a: &Complex<Self>, b: &Complex<Self>) {
+        call(SetProduct {
+            re: &mut sum.re.number,
+            im: &mut sum.im.number,
+            a: [&a.re.number, &a.im.number],
+            b: [&b.re.number, &b.im.number],
+        });
+    }
+    #[inline(always)]
+    fn add_product(sum: &mut Complex<Self>, a: &Complex<Self>, b: &Complex<Self>) {
+        call(AddProduct {
+            re: &mut sum.re.number,
+            im: &mut sum.im.number,
+            a: [&a.re.number, &a.im.number],
+            b: [&b.re.number, &b.im.number],
+        });
+    }
+    #[inline(always)]
+    fn subtract_product(sum: &mut Complex<Self>, a: &Complex<Self>, b: &Complex<Self>) {
+        call(SubtractProduct {
+            re: &mut sum.re.number,
+            im: &mut sum.im.number,
+            a: [&a.re.number, &a.im.number],
+            b: [&b.re.number, &b.im.number],
+        });
+    }
+    #[inline(always)]
     fn mul_single(&mut self, c: &N::Single) {
         call(MulSingle {
             number: &mut self.number,
@@ -293,6 +348,19 @@ mod tests {
         r.add(&a);
         let greater = r.less(&b).or(b.less_equal(&r).not());
         r.select(greater, &b);
+        let mut complex = Complex {
+            re: r.clone(),
+            im: a.clone(),
+        };
+        let other = Complex {
+            re: b.clone(),
+            im: r.clone(),
+        };
+        complex.mul(&other);
+        complex.mul_add(&other, &other);
+        complex.mul_sub(&other, &complex.clone());
+        r.add(&complex.re);
+        r.sub(&complex.im);
         r.neg();
         let mut low = r.clone();
         low.sub(&R::from_control((), &r.control()));

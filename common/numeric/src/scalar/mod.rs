@@ -124,6 +124,21 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
     fn swap_lane(&mut self, other: &mut Self, _lane: usize) {
         std::mem::swap(self, other);
     }
+    /// `sum = a*b`, as [`Complex::set_product`] says; scalars whose operations are calls make one of it.
+    #[inline(always)]
+    fn set_product(sum: &mut Complex<Self>, a: &Complex<Self>, b: &Complex<Self>) {
+        set_product(&mut sum.re, &mut sum.im, [&a.re, &a.im], [&b.re, &b.im]);
+    }
+    /// `sum += a*b`, as [`Complex::mul_add`] says.
+    #[inline(always)]
+    fn add_product(sum: &mut Complex<Self>, a: &Complex<Self>, b: &Complex<Self>) {
+        add_product(&mut sum.re, &mut sum.im, [&a.re, &a.im], [&b.re, &b.im]);
+    }
+    /// `sum -= a*b`, as [`Complex::mul_sub`] says.
+    #[inline(always)]
+    fn subtract_product(sum: &mut Complex<Self>, a: &Complex<Self>, b: &Complex<Self>) {
+        subtract_product(&mut sum.re, &mut sum.im, [&a.re, &a.im], [&b.re, &b.im]);
+    }
     /// `self = max(self, other)`; a lane that is not a number takes the other.
     #[inline(always)]
     fn max(&mut self, other: &Self) {
@@ -146,6 +161,36 @@ pub struct Complex<R> {
     pub re: R,
     /// Imaginary part.
     pub im: R,
+}
+
+/// `re + i*im = a*b`, where `a` and `b` are given as real and imaginary part.
+#[inline(always)]
+pub(crate) fn set_product<R: Real>(re: &mut R, im: &mut R, a: [&R; 2], b: [&R; 2]) {
+    re.set(a[1]);
+    re.mul(b[1]);
+    re.neg();
+    re.mul_add(a[0], b[0]);
+    im.set(a[1]);
+    im.mul(b[0]);
+    im.mul_add(a[0], b[1]);
+}
+
+/// `re + i*im += a*b`.
+#[inline(always)]
+pub(crate) fn add_product<R: Real>(re: &mut R, im: &mut R, a: [&R; 2], b: [&R; 2]) {
+    re.mul_add(a[0], b[0]);
+    re.mul_sub(a[1], b[1]);
+    im.mul_add(a[0], b[1]);
+    im.mul_add(a[1], b[0]);
+}
+
+/// `re + i*im -= a*b`.
+#[inline(always)]
+pub(crate) fn subtract_product<R: Real>(re: &mut R, im: &mut R, a: [&R; 2], b: [&R; 2]) {
+    re.mul_sub(a[0], b[0]);
+    re.mul_add(a[1], b[1]);
+    im.mul_sub(a[0], b[1]);
+    im.mul_sub(a[1], b[0]);
 }
 
 impl<R: Real> Complex<R> {
@@ -249,13 +294,7 @@ impl<R: Real> Complex<R> {
     /// `a.im*b.re + a.re*b.im`, the first product rounded, the second fused.
     #[inline(always)]
     pub fn set_product(&mut self, a: &Self, b: &Self) {
-        self.re.set(&a.im);
-        self.re.mul(&b.im);
-        self.re.neg();
-        self.re.mul_add(&a.re, &b.re);
-        self.im.set(&a.im);
-        self.im.mul(&b.re);
-        self.im.mul_add(&a.re, &b.im);
+        R::set_product(self, a, b);
     }
 
     /// `self = a*a`: real part `-(a.im*a.im) + a.re*a.re`, imaginary part
@@ -281,19 +320,13 @@ impl<R: Real> Complex<R> {
     /// `self += a*b`.
     #[inline(always)]
     pub fn mul_add(&mut self, a: &Self, b: &Self) {
-        self.re.mul_add(&a.re, &b.re);
-        self.re.mul_sub(&a.im, &b.im);
-        self.im.mul_add(&a.re, &b.im);
-        self.im.mul_add(&a.im, &b.re);
+        R::add_product(self, a, b);
     }
 
     /// `self -= a*b`.
     #[inline(always)]
     pub fn mul_sub(&mut self, a: &Self, b: &Self) {
-        self.re.mul_sub(&a.re, &b.re);
-        self.re.mul_add(&a.im, &b.im);
-        self.im.mul_sub(&a.re, &b.im);
-        self.im.mul_sub(&a.im, &b.re);
+        R::subtract_product(self, a, b);
     }
 
     /// `self *= r` with `r` real.

@@ -51,6 +51,7 @@ pub fn class(verdict: Verdict) -> v1::PathClass {
         Verdict::Finite => v1::PathClass::Finite,
         Verdict::Undecided => v1::PathClass::Undecided,
         Verdict::WithinDataAccuracy => v1::PathClass::WithinDataAccuracy,
+        Verdict::ZeroDenominator => v1::PathClass::Removed,
     }
 }
 
@@ -73,5 +74,6 @@ pub fn counts(paths: &PathCounts, solutions: &SolutionCounts) -> v1::SummaryCoun
         paths_undecided: paths.undecided,
         paths_within_data_accuracy: paths.within_data_accuracy,
         solutions_undecided: solutions.undecided,
+        paths_removed: paths.removed,
     }
 }

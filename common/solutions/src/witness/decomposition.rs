@@ -17,6 +17,9 @@ pub struct Dimension {
     pub superset: u64,
     /// ... and of these at points of sets of higher dimension.
     pub junk: u64,
+    /// ... and at components that were taken away from the answer.
+    #[serde(default)]
+    pub removed: u64,
     /// Paths that ended at solutions of combinations of the equations alone, in the last dimension.
     pub excess: u64,
     /// Paths that failed on the way to this dimension.
@@ -58,6 +61,17 @@ impl TrackedPaths {
     }
 }
 
+/// A component of the equations that were tracked which is none of those that were given.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RemovedComponent {
+    /// Why: `a denominator is 0`.
+    pub reason: String,
+    /// The dimension of the component.
+    pub dimension: u32,
+    /// The degree of the component.
+    pub degree: u64,
+}
+
 /// All irreducible components of a system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decomposition {
@@ -83,6 +97,9 @@ pub struct Decomposition {
     /// What the components of a general member of the family have become, where these were known.
     #[serde(default)]
     pub family: Option<Family>,
+    /// Components that were taken away from the answer: in no other count but those of paths.
+    #[serde(default)]
+    pub removed: Vec<RemovedComponent>,
 }
 
 impl Decomposition {
@@ -125,7 +142,7 @@ impl Decomposition {
     /// Whether in every dimension the paths to its solutions, and those that were lost to points that loops found, are
     /// those to components, each as often as paths came to it, and to junk.
     pub fn adds_up(&self) -> bool {
-        let explained = |d: &Dimension| d.junk + paths_to(&self.components, d.number);
+        let explained = |d: &Dimension| d.junk + d.removed + paths_to(&self.components, d.number);
         let mut all = self.dimensions.iter();
         all.all(|d| d.superset + d.found_by_loops == explained(d))
     }
@@ -133,7 +150,8 @@ impl Decomposition {
     /// Notes in each dimension by how much its counts do not add up, where nothing else explains that.
     pub fn check_counts(&mut self) {
         for dimension in &mut self.dimensions {
-            let explained = dimension.junk + paths_to(&self.components, dimension.number);
+            let explained =
+                dimension.junk + dimension.removed + paths_to(&self.components, dimension.number);
             let superset = dimension.superset + dimension.found_by_loops;
             if superset != explained && dimension.doubts.is_empty() {
                 dimension.complete = Completeness::NotKnown;

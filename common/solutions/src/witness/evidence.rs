@@ -93,6 +93,12 @@ pub enum Doubt {
         /// How many.
         points: u64,
     },
+    /// A denominator of the given equations is near 0 at some of these witness points: it is not clear whether they are
+    /// solutions.
+    Denominator {
+        /// How many.
+        points: u64,
+    },
 }
 
 /// In formats for people an object with its kind and its fields; elsewhere as a variant by number, since a format
@@ -217,6 +223,11 @@ impl fmt::Display for Doubt {
             Self::NotDistinct { points } => write!(
                 f,
                 "{} that may be others of the dimension again",
+                counted(points, "witness point")
+            ),
+            Self::Denominator { points } => write!(
+                f,
+                "whether a denominator is 0 at {} is not clear",
                 counted(points, "witness point")
             ),
         }

@@ -19,7 +19,7 @@ pub mod real_surface;
 pub mod witness_set;
 
 pub use answer::Answer;
-pub use decomposition::{Decomposition, Dimension, TrackedPaths};
+pub use decomposition::{Decomposition, Dimension, RemovedComponent, TrackedPaths};
 pub use evidence::{Doubt, Evidence, Proof, Trace};
 pub use family::{CarriedComponent, Family};
 pub use known_components::KnownComponents;

@@ -4,13 +4,17 @@
 //! refused at its place: denominators that it may not have, roots and elementary
 //! functions of what is not constant, exponents that are no small integers.
 
+use super::differentiate::below;
 use super::fault::{Fault, Problem, Span};
 use super::parse::{Operation, Parsed};
-use super::{Dependence, Expressions, Function, NodeId};
+use super::{Dependence, Expressions, Function, Node, NodeId};
 use crate::formats::limits;
+use crate::system::{DegenerateSet, System};
+use crate::transform::clear_denominators::ZERO_DENOMINATOR;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use rug::Integer;
 use rug::ops::Pow;
+use std::collections::BTreeSet;
 
 /// What an expression is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +31,8 @@ pub struct Builder {
     /// The graph so far.
     pub expressions: Expressions,
     constant_bits: u64,
+    /// Denominators of what was simplified to a constant: `0/x`, `1/x - 1/x`.
+    dropped_denominators: BTreeSet<NodeId>,
 }
 
 impl Builder {
@@ -35,6 +41,7 @@ impl Builder {
         Self {
             expressions,
             constant_bits: 0,
+            dropped_denominators: BTreeSet::new(),
         }
     }
 
@@ -77,6 +84,9 @@ impl Builder {
                         Operation::Divide => self.divide(a, b, b_span, usage)?,
                         _ => self.power(a, b, a_span, b_span, usage)?,
                     };
+                    if self.constant(node).is_some() {
+                        self.keep_denominators(a, b, binary);
+                    }
                     (node, a_span.to(b_span))
                 }
             };
@@ -86,6 +96,38 @@ impl Builder {
         let (node, _) = operand(&mut stack);
         assert!(stack.is_empty(), "the parser leaves one value on the stack");
         Ok(node)
+    }
+
+    /// Remembers the denominators of two operands that became a constant.
+    fn keep_denominators(&mut self, a: NodeId, b: NodeId, operation: Operation) {
+        let e = &self.expressions;
+        let is_variable = |node: &NodeId| e.dependence(*node) == Dependence::Variables;
+        if !is_variable(&a) && !is_variable(&b) {
+            return;
+        }
+        let divided_by = below(e, &[a, b])
+            .into_iter()
+            .filter_map(|id| match e.node(id) {
+                Node::Divide(_, denominator) => Some(*denominator),
+                _ => None,
+            });
+        let last = (operation == Operation::Divide).then_some(b);
+        let denominators = divided_by.chain(last).filter(is_variable);
+        self.dropped_denominators.extend(denominators);
+    }
+
+    /// Hands the graph to a system, and the denominators that are not in it any more.
+    pub fn hand_over(&mut self, system: &mut System) {
+        system.expressions = std::mem::take(&mut self.expressions);
+        let out = &mut system.expressions;
+        for denominator in std::mem::take(&mut self.dropped_denominators) {
+            let product = match system.degenerate.get(ZERO_DENOMINATOR) {
+                Some(DegenerateSet::Nonzero(others)) => out.multiply(*others, denominator),
+                _ => denominator,
+            };
+            let set = DegenerateSet::Nonzero(product);
+            system.degenerate.insert(ZERO_DENOMINATOR.into(), set);
+        }
     }
 
     fn check_size(&mut self, node: NodeId, span: Span) -> Result<(), Fault> {

@@ -6,6 +6,7 @@ use super::{FormatError, Source, decode, limits};
 use crate::expression::build::Use;
 use crate::expression::fault::Fault;
 use crate::system::{DegenerateSet, System};
+use crate::transform::clear_denominators::ZERO_DENOMINATOR;
 use std::collections::BTreeMap;
 
 /// Reads a file of degenerate sets, `{"name": {"nonzero": "expression"}}` or
@@ -16,6 +17,12 @@ pub fn read(name: &str, content: &[u8], system: &mut System) -> Result<(), Forma
     let value = json_value::parse(text, 0, text.len()).map_err(|fault| source.error(fault))?;
     let mut scope = Scope::of(system);
     let sets = sets(&value, "", &mut scope).map_err(|fault| fault.into_error(&source))?;
+    let is_taken = |sets: &BTreeMap<_, _>| sets.contains_key(ZERO_DENOMINATOR);
+    if is_taken(&sets) && is_taken(&system.degenerate) {
+        let expected = "other names of sets than that of the equations' denominators";
+        let fault = Fault::expected(value.span, expected, ZERO_DENOMINATOR);
+        return Err(source.error(fault));
+    }
     system.expressions = scope.builder.expressions;
     system.degenerate.extend(sets);
     Ok(())

@@ -160,7 +160,7 @@ fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
     if let Some(value) = fields.get("symmetry") {
         system.symmetry = symmetry::generators(value, "symmetry", &system.variables, &mut scope)?;
     }
-    system.expressions = std::mem::take(&mut scope.builder.expressions);
+    scope.builder.hand_over(&mut system);
     let variables = required("variables")?.span;
     let equations = required("equations")?.span;
     let finished = finish(system, &places, end).map(|system| (system, scope.data_accuracy()));

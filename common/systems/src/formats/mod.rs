@@ -241,7 +241,7 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
         names.dedup();
         let message = format!(
             "denominators are multiplied out; where one of {} is 0 there is no solution, and what \
-             the multiplied equations have there is counted as `{ZERO_DENOMINATOR}`",
+             the multiplied equations have there is removed (`{ZERO_DENOMINATOR}`)",
             names.join(", ")
         );
         warn(&mut problem.warnings, &source, 0, message);

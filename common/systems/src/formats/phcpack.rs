@@ -163,7 +163,7 @@ fn system(
         variables: (0..system.variables.len()).collect(),
         homogeneous: false,
     }];
-    system.expressions = builder.expressions;
+    builder.hand_over(&mut system);
     finish(system, &places, header.span)
 }
 

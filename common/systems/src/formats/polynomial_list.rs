@@ -264,7 +264,7 @@ pub(super) fn system(
         homogeneous: false,
     }];
     system.equation_names = (1..=places.len()).map(|k| format!("f{k}")).collect();
-    system.expressions = builder.expressions;
+    builder.hand_over(&mut system);
     finish(system, &places, list)
 }
 

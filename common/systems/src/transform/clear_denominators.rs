@@ -1,64 +1,68 @@
 //! Systems with variables in denominators, multiplied out.
 //!
 //! An equation is multiplied by the least product of denominators that makes it a polynomial. Where
-//! a factor of it is 0 the given equation has no value, so that a point there is no solution of it:
-//! such points are a degenerate set by name.
+//! a denominator of the equations that were given is 0, one that cancels among them, the equation has no
+//! value, so that a point there is no solution: such points are a degenerate set by name, and no answer
+//! holds them.
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::polynomial::Polynomial;
 use crate::system::{DegenerateSet, System};
+use cognate_numeric::rational::ComplexRational;
 use foldhash::HashMap;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The name of the set of points where a denominator of the given equations is 0.
 pub const ZERO_DENOMINATOR: &str = "a denominator is 0";
 
 /// Multiplies every equation by the denominators that it has.
 ///
-/// An equation stays as it is where an exponent would be past all limits.
+/// An equation stays as it is where an exponent would be past all limits, or a denominator is 0 everywhere.
 pub fn clear_denominators(system: &mut System) {
     let polynomial = system.polynomial_nodes();
     let mut fractions = Fractions::default();
-    let mut nonzero = Factors::new();
-    for i in 0..system.equations.len() {
-        let equation = system.equations[i];
+    let out = &mut system.expressions;
+    // Denominators that a reader saw and that no equation holds any more.
+    if let Some(DegenerateSet::Nonzero(product)) = system.degenerate.get(ZERO_DENOMINATOR) {
+        let one = out.integer(1);
+        let inverse = out.insert(Node::Divide(one, *product));
+        fractions.of(out, inverse);
+    }
+    for equation in &mut system.equations {
         if polynomial[equation.0 as usize] {
             continue;
         }
-        let out = &mut system.expressions;
-        let Some((numerator, under)) = fractions.of(out, equation) else {
+        let Some((numerator, under)) = fractions.of(out, *equation) else {
             continue;
         };
         let (variables, parameters) = (system.variables.len(), system.parameters.len());
-        let (numerator, under) = reduced(out, numerator, under, variables, parameters);
-        system.equations[i] = numerator;
-        nonzero.extend(under.into_keys().map(|factor| (factor, 1)));
+        *equation = without_common_variables(out, numerator, &under, variables, parameters);
     }
-    if !nonzero.is_empty() && !system.degenerate.contains_key(ZERO_DENOMINATOR) {
-        let out = &mut system.expressions;
+    let nonzero = fractions.nonzero.into_iter().map(|factor| (factor, 1));
+    let nonzero: Factors = nonzero.collect();
+    if !nonzero.is_empty() {
         let one = out.integer(1);
-        let product = times(out, one, &nonzero);
-        let set = DegenerateSet::Nonzero(product);
+        let set = DegenerateSet::Nonzero(times(out, one, &nonzero));
         system.degenerate.insert(ZERO_DENOMINATOR.into(), set);
     }
 }
 
 /// The factors of the denominators of the equations that were given: variables and sums.
 pub fn denominator_factors(system: &System) -> Vec<NodeId> {
-    let mut found = Vec::new();
+    let mut factors = Vec::new();
     let Some(DegenerateSet::Nonzero(product)) = system.degenerate.get(ZERO_DENOMINATOR) else {
-        return found;
+        return factors;
     };
     let mut open = vec![*product];
     while let Some(id) = open.pop() {
         match system.expressions.node(id) {
             Node::Multiply(a, b) => open.extend([*a, *b]),
             Node::Negate(a) | Node::Power(a, _) => open.push(*a),
-            _ => found.push(id),
+            _ => factors.push(id),
         }
     }
-    found
+    factors
 }
 
 /// For each variable, whether it is a denominator of the equations that were given.
@@ -108,10 +112,12 @@ struct Fractions {
     fractions: HashMap<NodeId, Fraction>,
     /// Coefficient and factors.
     products: HashMap<NodeId, Fraction>,
+    /// The factors of all denominators that were met.
+    nonzero: BTreeSet<NodeId>,
 }
 
 impl Fractions {
-    /// What a node is as a fraction; `None` where an exponent is past 32 bits.
+    /// What a node is as a fraction; `None` where an exponent is past 32 bits, or a denominator is 0 everywhere.
     fn of(&mut self, out: &mut Expressions, root: NodeId) -> Option<Fraction> {
         for id in below(out, &[root]) {
             if self.fractions.contains_key(&id) {
@@ -128,6 +134,11 @@ impl Fractions {
                 Node::Divide(a, b) => {
                     let ((a, under_a), (b, under_b)) = (done[&a].clone(), done[&b].clone());
                     let (coefficient, factors) = self.product(out, b)?;
+                    let zero = out.as_constant(coefficient);
+                    if zero.is_some_and(ComplexRational::is_zero) {
+                        return None;
+                    }
+                    self.nonzero.extend(factors.keys());
                     let numerator = times(out, a, &under_b);
                     let numerator = out.divide(numerator, coefficient);
                     (numerator, plus(&under_a, &factors)?)
@@ -207,26 +218,23 @@ fn joined(
     (join(out, a, b), common)
 }
 
-/// The fraction without what all terms of the numerator have in common with variables below it.
-fn reduced(
+/// The numerator without the variables of the denominator that all its terms have in common.
+fn without_common_variables(
     out: &mut Expressions,
     numerator: NodeId,
-    under: Factors,
+    under: &Factors,
     variables: usize,
     parameters: usize,
-) -> Fraction {
-    let all = under.keys();
-    if !all
-        .clone()
-        .any(|&id| matches!(out.node(id), Node::Variable(_)))
-    {
-        return (numerator, under);
+) -> NodeId {
+    let is_variable = |id: &NodeId| matches!(out.node(*id), Node::Variable(_));
+    if !under.keys().any(is_variable) {
+        return numerator;
     }
     let Some(f) = Polynomial::expand(out, numerator, variables, parameters) else {
-        return (numerator, under);
+        return numerator;
     };
     let mut common = vec![0; variables];
-    for (&id, &exponent) in &under {
+    for (&id, &exponent) in under {
         if let Node::Variable(v) = out.node(id) {
             let v = *v as usize;
             let least = f.terms.keys().map(|e| e[v]).min().unwrap_or(0);
@@ -234,7 +242,7 @@ fn reduced(
         }
     }
     if f.terms.is_empty() || common.iter().all(|&e| e == 0) {
-        return (numerator, under);
+        return numerator;
     }
     let x: Vec<NodeId> = (0..variables as u32).map(|v| out.variable(v)).collect();
     let mut sum = out.integer(0);
@@ -251,12 +259,7 @@ fn reduced(
         }
         sum = out.add(sum, term);
     }
-    let left = under.into_iter().map(|(id, exponent)| match out.node(id) {
-        Node::Variable(v) => (id, exponent - common[*v as usize]),
-        _ => (id, exponent),
-    });
-    let left = left.filter(|(_, exponent)| *exponent > 0).collect();
-    (sum, left)
+    sum
 }
 
 #[cfg(test)]
@@ -291,9 +294,13 @@ mod tests {
         };
         assert_eq!(degree("x + 1/x - 2"), (2, vec![true, false]));
         assert_eq!(degree("x^-2*y^(-1) + p"), (3, vec![true, true]));
-        assert_eq!(degree("x*y/x - 1"), (1, vec![false, false]), "x cancels");
+        assert_eq!(
+            degree("x*y/x - 1"),
+            (1, vec![true, false]),
+            "x cancels, and is a denominator"
+        );
         assert_eq!(degree("(x + 1/y)^2/(2*p*x) - 3"), (4, vec![true, true]));
-        assert_eq!(degree("1/(1/(x*y)) - 1"), (2, vec![false, false]));
+        assert_eq!(degree("1/(1/(x*y)) - 1"), (2, vec![true, true]));
         assert_eq!(degree("x*y - 1"), (2, vec![false, false]));
     }
 
@@ -306,6 +313,23 @@ mod tests {
         let sum = x + y.inv();
         let expected = (sum * sum / (p * 2.0 * x) - y.inv() * 3.0) * x * y * y;
         assert!((found - expected).norm_sqr() < 1e-26, "{found} {expected}");
+    }
+
+    #[test]
+    fn denominators_that_reading_simplifies_away_are_denominators() {
+        for equation in [
+            "x - 1 + 0/y",
+            "x - 1 + 0*(2/y)",
+            "1/y - 1/y + x - 1",
+            "x - (3/y + x)^0",
+            "x - (y/y)^0",
+        ] {
+            let (system, nonzero) = cleared(equation);
+            assert_eq!(nonzero, [false, true], "{equation}");
+            assert_eq!(crate::polynomial::degrees(&system).unwrap().total, [1]);
+        }
+        let text = "variable_group x, y; function f; f = x - 1/(y/y - 1);";
+        assert!(read(text).is_err(), "a denominator that is 0 everywhere");
     }
 
     #[test]

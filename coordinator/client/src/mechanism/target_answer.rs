@@ -203,7 +203,7 @@ pub fn of_set(
         singular: set.paths.singular,
         at_infinity: set.paths.at_infinity,
         positive_dimensional: set.paths.positive_dimensional.unwrap_or(0),
-        degenerate: set.paths.excess.unwrap_or(0),
+        degenerate: set.paths.excess.unwrap_or(0) + set.paths.removed,
         failed: set.paths.failed + set.paths.undecided + set.paths.within_data_accuracy,
         certified_real: certify.then_some(0),
         ..Counts::default()

@@ -127,6 +127,20 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
             look.dim(&format!("verified: {} {said}", second.method.name()))
         );
     }
+    for (reason, removed) in &found.removed {
+        let each = removed.iter().map(|c| {
+            let (dimension, degree) = (c.dimension, count(c.degree));
+            format!(
+                "{} of dimension {dimension} and degree {degree}",
+                count(c.count)
+            )
+        });
+        let each = each.collect::<Vec<_>>().join(", ");
+        let said = format!("removed, in no other count: {each}; {reason} on all of it");
+        for line in wrapped(&said, look.width) {
+            let _ = writeln!(text, "{}", look.dim(&line));
+        }
+    }
     for doubt in found.unsettled.iter().take(DOUBTS_SHOWN) {
         for (i, line) in wrapped(doubt, look.width - 15).iter().enumerate() {
             let lead = match i {
@@ -291,6 +305,8 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
         ">excess",
         ">failed",
     ];
+    let removed = by_dimension.values().any(|d| d.removed > 0);
+    names.extend(removed.then_some(">removed"));
     names.extend(by_loops.then_some(">found by loops"));
     let by_orbits = by_dimension.values().any(|d| d.orbits.is_some());
     if by_orbits {
@@ -308,6 +324,7 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
             count(d.excess),
             count(d.failed),
         ];
+        row.extend(removed.then(|| count(d.removed)));
         row.extend(by_loops.then(|| count(d.found_by_loops)));
         row.extend(by_orbits.then(|| match (d.components, d.orbits) {
             (0, _) => "0".into(),

@@ -2,6 +2,7 @@
 
 use super::text::counted;
 use crate::error::{ClientError, Exit};
+use cognate_solutions::completeness::Completeness;
 use cognate_summary::AnySummary;
 use cognate_summary::solve::Summary;
 
@@ -56,9 +57,21 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
             "{points} at which another number of paths ends than its multiplicity"
         ));
     }
+    let denominators = summary.solutions.doubtful_denominators;
+    if denominators > 0 {
+        let points = counted(denominators, "point");
+        open.push(format!(
+            "{points} at which a denominator may be 0: digits do not tell"
+        ));
+    }
     let exact = &summary.solutions.exact_count;
     if exact.as_ref().is_some_and(|count| !count.agrees) {
         open.push("another number of solutions by an exact count".into());
+    }
+    if summary.solutions.complete == Completeness::No {
+        let reason = summary.solutions.complete_reason.as_deref();
+        let reason = reason.map_or(String::new(), |reason| format!(": {reason}"));
+        open.push(format!("solutions are missing{reason}"));
     }
     if open.is_empty() && !summary.settled {
         open.push("a count of one of the targets".into());

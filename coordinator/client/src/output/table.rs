@@ -17,6 +17,9 @@ const WORKERS_SHOWN: usize = 8;
 /// Width of the column of names.
 const LABEL: usize = 22;
 
+/// The command that answers what sets of solutions there are.
+const DECOMPOSE: &str = "`cognate decompose FILE`";
+
 /// One line: a name, a number, what it means.
 pub(super) struct Lines {
     text: String,
@@ -170,7 +173,9 @@ pub fn answer(summary: &Summary) -> String {
     };
     let also = s.positive_dimensional == Some(true);
     if also && s.distinct == 0 && s.undecided == 0 {
-        return "no isolated solution, but a positive-dimensional solution set".to_owned();
+        return format!(
+            "no isolated solution, but a positive-dimensional solution set: {DECOMPOSE} finds it"
+        );
     }
     match s.real {
         Some(n) if n == s.distinct && n > 1 => answer.push_str(", all real"),
@@ -199,6 +204,11 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
             "given up; `cognate explain` says why",
         ),
         ("at infinity", Some(p.at_infinity), "no solution there"),
+        (
+            "removed",
+            Some(p.removed),
+            "where a denominator is 0: no solution there",
+        ),
         ("excess", p.excess, "no solution before randomisation"),
         (
             "positive-dimensional",
@@ -226,7 +236,7 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
             "at a nonsingular isolated solution",
         ),
     ];
-    let shown_where_there_are_some = ["undecided", "within data accuracy"];
+    let shown_where_there_are_some = ["undecided", "within data accuracy", "removed"];
     lines.heading("Paths", "", "each in the first class that holds");
     for (name, number, meaning) in classes {
         match number {
@@ -301,6 +311,10 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
     if s.undecided > 0 {
         let note = "singular points, isolated or not: in no other count";
         lines.line("undecided", &count(s.undecided), note);
+    }
+    for (name, &n) in s.removed.iter().filter(|(_, n)| **n > 0) {
+        let note = format!("{name}: no solutions, in no other count");
+        lines.line("removed", &count(n), &note);
     }
     if s.complete != Completeness::Yes
         && let Some(reason) = &s.complete_reason

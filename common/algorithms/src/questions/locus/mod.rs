@@ -461,6 +461,7 @@ impl Locus {
         let highest = self.dimensions.first().map_or(0, |d| d.number);
         ordered(Decomposition {
             family: None,
+            removed: Vec::new(),
             variables: variables.to_vec(),
             method: Method::Equations,
             verification: None,

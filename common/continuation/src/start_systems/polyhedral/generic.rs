@@ -415,7 +415,7 @@ impl GenericSystem {
                 for (entry, z) in transform[j].iter().zip(&z) {
                     angle += Integer::from(entry * z);
                 }
-                let angle = Integer::from(angle.rem_euc(&turn));
+                let angle: Integer = angle.rem_euc(&turn);
                 on_the_circle(angle.to_u128().expect("it is below 2^128"))
             })
             .collect()

@@ -130,7 +130,7 @@ impl Statements {
                 homogeneous: false,
             });
         }
-        system.expressions = builder.expressions;
+        builder.hand_over(&mut system);
         Ok((system, places, self.end))
     }
 }

@@ -6,6 +6,7 @@
 //! fulfil: with random residues the count is that of general values.
 
 use super::chosen::is_chosen;
+use super::Ideal;
 use super::groebner::Terms;
 use super::monomial::{MOST_VARIABLES, Monomial};
 use super::not_counted::NotCounted;
@@ -14,6 +15,7 @@ use crate::expression::{Dependence, Expressions, Function, Node, NodeId};
 use crate::polynomial::Polynomial;
 use crate::polynomial::dual_dimensions::{FIELD, PRIME};
 use crate::system::System;
+use crate::transform::clear_denominators::denominator_factors;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use foldhash::{HashMap, HashMapExt};
@@ -24,9 +26,8 @@ const MOST_SQUARE_ROOTS: usize = 3;
 
 /// Equations over the prime field.
 pub(super) struct CountedEquations {
-    /// Number of variables, those of square roots included.
-    pub variables: usize,
-    pub equations: Vec<Terms>,
+    /// In the variables of the system and those of square roots.
+    pub ideal: Ideal,
     /// So many conjugate systems are counted together.
     pub conjugates: u64,
     /// Whether the numbers are those of general values of some constants or parameters.
@@ -44,15 +45,15 @@ impl CountedEquations {
             .iter()
             .map(|&equation| without_constant_factors(&system.expressions, equation))
             .collect();
-        let mut constants = Constants::of(system, parameters, &equations)?;
+        let denominators = denominator_factors(system);
+        let polynomials = [equations.as_slice(), denominators.as_slice()].concat();
+        let mut constants = Constants::of(system, parameters, &polynomials)?;
         let variables = system.variable_count() + constants.radicands.len();
         if variables > MOST_VARIABLES {
             return Err(NotCounted::Unknowns);
         }
-        let mut terms = Vec::new();
-        for equation in equations {
-            terms.push(constants.terms(equation, variables)?);
-        }
+        let mut terms = constants.terms_of_each(&equations, variables)?;
+        let denominators = constants.terms_of_each(&denominators, variables)?;
         for (k, radicand) in constants.radicands.iter().enumerate() {
             let root = Monomial::variable(variables, system.variable_count() + k);
             let radicand = FIELD.complex(&ComplexRational::real(radicand.clone()));
@@ -68,8 +69,11 @@ impl CountedEquations {
             }
         }
         Ok(Self {
-            variables,
-            equations: terms,
+            ideal: Ideal {
+                variables,
+                equations: terms,
+                denominators,
+            },
             conjugates: 1 << constants.radicands.len(),
             is_general: constants.is_general,
         })
@@ -145,7 +149,7 @@ impl<'a> Constants<'a> {
     fn of(
         system: &'a System,
         parameters: &[Complex64],
-        equations: &[NodeId],
+        polynomials: &[NodeId],
     ) -> Result<Self, NotCounted> {
         let mut constants = Self {
             system,
@@ -160,14 +164,14 @@ impl<'a> Constants<'a> {
             let residue = FIELD.complex(&value).ok_or(NotCounted::Parameters)?;
             constants.leaves.push(residue);
         }
-        constants.find(equations);
+        constants.find(polynomials);
         Ok(constants)
     }
 
-    /// Finds the constants of the equations, and whether relations between them are known.
-    fn find(&mut self, equations: &[NodeId]) {
+    /// Finds the constants of the polynomials, and whether relations between them are known.
+    fn find(&mut self, polynomials: &[NodeId]) {
         let expressions = &self.system.expressions;
-        let nodes = below(expressions, equations);
+        let nodes = below(expressions, polynomials);
         let mut radicands: Vec<Rational> = Vec::new();
         for id in &nodes {
             if let Some(radicand) = radicand(expressions, *id)
@@ -208,10 +212,20 @@ impl<'a> Constants<'a> {
         self.leaves.push(residue);
     }
 
-    /// An equation over the field.
-    fn terms(&mut self, equation: NodeId, variables: usize) -> Result<Terms, NotCounted> {
+    /// Polynomials over the field.
+    fn terms_of_each(
+        &mut self,
+        polynomials: &[NodeId],
+        variables: usize,
+    ) -> Result<Vec<Terms>, NotCounted> {
+        let polynomials = polynomials.iter();
+        polynomials.map(|&p| self.terms(p, variables)).collect()
+    }
+
+    /// A polynomial over the field.
+    fn terms(&mut self, polynomial: NodeId, variables: usize) -> Result<Terms, NotCounted> {
         let mut rational = Expressions::new();
-        let root = self.rational(equation, &mut rational);
+        let root = self.rational(polynomial, &mut rational);
         let polynomial = Polynomial::expand(&rational, root, variables, self.leaves.len());
         let polynomial = polynomial.ok_or(NotCounted::Terms)?;
         let mut residues: HashMap<Monomial, u64> = HashMap::new();

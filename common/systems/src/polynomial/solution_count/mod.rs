@@ -15,7 +15,7 @@ pub use chosen::is_chosen;
 use equations::CountedEquations;
 use groebner::{Budget, Terms, groebner_basis};
 use monomial::Monomial;
-use nonsingular::with_inverse_of_determinant;
+use nonsingular::{with_inverse_of_determinant, with_inverses};
 pub use not_counted::NotCounted;
 use num_complex::Complex64;
 use quotient::Quotient;
@@ -54,6 +54,7 @@ pub struct CountedSolutions {
 /// Counts the solutions of a system whose parameters have these values, in at most some operations: from a Gröbner
 /// basis over a prime field. That is the count over the rationals but for primes that divide one of the numbers
 /// on the way, with odds of some 1e-8. In homogeneous groups points of projective spaces are counted.
+/// Points where a denominator of the given equations is 0 are no solutions.
 ///
 /// D. Cox, J. Little, D. O'Shea: Using Algebraic Geometry, 2005, chapters 2 and 4.
 pub fn solution_count(
@@ -66,12 +67,14 @@ pub fn solution_count(
     if !is_square && (counted.is_general || is_rounded(system)) {
         return Err(NotCounted::NotExact);
     }
-    let count = count(counted.variables, counted.equations, operations);
-    let count = count.ok_or(NotCounted::Operations)?;
-    Ok(CountedSolutions {
-        count: of_one(count, counted.conjugates).ok_or(NotCounted::Constants)?,
-        is_general: counted.is_general,
-    })
+    let CountedEquations {
+        ideal,
+        conjugates,
+        is_general,
+    } = counted;
+    let count = ideal.count(operations).ok_or(NotCounted::Operations)?;
+    let count = of_one(count, conjugates).ok_or(NotCounted::Constants)?;
+    Ok(CountedSolutions { count, is_general })
 }
 
 /// Whether the equations have numbers that were rounded.
@@ -110,30 +113,42 @@ fn of_one(count: SolutionCount, conjugates: u64) -> Option<SolutionCount> {
     })
 }
 
-fn count(variables: usize, equations: Vec<Terms>, operations: u64) -> Option<SolutionCount> {
-    let budget = &mut Budget(operations);
-    let basis = groebner_basis(equations.clone(), budget)?;
-    let dimension = dimension(variables, &basis, budget)?;
-    if dimension > 0 {
-        let budget = &mut Budget(operations);
-        let nonsingular = nonsingular_points(variables, equations, budget);
-        return Some(SolutionCount::Infinite {
-            dimension,
-            nonsingular,
-        });
-    }
-    let quotient = Quotient::new(variables, &basis, budget)?;
-    Some(SolutionCount::Finite {
-        with_multiplicity: quotient.dimension() as u64,
-        distinct: quotient.distinct_zeros(budget).map(|zeros| zeros as u64),
-    })
+/// Equations, and polynomials that are 0 at no point that counts.
+struct Ideal {
+    variables: usize,
+    equations: Vec<Terms>,
+    denominators: Vec<Terms>,
 }
 
-fn nonsingular_points(variables: usize, equations: Vec<Terms>, budget: &mut Budget) -> Option<u64> {
-    let equations = with_inverse_of_determinant(variables, equations, budget)?;
-    let basis = groebner_basis(equations, budget)?;
-    let quotient = Quotient::new(variables + 1, &basis, budget)?;
-    Some(quotient.dimension() as u64)
+impl Ideal {
+    fn count(self, operations: u64) -> Option<SolutionCount> {
+        let budget = &mut Budget(operations);
+        let equations = self.equations.clone();
+        let (variables, equations) = with_inverses(self.variables, equations, &self.denominators)?;
+        let basis = groebner_basis(equations, budget)?;
+        let dimension = dimension(variables, &basis, budget)?;
+        if dimension > 0 {
+            let budget = &mut Budget(operations);
+            return Some(SolutionCount::Infinite {
+                dimension,
+                nonsingular: self.nonsingular_points(budget),
+            });
+        }
+        let quotient = Quotient::new(variables, &basis, budget)?;
+        Some(SolutionCount::Finite {
+            with_multiplicity: quotient.dimension() as u64,
+            distinct: quotient.distinct_zeros(budget).map(|zeros| zeros as u64),
+        })
+    }
+
+    fn nonsingular_points(self, budget: &mut Budget) -> Option<u64> {
+        let variables = self.variables;
+        let equations = with_inverse_of_determinant(variables, self.equations, budget)?;
+        let (variables, equations) = with_inverses(variables + 1, equations, &self.denominators)?;
+        let basis = groebner_basis(equations, budget)?;
+        let quotient = Quotient::new(variables, &basis, budget)?;
+        Some(quotient.dimension() as u64)
+    }
 }
 
 /// The most variables of which no leading monomial is a product; 0 also where one is 1.
@@ -212,6 +227,23 @@ mod tests {
         assert_eq!(of(text), infinite(1, Some(1)));
         let more = "function f, g, h; f = x*y; g = x*(y - 1); h = x*(x - 1);";
         assert_eq!(of(more), infinite(1, None), "not square");
+    }
+
+    #[test]
+    fn points_where_a_denominator_is_0_do_not_count() {
+        let of = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
+        assert_eq!(
+            of("f = x/y + y/x - 5/2; g = 1/x + 1/y - 3/2;"),
+            finite(2, 2)
+        );
+        assert_eq!(of("f = 1/x - 1/y - 1; g = x - y;"), finite(0, 0));
+        // Multiplied out, the line x = y.
+        let cut = "f = (x^2 - y^2)/(x - y); g = (x - y)*(x^2 + 1)/(x^2 - y^2) - 1/y;";
+        assert_eq!(of(cut), finite(0, 0));
+        assert_eq!(of("f = (x - 1)*x/x; g = y^2*x;"), finite(2, 1));
+        // The axis y = 0, without one point; the other axis is gone.
+        let set = "f = x*y/x; g = y*(y - 1)*(x - 2)/x;";
+        assert_eq!(of(set), infinite(1, Some(0)));
     }
 
     /// G. Björck, 1985; J. Backelin, R. Fröberg, 1991; S. Katsura, 1986.

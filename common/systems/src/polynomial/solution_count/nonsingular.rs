@@ -1,4 +1,5 @@
-//! Nonsingular points: where the determinant of the Jacobian has an inverse.
+//! Points where a polynomial has an inverse: the determinant of the Jacobian at nonsingular ones, denominators at
+//! those where fractions have a value.
 
 use super::groebner::{Budget, OPERATIONS_PER_TERM, Terms};
 use super::monomial::{MOST_DEGREE, MOST_VARIABLES, Monomial};
@@ -18,21 +19,41 @@ pub(super) fn with_inverse_of_determinant(
         return None;
     }
     let determinant = jacobian_determinant(variables, &equations, budget)?;
+    equations.push(inverse_of(&determinant, variables)?);
+    Some(equations)
+}
+
+/// That a polynomial times one more variable, which comes first, is 1. `None` past the highest degree.
+pub(super) fn inverse_of(polynomial: &Terms, variables: usize) -> Option<Terms> {
+    if variables >= MOST_VARIABLES {
+        return None;
+    }
     // Words of monomials stay what they are with a variable before the others.
     let inverse = Monomial::variable(variables + 1, 0);
-    let terms = determinant
+    let highest = polynomial.first().map_or(0, |(m, _)| m.degree());
+    if highest >= MOST_DEGREE {
+        return None;
+    }
+    let terms = polynomial
         .iter()
         .map(|&(monomial, c)| (monomial.times(inverse), c));
     let mut product: Terms = terms.collect();
-    if product
-        .first()
-        .is_some_and(|(monomial, _)| monomial.degree() > MOST_DEGREE)
-    {
-        return None;
-    }
     product.push((Monomial::default(), PRIME - 1));
-    equations.push(product);
-    Some(equations)
+    Some(product)
+}
+
+/// The equations, and that each of some polynomials has an inverse, a variable for each of them; how many variables
+/// there are then. `None` where there are too many.
+pub(super) fn with_inverses(
+    mut variables: usize,
+    mut equations: Vec<Terms>,
+    polynomials: &[Terms],
+) -> Option<(usize, Vec<Terms>)> {
+    for polynomial in polynomials {
+        equations.push(inverse_of(polynomial, variables)?);
+        variables += 1;
+    }
+    Some((variables, equations))
 }
 
 /// By minors of the first rows, each from those of one row less.
