@@ -10,7 +10,7 @@ use cognate_systems::system::System;
 use cognate_tests::dice::Dice;
 use cognate_tests::planted::Planted;
 use cognate_tests::planted::fractions::fractions;
-use cognate_tests::planted::verdict::{Verdict, solve, solve_within, start};
+use cognate_tests::planted::verdict::{Verdict, options, solve, solve_within, start};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -93,7 +93,7 @@ fn planted_fractions_are_answered_right() {
         };
         let seed = dice.below(1 << 32);
         let verdicts = [
-            ("solve", solve(&planted, by.clone(), seed, LIMIT)),
+            ("solve", solve(&planted, &options(by.clone(), seed, false), LIMIT)),
             ("decompose", decompose(&planted, seed)),
         ];
         for (what, verdict) in verdicts {

@@ -18,6 +18,7 @@ mod mechanisms;
 mod nine_point;
 mod overdetermined;
 mod parameter_homotopies;
+mod paths_alone;
 mod planted;
 mod polyhedral;
 mod scaled_units;

@@ -1,6 +1,6 @@
 //! Planted: random systems whose exact answer is known by construction, solved and compared.
 //!
-//! `cargo run --release -p cognate-tests --bin planted -- [--count 1700] [--seed 1] [--seconds 10] [--kind NAME] [--folder PATH]`
+//! `cargo run --release -p cognate-tests --bin planted -- [--count 1700] [--seed 1] [--seconds 10] [--kind NAME] [--exact-count yes|no] [--folder PATH]`
 //!
 //! Prints a report page. A wrong answer that is called settled is named with its seed and makes the
 //! exit code 1; `--folder` receives the text of each system that was not answered right. Each system is
@@ -11,7 +11,7 @@ use cognate_algorithms::plan::SolveMethod;
 use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::dice::Dice;
 use cognate_tests::planted::kinds::{KINDS, planted};
-use cognate_tests::planted::verdict::{Verdict, solve, start};
+use cognate_tests::planted::verdict::{Verdict, options as solve_options, solve, start};
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -26,6 +26,7 @@ struct Wanted {
     kind: Option<String>,
     folder: Option<PathBuf>,
     one: Option<u64>,
+    no_exact_count: bool,
 }
 
 fn wanted() -> Result<Wanted, String> {
@@ -36,6 +37,7 @@ fn wanted() -> Result<Wanted, String> {
         kind: None,
         folder: None,
         one: None,
+        no_exact_count: false,
     };
     for (word, value) in options()? {
         match word.as_str() {
@@ -44,10 +46,11 @@ fn wanted() -> Result<Wanted, String> {
             "--seconds" => wanted.seconds = number(&word, &value)?,
             "--kind" => wanted.kind = Some(value),
             "--one" => wanted.one = Some(number(&word, &value)?),
+            "--exact-count" => wanted.no_exact_count = value == "no",
             "--folder" => wanted.folder = Some(value.into()),
             _ => {
                 return Err(format!(
-                    "{word}: expected --count N, --seed N, --seconds N, --kind NAME or --folder PATH"
+                    "{word}: expected --count N, --seed N, --seconds N, --kind NAME, --exact-count yes|no or --folder PATH"
                 ));
             }
         }
@@ -80,7 +83,8 @@ fn solve_one(wanted: &Wanted, number: u64) -> ExitCode {
     let (start, seed) = throw(wanted.seed, number);
     let limit = Duration::from_secs(wanted.seconds);
     let system = planted(wanted.seed, number);
-    let (word, wrong) = match solve(&system, start, seed, limit) {
+    let options = solve_options(start, seed, wanted.no_exact_count);
+    let (word, wrong) = match solve(&system, &options, limit) {
         Verdict::Right => ("right", String::new()),
         Verdict::RightInDoubt => ("in-doubt", String::new()),
         Verdict::Doubt(wrong) => ("doubt", wrong),
@@ -107,12 +111,14 @@ fn write(folder: &Path, series: u64, number: u64, word: &str, wrong: &str) {
 /// The verdict of a process of its own.
 fn verdict_of(wanted: &Wanted, number: u64) -> Result<(String, String), String> {
     let text = |e: std::io::Error| e.to_string();
+    let count = if wanted.no_exact_count { "no" } else { "yes" };
     let options = [
-        ("--seed", wanted.seed),
-        ("--seconds", wanted.seconds),
-        ("--one", number),
+        ("--seed", wanted.seed.to_string()),
+        ("--seconds", wanted.seconds.to_string()),
+        ("--one", number.to_string()),
+        ("--exact-count", count.to_string()),
     ];
-    let options = options.map(|(word, value)| [word.to_string(), value.to_string()]);
+    let options = options.map(|(word, value)| [word.to_string(), value]);
     let mut child = Command::new(std::env::current_exe().map_err(text)?)
         .args(options.as_flattened())
         .stdout(Stdio::piped())

@@ -4,7 +4,7 @@ use crate::answer::Answer;
 use crate::closings::Closing;
 use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
-use crate::exact_count::compare_with_exact_count;
+use crate::exact_count::{ExactCounting, SEVERAL_TARGETS};
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
 use crate::overdetermined_solve::OverdeterminedSolve;
@@ -26,7 +26,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 29;
+const VERSION: u8 = 30;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,6 +55,7 @@ pub struct AnyAlgorithm {
     solve: AnySolve,
     /// In the order in which they come.
     closings: Vec<Closing>,
+    counting: ExactCounting,
     numbers: StageNumbers,
 }
 
@@ -63,6 +64,7 @@ impl From<AnySolve> for AnyAlgorithm {
         Self {
             solve,
             closings: Vec::new(),
+            counting: ExactCounting::default(),
             numbers: StageNumbers::default(),
         }
     }
@@ -154,6 +156,12 @@ impl AnyAlgorithm {
     /// Closes the solve with this, too, after the closings that there are.
     pub fn close_with(&mut self, closing: Closing) {
         self.closings.push(closing);
+    }
+
+    /// The same, whose solutions are counted so.
+    #[must_use]
+    pub(crate) fn with_counting(self, counting: ExactCounting) -> Self {
+        Self { counting, ..self }
     }
 
     /// The same with another limit of repetitions.
@@ -327,8 +335,16 @@ impl PathAlgorithm for AnyAlgorithm {
                     judge_loops(&loops.counts, known.as_ref(), set);
                 }
             }
-            if let [set] = &mut found.sets[..] {
-                compare_with_exact_count(set, system, self.solve.get().solution_count());
+            match &mut found.sets[..] {
+                [set] => {
+                    let known = self.solve.get().solution_count();
+                    self.counting.compare(set, system, known);
+                }
+                several => {
+                    for set in several {
+                        set.no_exact_count = Some(SEVERAL_TARGETS.to_string());
+                    }
+                }
             }
         }
         Some(answer)

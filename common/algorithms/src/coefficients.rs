@@ -3,6 +3,7 @@
 
 use cognate_continuation::tracker::settings::Settings;
 use cognate_systems::expression::Node;
+use cognate_systems::polynomial::is_chosen;
 use cognate_systems::system::System;
 use cognate_systems::units::{Fit, fit};
 use num_complex::Complex64;
@@ -13,8 +14,6 @@ use std::borrow::Cow;
 const WIDE_RANGE: f64 = 20.0;
 /// The same where they may have been rounded.
 const WIDE_RANGE_OF_ROUNDED: f64 = 40.0;
-/// A fraction with a larger denominator was rounded, as a decimal with more digits was.
-const LARGEST_DENOMINATOR: u32 = 100_000_000;
 /// Ranges are told apart up to here: a double holds its inverse.
 const WIDEST_RANGE: f64 = 900.0;
 
@@ -45,7 +44,7 @@ impl Coefficients {
         Self {
             fit: fit(system, &parameters),
             chosen: system.parameters.is_empty()
-                && system.expressions.nodes().iter().all(is_chosen),
+                && system.expressions.nodes().iter().all(is_no_rounded_number),
         }
     }
 
@@ -83,11 +82,9 @@ impl Coefficients {
 }
 
 /// Whether a node is no number that was rounded.
-fn is_chosen(node: &Node) -> bool {
+fn is_no_rounded_number(node: &Node) -> bool {
     match node {
-        Node::Constant(number) => [&number.re, &number.im]
-            .into_iter()
-            .all(|part| *part.denom() <= LARGEST_DENOMINATOR),
+        Node::Constant(number) => is_chosen(number),
         _ => true,
     }
 }

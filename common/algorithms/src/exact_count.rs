@@ -3,9 +3,12 @@
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::ExactCount;
-use cognate_systems::polynomial::{SolutionCount, solution_count};
+use cognate_solutions::weak_evidence::WeakEvidence;
+use cognate_systems::polynomial::{CountedSolutions, SolutionCount, solution_count};
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::denominator_factors;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 /// Operations that a count may take for each path, and in all: a tenth of a millisecond and a tenth of a second.
 const OPERATIONS_PER_PATH: u64 = 100_000;
@@ -13,46 +16,143 @@ const MOST_OPERATIONS: u64 = 100_000_000;
 /// ... which are allowed for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
 
-/// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points or on
-/// sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
-/// `known`: the number of solutions of the equations as they are tracked, where it is known already.
-pub(crate) fn compare_with_exact_count(
-    set: &mut SolutionSet,
-    system: &System,
-    known: Option<SolutionCount>,
-) {
-    let paths = &set.paths;
-    if !set.is_settled_as_far_as_it_goes()
-        || paths.finite == paths.total
-        || !paths.degenerate.is_empty()
-    {
-        return;
+/// Why no count is made where none is needed.
+const NOT_NEEDED: &str = "each path ends at a solution of its own";
+/// Why none is made where it would not make the answer settled.
+const IN_DOUBT: &str = "the answer is in doubt without it";
+/// Why none is made of several answers.
+pub(crate) const SEVERAL_TARGETS: &str = "solutions are counted for one set of parameters only";
+/// Why none is made where it is switched off.
+const SWITCHED_OFF: &str = "switched off";
+/// Why none is made where ends are declared to be no answers.
+const DECLARED: &str = "endpoints are counted by name";
+
+/// Whether the solutions of a job are counted without paths.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ExactCounting {
+    /// The paths alone decide.
+    pub switched_off: bool,
+    /// Values of the parameters where solutions are wanted.
+    pub parameters: Vec<Complex64>,
+}
+
+impl ExactCounting {
+    /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points or
+    /// on sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
+    /// `known`: the number of solutions of the equations as they are tracked, where it is known already.
+    pub fn compare(&self, set: &mut SolutionSet, system: &System, known: Option<SolutionCount>) {
+        let counted = self.count(set, system, known);
+        match counted {
+            Ok(counted) => compare(set, counted),
+            Err(reason) => set.no_exact_count = Some(reason),
+        }
+        let exact = set.counts.exact_count.as_ref();
+        if !exact.is_some_and(|exact| confirms(exact, set)) {
+            doubt_clusters(set);
+        }
     }
-    let operations = OPERATIONS_PER_PATH.saturating_mul(paths.total);
-    let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
-    // The given equations have fewer where they have denominators.
-    let known = known.filter(|_| denominator_factors(system).is_empty());
-    if let Some(count) = known.or_else(|| solution_count(system, operations)) {
-        compare(set, count);
+
+    fn count(
+        &self,
+        set: &SolutionSet,
+        system: &System,
+        known: Option<SolutionCount>,
+    ) -> Result<CountedSolutions, String> {
+        let paths = &set.paths;
+        let because = |reason: &str| Err(reason.to_string());
+        if self.switched_off {
+            return because(SWITCHED_OFF);
+        }
+        if !paths.degenerate.is_empty() {
+            return because(DECLARED);
+        }
+        if paths.finite == paths.total {
+            return because(NOT_NEEDED);
+        }
+        if !without_weak_evidence(set).is_settled_as_far_as_it_goes() {
+            return because(IN_DOUBT);
+        }
+        // The given equations have fewer where they have denominators.
+        let known = known.filter(|_| denominator_factors(system).is_empty());
+        if let Some(count) = known {
+            let is_general = false;
+            return Ok(CountedSolutions { count, is_general });
+        }
+        let operations = OPERATIONS_PER_PATH.saturating_mul(paths.total);
+        let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
+        let counted = solution_count(system, &self.parameters, operations);
+        counted.map_err(|reason| reason.to_string())
     }
 }
 
-fn compare(set: &mut SolutionSet, count: SolutionCount) {
+/// The answer as it would be if all verdicts rested on enough.
+fn without_weak_evidence(set: &SolutionSet) -> SolutionSet {
+    let mut paths = set.paths.clone();
+    paths.decided_by_precision_limit -= set.weak_evidence.paths();
+    SolutionSet {
+        paths,
+        counts: set.counts.clone(),
+        ..SolutionSet::default()
+    }
+}
+
+/// Whether a count is that of the answer, so that no verdict on a path needs more evidence.
+fn confirms(exact: &ExactCount, set: &SolutionSet) -> bool {
+    let counts = &set.counts;
+    if !exact.agrees {
+        return false;
+    }
+    match exact.with_multiplicity {
+        Some(with_multiplicity) => {
+            counts.positive_dimensional != Some(true)
+                && counts.with_multiplicity == with_multiplicity
+                // Where no solution is multiple each counts once.
+                && counts.distinct == exact.distinct.unwrap_or(with_multiplicity)
+        }
+        None => !exact.is_general && exact.nonsingular == Some(counts.nonsingular),
+    }
+}
+
+/// Where paths went to infinity together with others, and no count says that no solution is among their ends, nobody
+/// knows whether the answer is complete.
+fn doubt_clusters(set: &mut SolutionSet) {
+    let together = set.in_clusters_at_infinity;
     let counts = &mut set.counts;
-    let claimed = counts.complete == Completeness::Yes;
-    let differs = |found: u64, exact: u64| found > exact || (claimed && found < exact);
+    if together == 0 || counts.complete != Completeness::Yes {
+        return;
+    }
+    let reason = match &set.no_exact_count {
+        Some(reason) => format!("the solutions were not counted exactly: {reason}"),
+        None => "an exact count does not say how many solutions there are".to_string(),
+    };
+    counts.complete = Completeness::NotKnown;
+    let s = if together == 1 { "" } else { "s" };
+    counts.complete_reason = Some(format!(
+        "{together} path{s} went to infinity together with others, and {reason}"
+    ));
+}
+
+fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
+    let CountedSolutions { count, is_general } = counted;
+    let counts = &set.counts;
+    let claimed = counts.complete == Completeness::Yes || set.weak_evidence.paths() > 0;
+    // For special values there may be fewer solutions than for general ones.
+    let differs =
+        |found: u64, exact: u64| found > exact || (claimed && !is_general && found < exact);
     let (exact, contradiction) = match count {
         SolutionCount::Infinite {
             dimension,
             nonsingular,
         } => {
             let differs = nonsingular.is_some_and(|exact| differs(counts.nonsingular, exact));
+            let is_set = counts.positive_dimensional != Some(false);
             let exact = ExactCount {
                 dimension,
                 with_multiplicity: None,
                 distinct: None,
                 nonsingular,
-                agrees: counts.positive_dimensional != Some(false) && !differs,
+                agrees: is_general || (is_set && !differs),
+                is_general,
             };
             let points =
                 nonsingular.map_or(String::new(), |n| format!(" and {n} nonsingular ones"));
@@ -65,15 +165,18 @@ fn compare(set: &mut SolutionSet, count: SolutionCount) {
             with_multiplicity,
             distinct,
         } => {
-            let wrong = counts.positive_dimensional == Some(true)
+            let on_sets = counts.positive_dimensional == Some(true);
+            let wrong = (on_sets && !is_general)
                 || differs(counts.with_multiplicity, with_multiplicity)
-                || distinct.is_some_and(|distinct| differs(counts.distinct, distinct));
+                || (!is_general
+                    && distinct.is_some_and(|distinct| differs(counts.distinct, distinct)));
             let exact = ExactCount {
                 dimension: 0,
                 with_multiplicity: Some(with_multiplicity),
                 distinct,
                 nonsingular: None,
                 agrees: !wrong,
+                is_general,
             };
             let points =
                 distinct.map_or(String::new(), |distinct| format!("{distinct} solutions, "));
@@ -83,21 +186,29 @@ fn compare(set: &mut SolutionSet, count: SolutionCount) {
             )
         }
     };
+    let is_confirmed = confirms(&exact, set);
+    if is_confirmed {
+        set.paths.decided_by_precision_limit -= set.weak_evidence.paths();
+        set.weak_evidence = WeakEvidence::default();
+    }
+    let counts = &mut set.counts;
     if !exact.agrees {
         counts.complete = Completeness::NotKnown;
         let found =
             format!("the equations have {contradiction}: paths were taken for what they are not");
         counts.complete_reason = Some(found.clone());
         set.warnings.push(found);
-    } else if exact.with_multiplicity == Some(counts.with_multiplicity)
-        && exact.distinct == Some(counts.distinct)
-    {
+    } else if is_confirmed && exact.with_multiplicity.is_some() {
         counts.complete = Completeness::Yes;
-        let why = "as many solutions as the equations have by an exact count";
+        let why = match is_general {
+            true => "as many solutions as the equations have for general values of their numbers",
+            false => "as many solutions as the equations have by an exact count",
+        };
         counts.complete_reason = Some(why.to_string());
-    } else if exact
-        .distinct
-        .is_some_and(|distinct| counts.distinct < distinct)
+    } else if !is_general
+        && exact
+            .distinct
+            .is_some_and(|distinct| counts.distinct < distinct)
     {
         counts.complete = Completeness::No;
         let why = format!("the equations have {contradiction}");
@@ -131,10 +242,17 @@ mod tests {
         }
     }
 
+    fn exactly(count: SolutionCount) -> CountedSolutions {
+        CountedSolutions {
+            count,
+            is_general: false,
+        }
+    }
+
     #[test]
     fn answers_that_agree_stay_as_they_are() {
         let mut set = answer();
-        compare(&mut set, finite(2, 2));
+        compare(&mut set, exactly(finite(2, 2)));
         assert!(set.settled() && set.warnings.is_empty());
         assert_eq!(set.counts.complete, Completeness::Yes);
     }
@@ -153,19 +271,19 @@ mod tests {
             infinite,
         ] {
             let mut set = answer();
-            compare(&mut set, wrong);
+            compare(&mut set, exactly(wrong));
             assert!(!set.settled() && set.warnings.len() == 1, "{wrong:?}");
             assert_eq!(set.counts.complete, Completeness::NotKnown);
         }
         let mut set = answer();
         set.counts.positive_dimensional = Some(true);
         let mut again = set.clone();
-        compare(&mut set, finite(2, 2));
+        compare(&mut set, exactly(finite(2, 2)));
         assert!(!set.settled(), "no set of solutions is there");
-        compare(&mut again, infinite);
+        compare(&mut again, exactly(infinite));
         assert!(again.settled());
         again.counts.nonsingular = 3;
-        compare(&mut again, infinite);
+        compare(&mut again, exactly(infinite));
         assert!(!again.settled(), "a point of a set");
     }
 
@@ -174,10 +292,73 @@ mod tests {
         let mut set = answer();
         set.counts.complete = Completeness::NotKnown;
         let mut more = set.clone();
-        compare(&mut more, finite(3, 3));
+        compare(&mut more, exactly(finite(3, 3)));
         assert_eq!(more.counts.complete, Completeness::No);
         assert!(more.is_settled_as_far_as_it_goes() && !more.settled());
-        compare(&mut set, finite(2, 2));
+        compare(&mut set, exactly(finite(2, 2)));
         assert!(set.settled() && set.counts.complete == Completeness::Yes);
+    }
+
+    /// A count of general values confirms, and says nothing where it is larger.
+    #[test]
+    fn special_values_may_have_fewer_solutions_than_general_ones() {
+        let general = |count| CountedSolutions {
+            count,
+            is_general: true,
+        };
+        let mut set = answer();
+        compare(&mut set, general(finite(3, 3)));
+        assert!(set.settled() && set.counts.complete == Completeness::Yes);
+        let mut set = answer();
+        compare(&mut set, general(finite(1, 1)));
+        assert!(!set.settled(), "more regular solutions than there are");
+        let mut set = doubtful();
+        compare(&mut set, general(finite(3, 3)));
+        assert!(!set.settled());
+        compare(&mut set, general(finite(2, 2)));
+        assert!(set.settled() && set.counts.complete == Completeness::Yes);
+    }
+
+    /// The same, whose paths to infinity show too little.
+    fn doubtful() -> SolutionSet {
+        let mut set = answer();
+        set.weak_evidence.at_infinity = 2;
+        set.in_clusters_at_infinity = 2;
+        set.paths.decided_by_precision_limit = 2;
+        set.counts.complete = Completeness::NotKnown;
+        set
+    }
+
+    #[test]
+    fn a_count_settles_what_paths_leave_open() {
+        let mut set = doubtful();
+        assert!(!set.settled());
+        compare(&mut set, exactly(finite(2, 2)));
+        assert!(set.settled() && set.counts.complete == Completeness::Yes);
+        let mut set = doubtful();
+        compare(&mut set, exactly(finite(3, 3)));
+        assert!(!set.settled() && set.warnings.len() == 1);
+    }
+
+    #[test]
+    fn without_a_count_an_answer_with_clusters_at_infinity_is_not_known_to_be_complete() {
+        let counting = ExactCounting {
+            switched_off: true,
+            ..ExactCounting::default()
+        };
+        let system = System::default();
+        let mut set = answer();
+        counting.compare(&mut set, &system, None);
+        assert_eq!(set.counts.complete, Completeness::Yes);
+        let mut set = answer();
+        set.in_clusters_at_infinity = 2;
+        counting.compare(&mut set, &system, None);
+        assert!(set.settled() && set.counts.exact_count.is_none());
+        assert_eq!(set.counts.complete, Completeness::NotKnown);
+        let reason = set.counts.complete_reason.unwrap();
+        assert!(
+            reason.contains("not counted exactly: switched off"),
+            "{reason}"
+        );
     }
 }

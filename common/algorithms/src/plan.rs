@@ -7,6 +7,7 @@ use crate::closings::digits::Digits;
 use crate::coefficient_family::{CoefficientFamily, coefficient_family};
 use crate::coefficients::Coefficients;
 use crate::decomposition::{DecompositionOptions, DecompositionSolve};
+use crate::exact_count::ExactCounting;
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
 use crate::limits::CHOOSING_OPERATIONS;
@@ -91,6 +92,16 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
         start => plan_start_system(system, start, options),
     }?;
     let closings = options.closings;
+    let counting = ExactCounting {
+        switched_off: closings.no_exact_count,
+        // Start points lead to some of the solutions, which need not be all.
+        parameters: match (&options.method, options.target_parameters.as_slice()) {
+            (SolveMethod::Given(_) | SolveMethod::Monodromy(_), _) => Vec::new(),
+            (_, [values]) => values.clone(),
+            _ => Vec::new(),
+        },
+    };
+    plan.algorithm = plan.algorithm.with_counting(counting);
     let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
     let more_digits = digits > DIGITS_OF_DOUBLES || closings.deflate;
     if (more_digits || closings.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
@@ -308,8 +319,11 @@ fn plan_polyhedral(
         attempt: 0,
     };
     let tolerances = options.tracking.tolerances.clone();
-    let solve =
-        PolyhedralSolve::new(first, system, parameters, tolerances).regular_ends_first(system);
+    let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
+    let solve = match options.closings.no_exact_count {
+        true => solve,
+        false => solve.regular_ends_first(system),
+    };
     Ok(Plan {
         system: system.clone(),
         algorithm: AnyAlgorithm::from(AnySolve::Polyhedral(Box::new(solve)))
@@ -628,7 +642,12 @@ fn finish(
         )))
     } else {
         let solve = ZeroDimensionalSolve::new(first, &system, tolerances);
-        AnyAlgorithm::from(AnySolve::ZeroDimensional(solve.regular_ends_first(&system)))
+        AnyAlgorithm::from(AnySolve::ZeroDimensional(
+            match options.closings.no_exact_count {
+                true => solve,
+                false => solve.regular_ends_first(&system),
+            },
+        ))
     };
     Plan {
         system,

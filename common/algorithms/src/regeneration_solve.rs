@@ -311,6 +311,7 @@ impl Solve for RegenerationSolve {
             complete_start: self.left_behind == 0,
             may_miss: self.may_miss(),
             images: 0,
+            least_on_sets: 0,
         };
         for target in 0..targets(self.stage.first()) as usize {
             let present = self.stage.history(target, false);

@@ -58,6 +58,11 @@ pub struct StartCosts {
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
 
+/// From this degree of an equation on a start with fewer paths to infinity is taken even where each path costs more.
+/// Two equations of two terms and degree 165, 169 paths by groups: 32 s, and 158 of 159 solutions; 159 paths by mixed
+/// cells: 0.1 s and all of them.
+const HIGH_DEGREE: u32 = 24;
+
 /// Why a start by groups has half as many paths as its number.
 pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
 
@@ -234,6 +239,9 @@ impl Starts {
             // A start by mixed cells has no path where the mixed volume is 0: special coefficients may
             // still have isolated solutions at infinity or sets of solutions, which others meet.
             Some(Ok(volume)) if volume > 0 && polyhedral_is_cheaper(volume, fewest) => Some(volume),
+            Some(Ok(volume)) if volume > 0 && volume < fewest && self.has_high_degree() => {
+                Some(volume)
+            }
             _ => None,
         };
         if let Some(Ok((tracked, start, number))) = &self.linear_product
@@ -272,6 +280,15 @@ impl Starts {
             None => why,
         };
         Ok((kind, why))
+    }
+
+    /// Whether paths to infinity may run there in cycles of very many sheets, which take long and are hard to tell from
+    /// solutions.
+    fn has_high_degree(&self) -> bool {
+        self.degrees
+            .total
+            .iter()
+            .any(|&degree| degree >= HIGH_DEGREE)
     }
 
     fn cheaper(&self) -> Result<(StartKind, String), PlanError> {

@@ -9,4 +9,7 @@ pub struct ClosingOptions {
     pub digits: Option<u32>,
     /// Whether isolated singular solutions are brought to their digits by deflation.
     pub deflate: bool,
+    /// Whether the answer rests on the paths alone: the solutions are not counted by elimination over a prime field,
+    /// neither at the end nor to leave paths unfollowed.
+    pub no_exact_count: bool,
 }

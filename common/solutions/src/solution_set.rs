@@ -17,12 +17,20 @@ use crate::real::is_real;
 use crate::solution::Solution;
 use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
 use crate::symmetry::classes;
+use crate::weak_evidence::{WeakEvidence, is_in_cluster};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+
+/// What is said of paths whose verdicts rest on too little.
+const AT_INFINITY: &str =
+    "at infinity as far as several sheets together show: solutions may be among their ends";
+const ON_SETS: &str = "on a positive-dimensional set, which is seen with too few paths or digits";
+const MULTIPLE: &str =
+    "at multiple points, which may be several points beyond the digits of the paths";
 
 /// What is known of a solve besides its last results.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -41,6 +49,8 @@ pub struct History {
     pub may_miss: Option<String>,
     /// How many of the results are images of others (see `images`).
     pub images: u64,
+    /// At least so many paths end on positive-dimensional sets, where there are some: paths of fewer end at points.
+    pub least_on_sets: u64,
 }
 
 /// Why a path counts as failed.
@@ -104,6 +114,13 @@ pub struct SolutionSet {
     pub warnings: Vec<String>,
     /// What the certificates are of, where there are some.
     pub certified_system: Option<CertifiedSystem>,
+    /// Verdicts that rest on too little; none where an exact count agrees. The paths are among those that are
+    /// counted as decided by the limit of the precision.
+    pub weak_evidence: WeakEvidence,
+    /// Paths that were taken to infinity together with others.
+    pub in_clusters_at_infinity: u64,
+    /// Why the solutions were not counted without paths; `None` where they were.
+    pub no_exact_count: Option<String>,
 }
 
 impl SolutionSet {
@@ -204,6 +221,7 @@ impl<'a> Draft<'a> {
         self.fail_what_coincides();
         self.remove_zero_denominators();
         self.list_failures();
+        self.weigh_evidence(history);
         self.count_paths(history);
         let representatives = self.merge(history);
         self.decide_reality(&representatives);
@@ -401,6 +419,20 @@ impl<'a> Draft<'a> {
         }
     }
 
+    fn weigh_evidence(&mut self, history: &History) {
+        let (results, decisions) = (self.results, &self.decisions);
+        let least_on_sets = match self.system.equation_count() == self.system.dimension() {
+            true => history.least_on_sets,
+            false => 0,
+        };
+        self.set.weak_evidence =
+            WeakEvidence::of(self.system, &self.shape, results, decisions, least_on_sets);
+        let in_clusters = results.iter().zip(decisions).filter(|(result, decision)| {
+            decision.verdict == Verdict::AtInfinity && is_in_cluster(result)
+        });
+        self.set.in_clusters_at_infinity = in_clusters.count() as u64;
+    }
+
     fn count_paths(&mut self, history: &History) {
         let count = |verdict: Verdict| {
             let of_it = self.decisions.iter().filter(|d| d.verdict == verdict);
@@ -422,11 +454,10 @@ impl<'a> Draft<'a> {
             retracked: history.retracked,
             crossings_found: history.crossings_found,
             crossings_resolved: history.crossings_resolved,
-            decided_by_precision_limit: self
-                .decisions
-                .iter()
-                .filter(|d| d.by_precision_limit)
-                .count() as u64,
+            decided_by_precision_limit: {
+                let by_limit = self.decisions.iter().filter(|d| d.by_precision_limit);
+                by_limit.count() as u64 + self.set.weak_evidence.paths()
+            },
             degenerate: {
                 let sets = std::mem::take(&mut self.in_declared_sets).into_iter();
                 let kept = |k: &usize| self.decisions[*k].verdict != Verdict::ZeroDenominator;
@@ -515,11 +546,11 @@ impl<'a> Draft<'a> {
     }
 
     /// As many paths end at an isolated point as its dual space has dimensions, where all paths of
-    /// a complete start are known and the equations were tracked as they are. Where that is not so, points were
-    /// taken for one, or one for several.
+    /// a complete start are known and the equations were tracked as they are, and no fewer where combinations were.
+    /// Where that is not so, points were taken for one, or one for several.
     fn compare_multiplicities(&mut self, history: &History, found: &[(usize, Solution)]) {
         let square = self.system.equation_count() == self.system.dimension();
-        if !history.complete_start || !square || !self.set.failed.is_empty() {
+        if !history.complete_start || !self.set.failed.is_empty() {
             return;
         }
         let differing: Vec<u64> = found
@@ -527,10 +558,14 @@ impl<'a> Draft<'a> {
             .filter(|(_, solution)| solution.singular)
             .filter(
                 |(place, solution)| match isolation(&self.results[*place], self.tolerances) {
-                    Isolation::Isolated { multiplicity } => {
+                    Isolation::Isolated { multiplicity } if square => {
                         u64::from(multiplicity) != solution.multiplicity
                     }
-                    Isolation::PositiveDimensional | Isolation::Undecided => true,
+                    // A point of combinations has at least the multiplicity of the equations that are asked.
+                    Isolation::Isolated { multiplicity } => {
+                        u64::from(multiplicity) > solution.paths.len() as u64
+                    }
+                    Isolation::PositiveDimensional | Isolation::Undecided => square,
                 },
             )
             .map(|(_, solution)| solution.paths[0])
@@ -554,7 +589,7 @@ impl<'a> Draft<'a> {
         let values = self.shape.to_variables(result.endpoint.to_double());
         let solution = Solution {
             variables: self.system.variables.iter().cloned().zip(values).collect(),
-            multiplicity: members.len() as u64,
+            multiplicity: self.multiplicity(members.len() as u64, result),
             cycles: cycles(
                 members
                     .iter()
@@ -577,6 +612,18 @@ impl<'a> Draft<'a> {
             undecided: verdict == Verdict::Undecided,
         };
         (best, solution)
+    }
+
+    /// The multiplicity of a solution at which so many paths end: that many, unless combinations of more equations were
+    /// tracked, of which a multiple point has a higher multiplicity.
+    fn multiplicity(&self, paths: u64, result: &PathResult) -> u64 {
+        if self.system.equation_count() <= self.system.dimension() {
+            return paths;
+        }
+        match isolation(result, self.tolerances) {
+            Isolation::Isolated { multiplicity } => paths.min(u64::from(multiplicity)),
+            Isolation::PositiveDimensional | Isolation::Undecided => paths,
+        }
     }
 
     /// The most accurate of some coinciding endpoints; one whose dual spaces were asked, where there is one.
@@ -655,10 +702,11 @@ impl<'a> Draft<'a> {
             counts.nonsingular, set.paths.finite,
             "each finite path has a solution of its own"
         );
+        let paths: u64 = set.solutions.iter().map(|s| s.paths.len() as u64).sum();
         assert_eq!(
-            counts.with_multiplicity,
+            paths,
             set.paths.finite + set.paths.singular,
-            "each path to a finite point is counted in one multiplicity"
+            "each path to a finite point is one of a solution"
         );
     }
 
@@ -675,7 +723,15 @@ impl<'a> Draft<'a> {
         say(paths.failed, "path", "failed");
         let crossings = paths.crossings_found - paths.crossings_resolved;
         say(crossings, "path crossing", "not resolved");
-        let limit = paths.decided_by_precision_limit;
+        let limit = paths.decided_by_precision_limit - self.set.weak_evidence.paths();
+        let WeakEvidence {
+            at_infinity,
+            on_sets,
+            multiple,
+        } = self.set.weak_evidence;
+        say(at_infinity, "path", AT_INFINITY);
+        say(on_sets, "path", ON_SETS);
+        say(multiple, "path", MULTIPLE);
         say(
             limit,
             "path",
@@ -769,15 +825,12 @@ impl<'a> Draft<'a> {
                 ));
             }
         }
-        if paths.decided_by_precision_limit > 0 {
+        let by_limit = paths.decided_by_precision_limit - set.weak_evidence.paths();
+        if by_limit > 0 {
             set.warnings.push(format!(
                 "{} path{} finite or at infinity only by the limit of the precision",
-                paths.decided_by_precision_limit,
-                if paths.decided_by_precision_limit == 1 {
-                    " is"
-                } else {
-                    "s are"
-                },
+                by_limit,
+                if by_limit == 1 { " is" } else { "s are" },
             ));
         }
     }

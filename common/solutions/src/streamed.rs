@@ -12,6 +12,7 @@ use crate::point_shape::PointShape;
 use crate::real::is_real;
 use crate::solution::Solution;
 use crate::solution_set::SolutionSet;
+use crate::weak_evidence::{is_in_cluster, may_be_finite};
 use cognate_continuation::path_result::{BoundaryKey, PathResult};
 use cognate_continuation::projection::Projection;
 use cognate_continuation::tracker::outcome::PathOutcome;
@@ -29,6 +30,8 @@ pub struct StreamedCounts {
     pub at_infinity: u64,
     /// Of these: not at a regular point, so that something of positive dimension may be there.
     pub not_regular: u64,
+    /// Of these: together with other sheets.
+    pub in_clusters: u64,
     /// At a real point; 0 where that is not asked.
     pub real: u64,
     /// By the highest precision that they used, in bits.
@@ -97,6 +100,7 @@ impl PathFilter {
             (verdict @ (Verdict::Finite | Verdict::AtInfinity), PathOutcome::Regular) => {
                 Kind::Regular(verdict)
             }
+            (Verdict::AtInfinity, _) if may_be_finite(result, &self.shape) => Kind::Special,
             (Verdict::AtInfinity, _) => Kind::Away,
             _ => Kind::Special,
         }
@@ -239,6 +243,9 @@ impl EndpointIndex {
             Kind::Away => {
                 change(&mut counts.at_infinity);
                 change(&mut counts.not_regular);
+                if is_in_cluster(result) {
+                    change(&mut counts.in_clusters);
+                }
             }
             Kind::Regular(Verdict::Finite) => {
                 change(&mut counts.finite);
@@ -336,6 +343,7 @@ impl SolutionSet {
         paths.total += streamed.total();
         paths.finite += streamed.finite;
         paths.at_infinity += streamed.at_infinity;
+        self.in_clusters_at_infinity += streamed.in_clusters;
         for (&bits, &count) in &streamed.by_precision {
             *paths.by_precision.entry(bits).or_default() += count;
             paths.highest_precision_bits = paths.highest_precision_bits.max(bits);

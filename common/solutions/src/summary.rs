@@ -123,7 +123,8 @@ pub struct SolutionCounts {
     pub doubtful_denominators: u64,
 }
 
-/// How many solutions the equations have by elimination over a prime field.
+/// How many solutions the equations have by elimination over a prime field; for general values of numbers in the
+/// equations that are not exact, whose solutions are at least as many.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExactCount {
     /// Dimension of the set of solutions; 0 also where there is none.
@@ -136,6 +137,9 @@ pub struct ExactCount {
     pub nonsingular: Option<u64>,
     /// Whether what paths found agrees with it.
     pub agrees: bool,
+    /// Whether it is that of general values.
+    #[serde(default)]
+    pub is_general: bool,
 }
 
 /// Solutions with more digits than paths give.

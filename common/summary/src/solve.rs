@@ -35,6 +35,9 @@ pub struct Summary {
     pub workers: Vec<WorkerBlock>,
     /// Why paths failed: how many for each reason.
     pub failures: BTreeMap<String, u64>,
+    /// Whether the solutions were counted without paths.
+    #[serde(default)]
+    pub exact_count: ExactCountBlock,
     /// Each target's counts, where there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<TargetBlock>,
@@ -65,6 +68,42 @@ pub struct ProblemBlock {
     pub why: String,
     /// Seed of everything random.
     pub seed: u64,
+}
+
+/// Whether the solutions were counted without paths, by elimination over a prime field.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ExactCountBlock {
+    /// Whether there is a count.
+    pub made: bool,
+    /// Isolated solutions, each once; null where that is not known, or sets of solutions are there.
+    pub isolated: Option<u64>,
+    /// The same with their multiplicities.
+    pub with_multiplicity: Option<u64>,
+    /// Why there is none.
+    pub reason: Option<String>,
+}
+
+impl ExactCountBlock {
+    /// That of the answers for each target.
+    fn of(sets: &[SolutionSet]) -> Self {
+        let first = sets.first();
+        let count = match sets {
+            [set] => set.counts.exact_count.as_ref(),
+            _ => None,
+        };
+        match count {
+            Some(count) => Self {
+                made: true,
+                isolated: count.distinct,
+                with_multiplicity: count.with_multiplicity,
+                reason: None,
+            },
+            None => Self {
+                reason: first.and_then(|set| set.no_exact_count.clone()),
+                ..Self::default()
+            },
+        }
+    }
 }
 
 /// A solve by monodromy.
@@ -140,6 +179,7 @@ impl Summary {
             time: about.time.clone(),
             workers: about.workers.clone(),
             failures,
+            exact_count: ExactCountBlock::of(sets),
             targets: match sets {
                 [_] => Vec::new(),
                 several => several.iter().map(block).collect(),

@@ -233,6 +233,10 @@ pub struct ProblemArguments {
     /// also solutions that rounding makes, near infinity, are followed to their ends
     #[arg(long)]
     pub exact: bool,
+    /// Let the paths alone decide: without the count of the solutions by elimination over a prime field, which
+    /// says whether paths were taken for what they are not
+    #[arg(long)]
+    pub no_exact_count: bool,
     /// Let a trace test decide when --start monodromy has all solutions: it is a proof but for
     /// rounding, where loops without anything new are only evidence
     #[arg(long)]
@@ -410,6 +414,9 @@ pub struct Decompose {
     /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
     #[arg(long, help_heading = "Problem")]
     pub exact: bool,
+    /// Let the paths alone decide, without counts of solutions by elimination over a prime field
+    #[arg(long, help_heading = "Problem")]
+    pub no_exact_count: bool,
     /// A coordinator of the command's own, or one that runs.
     #[command(flatten)]
     pub service: OwnOrRunning,
@@ -437,6 +444,7 @@ impl Decompose {
             preset: self.preset,
             precision: self.precision,
             exact: self.exact,
+            no_exact_count: self.no_exact_count,
             ..ProblemArguments::default()
         }
     }

@@ -146,6 +146,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             certify: a.certify,
             digits: a.digits.or(file.digits),
             deflate: a.deflate,
+            no_exact_count: a.no_exact_count,
         },
         trace_test: a.trace_test,
         confidence: a.confidence,

@@ -40,7 +40,8 @@ class Options(TypedDict, total=False):
     `precision`: `adaptive`, `double` or a number of bits.
     `idle_loops`, `confidence`, `expect`, `trace_test`: when loops of `monodromy` end.
     `certify`: proofs. `digits`: decimal digits of the solutions. `deflate`: also of singular ones.
-    `exact`: long decimals are exact, not rounded.
+    `exact`: long decimals are exact, not rounded. `no_exact_count`: the paths alone decide, without the count of the
+    solutions by elimination over a prime field.
     """
 
     start: str | Result
@@ -63,6 +64,7 @@ class Options(TypedDict, total=False):
     digits: int
     deflate: bool
     exact: bool
+    no_exact_count: bool
 
 
 class _Names:
@@ -158,7 +160,7 @@ def arguments(
         if value is not None:
             # In one word, so that a negative number is no option.
             found.append(f"--{name.replace('_', '-')}={value}")
-    for name in ("certify", "deflate", "exact", "trace_test"):
+    for name in ("certify", "deflate", "exact", "no_exact_count", "trace_test"):
         if options.get(name):
             found.append(f"--{name.replace('_', '-')}")
     return found, own

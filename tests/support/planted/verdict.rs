@@ -3,7 +3,7 @@
 use super::Planted;
 use crate::dice::Dice;
 use crate::measures::cpu_seconds;
-use cognate_algorithms::plan::SolveMethod;
+use cognate_algorithms::plan::{ClosingOptions, SolveMethod};
 use cognate_algorithms::run_locally::drive;
 use cognate_algorithms::{PathAlgorithm, SolveOptions, plan};
 use cognate_continuation::item_result::ItemResult;
@@ -169,19 +169,27 @@ pub fn solve_within(
     first.ok_or_else(|| refused("there is no solution set".into()))
 }
 
-/// Solves with one start and seed, within this CPU time.
-pub fn solve(planted: &Planted, start: SolveMethod, seed: u64, limit: Duration) -> Verdict {
+/// A solve with one start and seed, with an exact count of the solutions or without.
+pub fn options(start: SolveMethod, seed: u64, no_exact_count: bool) -> SolveOptions {
+    SolveOptions {
+        method: start,
+        seed,
+        closings: ClosingOptions {
+            no_exact_count,
+            ..ClosingOptions::default()
+        },
+        ..SolveOptions::default()
+    }
+}
+
+/// Solves within this CPU time.
+pub fn solve(planted: &Planted, options: &SolveOptions, limit: Duration) -> Verdict {
     let text = planted.file("");
     let system = match formats::read("planted", text.as_bytes()) {
         Ok(problem) => problem.system,
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    let options = SolveOptions {
-        method: start,
-        seed,
-        ..SolveOptions::default()
-    };
-    let set = match solve_within(&system, &options, limit) {
+    let set = match solve_within(&system, options, limit) {
         Ok(set) => set,
         Err(verdict) => return verdict,
     };

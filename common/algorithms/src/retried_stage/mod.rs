@@ -536,6 +536,18 @@ impl RetriedStage {
         }
     }
 
+    /// A set of dimension 1 or more is a component of the common points of hypersurfaces in a projective space to which
+    /// at least as many paths of a total-degree start lead as the lowest degree says (W. Fulton, Intersection Theory,
+    /// 1998, theorem 12.3).
+    fn least_on_sets(&self) -> u64 {
+        match &self.criteria.first.start_points {
+            StartPoints::TotalDegree { degrees } => {
+                u64::from(degrees.iter().copied().min().unwrap_or_default())
+            }
+            _ => 0,
+        }
+    }
+
     /// What was done for the paths of one target.
     pub fn history(&self, target: usize, complete_start: bool) -> History {
         let record = &self.targets[target];
@@ -549,6 +561,7 @@ impl RetriedStage {
                 Some(_) => self.criteria.paths_per_target,
                 None => 0,
             },
+            least_on_sets: self.least_on_sets(),
         }
     }
 

@@ -140,7 +140,13 @@ impl PutAside {
         if count.is_none() && unended > 0 {
             let operations = OPERATIONS_PER_PATH.saturating_mul(unended);
             let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
-            *count = Some(solution_count(system, operations));
+            // What is known of general values says nothing of each path.
+            let counted = solution_count(system, &[], operations).ok();
+            *count = Some(
+                counted
+                    .filter(|counted| !counted.is_general)
+                    .map(|c| c.count),
+            );
         }
     }
 

@@ -162,6 +162,7 @@ fn without_method(m: v1::Options) -> Result<Options, ProtocolError> {
             certify: m.certify,
             digits: digits(m.digits)?,
             deflate: m.deflate,
+            no_exact_count: m.no_exact_count,
         },
         trace_test: m.trace_test,
         confidence: confidence(m.confidence)?,

@@ -93,6 +93,7 @@ pub fn options(options: &Options) -> v1::Options {
         confidence: options.confidence,
         digits: options.closings.digits,
         deflate: options.closings.deflate,
+        no_exact_count: options.closings.no_exact_count,
         warnings: options.warnings.clone(),
         sets: options
             .sets

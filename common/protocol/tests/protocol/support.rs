@@ -251,6 +251,7 @@ impl Draw {
                 certify: length > 1,
                 digits: (count > 1).then_some(50),
                 deflate: length > 2,
+                no_exact_count: length == 2,
             },
             trace_test: length == 1,
             confidence: (count > 1).then_some(0.999),

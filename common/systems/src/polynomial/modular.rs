@@ -30,11 +30,11 @@ pub(super) struct Field {
 }
 
 impl Field {
-    fn add(self, a: u64, b: u64) -> u64 {
+    pub(super) fn add(self, a: u64, b: u64) -> u64 {
         (a + b) % self.prime
     }
 
-    fn sub(self, a: u64, b: u64) -> u64 {
+    pub(super) fn sub(self, a: u64, b: u64) -> u64 {
         (a + self.prime - b) % self.prime
     }
 
@@ -42,7 +42,7 @@ impl Field {
         (u128::from(a) * u128::from(b) % u128::from(self.prime)) as u64
     }
 
-    fn power(self, mut base: u64, mut exponent: u64) -> u64 {
+    pub(super) fn power(self, mut base: u64, mut exponent: u64) -> u64 {
         let mut result = 1;
         while exponent > 0 {
             if exponent & 1 == 1 {

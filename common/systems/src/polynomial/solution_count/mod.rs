@@ -1,18 +1,23 @@
 //! SolutionCount: how many solutions a system has, without following a path.
 
+mod chosen;
+mod equations;
 mod groebner;
 mod monomial;
 mod nonsingular;
+mod not_counted;
 mod quotient;
 
-use super::Polynomial;
-use super::dual_dimensions::FIELD;
-use crate::expression::NodeId;
+use crate::expression::Node;
+use crate::expression::differentiate::below;
 use crate::system::System;
-use crate::transform::clear_denominators::denominator_factors;
+pub use chosen::is_chosen;
+use equations::CountedEquations;
 use groebner::{Budget, Terms, groebner_basis};
-use monomial::{MOST_VARIABLES, Monomial};
+use monomial::Monomial;
 use nonsingular::{with_inverse_of_determinant, with_inverses};
+pub use not_counted::NotCounted;
+use num_complex::Complex64;
 use quotient::Quotient;
 use serde::{Deserialize, Serialize};
 
@@ -36,37 +41,76 @@ pub enum SolutionCount {
     },
 }
 
-/// Counts the solutions of a system of affine groups without parameters, in at most some operations: from a Gröbner
+/// The solutions of a system, counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CountedSolutions {
+    /// How many there are.
+    pub count: SolutionCount,
+    /// Whether these are the solutions for general values of some numbers in the equations. For the values themselves
+    /// there are no more isolated solutions, each with its multiplicity, where all are counted finite.
+    pub is_general: bool,
+}
+
+/// Counts the solutions of a system whose parameters have these values, in at most some operations: from a Gröbner
 /// basis over a prime field. That is the count over the rationals but for primes that divide one of the numbers
-/// on the way, with odds of some 1e-8. `None` where it takes more, or equations are no polynomials with
-/// rational coefficients. Points where a denominator of the given equations is 0 are no solutions.
+/// on the way, with odds of some 1e-8. In homogeneous groups points of projective spaces are counted.
+/// Points where a denominator of the given equations is 0 are no solutions.
 ///
 /// D. Cox, J. Little, D. O'Shea: Using Algebraic Geometry, 2005, chapters 2 and 4.
-pub fn solution_count(system: &System, operations: u64) -> Option<SolutionCount> {
-    let variables = system.variable_count();
-    let affine = system.groups.iter().all(|group| !group.homogeneous);
-    if !affine || !system.parameters.is_empty() || variables > MOST_VARIABLES {
-        return None;
+pub fn solution_count(
+    system: &System,
+    parameters: &[Complex64],
+    operations: u64,
+) -> Result<CountedSolutions, NotCounted> {
+    let counted = CountedEquations::of(system, parameters)?;
+    let is_square = system.equation_count() == system.dimension();
+    if !is_square && (counted.is_general || is_rounded(system)) {
+        return Err(NotCounted::NotExact);
     }
-    let residues = |equation: &NodeId| -> Option<Terms> {
-        let polynomial = Polynomial::expand(&system.expressions, *equation, variables, 0)?;
-        let terms = polynomial.terms.iter();
-        let terms =
-            terms.map(|(exponents, c)| Some((Monomial::new(exponents)?, FIELD.complex(c)?)));
-        let mut terms = terms.collect::<Option<Terms>>()?;
-        terms.retain(|&(_, c)| c != 0);
-        terms.sort_unstable_by_key(|&(monomial, _)| std::cmp::Reverse(monomial));
-        Some(terms)
+    let CountedEquations {
+        ideal,
+        conjugates,
+        is_general,
+    } = counted;
+    let count = ideal.count(operations).ok_or(NotCounted::Operations)?;
+    let count = of_one(count, conjugates).ok_or(NotCounted::Constants)?;
+    Ok(CountedSolutions { count, is_general })
+}
+
+/// Whether the equations have numbers that were rounded.
+fn is_rounded(system: &System) -> bool {
+    let nodes = below(&system.expressions, &system.equations);
+    nodes
+        .into_iter()
+        .any(|id| match system.expressions.node(id) {
+            Node::Constant(number) => !is_chosen(number),
+            _ => false,
+        })
+}
+
+/// The count of one of several conjugate systems that were counted together.
+fn of_one(count: SolutionCount, conjugates: u64) -> Option<SolutionCount> {
+    let of_one = |number: u64| {
+        number
+            .is_multiple_of(conjugates)
+            .then(|| number / conjugates)
     };
-    let equations: Option<Vec<Terms>> = system.equations.iter().map(residues).collect();
-    let denominators = denominator_factors(system);
-    let denominators: Option<Vec<Terms>> = denominators.iter().map(residues).collect();
-    let ideal = Ideal {
-        variables,
-        equations: equations?,
-        denominators: denominators?,
-    };
-    ideal.count(operations)
+    Some(match count {
+        SolutionCount::Finite {
+            with_multiplicity,
+            distinct,
+        } => SolutionCount::Finite {
+            with_multiplicity: of_one(with_multiplicity)?,
+            distinct: distinct.and_then(of_one),
+        },
+        SolutionCount::Infinite {
+            dimension,
+            nonsingular,
+        } => SolutionCount::Infinite {
+            dimension,
+            nonsingular: nonsingular.and_then(of_one),
+        },
+    })
 }
 
 /// Equations, and polynomials that are 0 at no point that counts.
@@ -127,7 +171,10 @@ mod tests {
     fn count_of(text: &str) -> Option<SolutionCount> {
         let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
         let read = crate::formats::read("test", text.as_bytes());
-        solution_count(&read.expect("a problem of this test").system, 10_000_000)
+        let system = read.expect("a problem of this test").system;
+        let counted = solution_count(&system, &[], 10_000_000).ok()?;
+        assert!(!counted.is_general, "{text}");
+        Some(counted.count)
     }
 
     fn finite(with_multiplicity: u64, distinct: u64) -> Option<SolutionCount> {
@@ -216,11 +263,65 @@ mod tests {
         assert_eq!(count_of(katsura_3), finite(8, 8));
     }
 
+    /// The number of solutions does not change with an equation's factor, with the sign of a square root, or with a
+    /// number that fulfils no relation.
+    #[test]
+    fn irrational_numbers_are_counted_exactly_where_their_relations_are_known() {
+        let of = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
+        assert_eq!(of("f = Pi*(x^2 - 2); g = y^2 - x;"), finite(4, 4));
+        assert_eq!(
+            of("f = x - y - sqrt(2); g = 1e-18*y^3 - x^2 + 2;"),
+            finite(3, 3)
+        );
+        // With sqrt(2) a double solution, and with sqrt(2), sqrt(3) two.
+        assert_eq!(of("f = x^2 - 2*sqrt(2)*x + 2; g = y - x;"), finite(2, 1));
+        let two = "f = x^2 - 2*sqrt(2)*x + 2; g = (y - x/sqrt(3))^2;";
+        assert_eq!(of(two), finite(4, 1));
+        assert_eq!(
+            of("f = x^2 + y^2 - 1; g = x*sin(1) - y*cos(1);"),
+            finite(2, 2)
+        );
+        assert_eq!(of("f = x^2 - Pi; g = x*y - 1/Pi;"), finite(2, 2));
+    }
+
+    #[test]
+    fn general_values_are_said_to_be_general() {
+        let general = |text: &str, parameters: &[Complex64]| {
+            let read = crate::formats::read("test", text.as_bytes());
+            let system = read.expect("a problem of this test").system;
+            solution_count(&system, parameters, 10_000_000)
+        };
+        let counted = |with_multiplicity, distinct, is_general| {
+            let count = finite(with_multiplicity, distinct).unwrap();
+            Ok(CountedSolutions { count, is_general })
+        };
+        // sqrt(8) is twice sqrt(2).
+        let text = "variable_group x; function f; f = (x - sqrt(8))*(x - 2*sqrt(2));";
+        assert_eq!(general(text, &[]), counted(2, 2, true));
+        let text = r#"{"variables": ["x"], "parameters": ["p"], "equations": ["x^2 - p*x + 1"]}"#;
+        let value = |p| [Complex64::new(p, 0.0)];
+        assert_eq!(general(text, &value(2.0)), counted(2, 1, false));
+        assert_eq!(general(text, &value(0.1)), counted(2, 2, true));
+        assert_eq!(general(text, &[]), Err(NotCounted::Parameters));
+        let more = "variable_group x; function f, g; f = x - sin(1); g = x - sin(2);";
+        assert_eq!(general(more, &[]), Err(NotCounted::NotExact));
+        let rounded = "variable_group x; function f, g; f = x - 0.333333333333; g = 3*x - 1;";
+        assert_eq!(general(rounded, &[]), Err(NotCounted::NotExact));
+    }
+
+    /// Points of a projective space, each once.
+    #[test]
+    fn homogeneous_groups_have_points_of_projective_spaces() {
+        let of = |text: &str| count_of(&format!("hom_variable_group x, y, w; {text}"));
+        let fat = "function f, g, h; f = x^2; g = x*y; h = y^2;";
+        assert_eq!(of(fat), finite(3, 1));
+        let conics = "function f, g; f = x^2 + y^2 - 5*w^2; g = x*y - 2*w^2;";
+        assert_eq!(of(conics), finite(4, 4));
+    }
+
     #[test]
     fn what_takes_too_much_is_not_known() {
         let text = "variable_group x; function f; f = x^200 - 1;";
         assert_eq!(count_of(text), None, "a degree too high");
-        let text = "variable_group x; function f; f = x^2 - cos(1);";
-        assert_eq!(count_of(text), None, "no polynomial");
     }
 }

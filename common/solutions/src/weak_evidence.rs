@@ -1,0 +1,213 @@
+//! WeakEvidence: verdicts that rest on less than what is at stake.
+//!
+//! Turns around t = 0 show what several sheets have in common. The more sheets there are, the less power sums and
+//! valuations say of each. An answer with such verdicts is not settled by its paths; an exact count that agrees with it
+//! settles it.
+
+use crate::classification::{Decision, Verdict};
+use crate::point_shape::{PointShape, largest, modulus};
+use cognate_continuation::path_result::PathResult;
+use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_numeric::rational::Rational;
+use cognate_systems::expression::Node;
+use cognate_systems::expression::differentiate::below;
+use cognate_systems::system::System;
+use serde::{Deserialize, Serialize};
+
+/// Homogenising coordinates of solutions that must not be taken for infinity, the largest coordinate being 1: those of
+/// norm 1e4 and less.
+const FARTHEST: f64 = 1e-4;
+/// The tracker takes power sums of several sheets below this for 0 (`endgames/infinity.rs`).
+const LEAST_POWER_SUM: f64 = 1e-20;
+/// Coefficients below this, or above its inverse, show no more in the digits of doubles beside ordinary ones.
+const FINEST: f64 = 1e-16;
+/// Numbers with more bits than this are not those of double-doubles.
+const MOST_BITS: u32 = 106;
+
+/// How many paths have verdicts that rest on too little.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WeakEvidence {
+    /// Taken for paths to infinity; solutions of moderate norm may be among their ends.
+    pub at_infinity: u64,
+    /// Taken for paths to positive-dimensional sets.
+    pub on_sets: u64,
+    /// Taken for paths to multiple points, which may be several points.
+    pub multiple: u64,
+}
+
+impl WeakEvidence {
+    /// From the last results of all paths of one target and their verdicts. `least_on_sets`: at least so many paths end
+    /// on sets where there are some.
+    pub fn of(
+        system: &System,
+        shape: &PointShape,
+        results: &[PathResult],
+        decisions: &[Decision],
+        least_on_sets: u64,
+    ) -> Self {
+        let count = |verdict: Verdict| {
+            let of_it = decisions.iter().filter(|d| d.verdict == verdict);
+            of_it.count() as u64
+        };
+        let at_infinity = results.iter().zip(decisions).filter(|(result, decision)| {
+            decision.verdict == Verdict::AtInfinity && may_be_finite(result, shape)
+        });
+        let at_infinity = at_infinity.count() as u64;
+        let (on_sets, multiple) = (
+            count(Verdict::PositiveDimensional),
+            count(Verdict::Singular),
+        );
+        if on_sets + multiple == 0 {
+            return Self {
+                at_infinity,
+                ..Self::default()
+            };
+        }
+        let lacks_digits = has_fine_numbers(system);
+        Self {
+            at_infinity,
+            // Some of the paths to a set may end at its points at infinity.
+            on_sets: if lacks_digits || on_sets + count(Verdict::AtInfinity) < least_on_sets {
+                on_sets
+            } else {
+                0
+            },
+            multiple: if lacks_digits { multiple } else { 0 },
+        }
+    }
+
+    /// All of them.
+    pub fn paths(&self) -> u64 {
+        self.at_infinity + self.on_sets + self.multiple
+    }
+}
+
+/// Whether a path that was taken to infinity may end at a solution of moderate norm.
+///
+/// Of c sheets that have closed power sums below 1e-20 were taken for 0: c solutions whose homogenising coordinates are
+/// the c-th roots of less have no others. A path that has not closed was taken to infinity because its homogenising
+/// coordinate is a power of t; it has a limit that is no larger than the coordinate was where the path stopped.
+pub fn may_be_finite(result: &PathResult, shape: &PointShape) -> bool {
+    if result.outcome != PathOutcome::Diverging || result.accuracy.is_finite() {
+        return false;
+    }
+    match result.winding_number {
+        Some(0 | 1) => false,
+        Some(sheets) => {
+            let product = (0..sheets).fold(1.0, |product, _| product * FARTHEST);
+            product < LEAST_POWER_SUM
+        }
+        None => {
+            let point = result.endpoint.to_double();
+            let affine = shape.spans().filter(|span| !span.group.homogeneous);
+            let coordinates = affine.map(|span| {
+                let group = &point[span.range];
+                modulus(group[0]) / largest(group)
+            });
+            // A coordinate that is no number counts as 1.
+            coordinates.fold(1.0, f64::min) > FARTHEST
+        }
+    }
+}
+
+/// Whether a path was taken to infinity together with other sheets.
+pub fn is_in_cluster(result: &PathResult) -> bool {
+    result.outcome == PathOutcome::Diverging && !matches!(result.winding_number, Some(0 | 1))
+}
+
+/// Whether digits of the equations' numbers lie below those in which points are tracked: solutions that only these part
+/// look like one, or like points of a set.
+fn has_fine_numbers(system: &System) -> bool {
+    let is_fine = |part: &Rational| {
+        let size = part.to_f64().abs();
+        let bits = part
+            .numer()
+            .significant_bits()
+            .min(part.denom().significant_bits());
+        *part != 0 && (!(FINEST..=1.0 / FINEST).contains(&size) || bits > MOST_BITS)
+    };
+    let nodes = below(&system.expressions, &system.equations);
+    nodes
+        .into_iter()
+        .any(|id| match system.expressions.node(id) {
+            Node::Constant(number) => is_fine(&number.re) || is_fine(&number.im),
+            _ => false,
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_results::{affine_shape, regular, roots_of_unity};
+    use cognate_numeric::rational::ComplexRational;
+
+    #[test]
+    fn the_more_sheets_the_more_must_be_shown() {
+        let shape = affine_shape(1);
+        let diverging = |winding_number, coordinate: f64| PathResult {
+            outcome: PathOutcome::Diverging,
+            accuracy: f64::INFINITY,
+            winding_number,
+            ..regular(0, &[(coordinate, 0.0), (1.0, 0.0)])
+        };
+        for sheets in 1..=5 {
+            assert!(
+                !may_be_finite(&diverging(Some(sheets), 0.1), &shape),
+                "{sheets}"
+            );
+        }
+        for sheets in [6, 7, 36] {
+            assert!(
+                may_be_finite(&diverging(Some(sheets), 0.1), &shape),
+                "{sheets}"
+            );
+        }
+        // A path of 36 sheets that has not closed stopped where its coordinate was 0.01.
+        assert!(may_be_finite(&diverging(None, 1e-2), &shape));
+        assert!(!may_be_finite(&diverging(None, 1e-5), &shape));
+        assert!(may_be_finite(&diverging(None, f64::NAN), &shape));
+        assert!(!may_be_finite(
+            &regular(0, &[(0.0, 0.0), (1.0, 0.0)]),
+            &shape
+        ));
+    }
+
+    /// Of the eight paths of three quadrics none or at least two end on a set.
+    #[test]
+    fn a_set_has_as_many_paths_as_the_lowest_degree_says() {
+        let (system, shape) = (roots_of_unity(2), affine_shape(1));
+        let of = |verdicts: &[Verdict], least| {
+            let results: Vec<PathResult> = (0..verdicts.len() as u64)
+                .map(|path| regular(path, &[(1.0, 0.0), (0.5, 0.0)]))
+                .collect();
+            let decisions = verdicts.iter().map(|&verdict| Decision {
+                verdict,
+                by_precision_limit: false,
+            });
+            let decisions: Vec<Decision> = decisions.collect();
+            WeakEvidence::of(&system, &shape, &results, &decisions, least).paths()
+        };
+        let (point, set) = (Verdict::Finite, Verdict::PositiveDimensional);
+        assert_eq!(of(&[point, point, set], 2), 1);
+        assert_eq!(of(&[point, set, set], 2), 0);
+        assert_eq!(of(&[point, Verdict::AtInfinity, set], 2), 0);
+        assert_eq!(of(&[point, point, set], 1), 0);
+    }
+
+    #[test]
+    fn numbers_below_the_digits_of_the_paths_are_seen() {
+        let system = |constant: Rational| {
+            let mut system = roots_of_unity(2);
+            let e = &mut system.expressions;
+            let c = e.constant(ComplexRational::real(constant));
+            system.equations[0] = e.add(system.equations[0], c);
+            system
+        };
+        let fine = |constant| has_fine_numbers(&system(constant));
+        assert!(!fine(Rational::from((355, 113))));
+        assert!(!fine(Rational::from((1, 1_000_000_000))));
+        let tiny = Rational::from((1, 1_000_000_000_000_000_000i64));
+        assert!(fine(tiny.clone()) && fine(tiny.clone().recip()));
+        assert!(fine(Rational::from(1) - tiny.clone() * tiny));
+    }
+}
