@@ -33,20 +33,13 @@ pub enum InstructionSet {
 
 impl InstructionSet {
     /// The best one that this machine has; within [`limited_to`], the one that is named there.
-    #[inline(always)]
+    #[inline]
     pub fn detect() -> Self {
-        match SET.get() {
-            Some(set) => set,
-            None => Self::detect_first(),
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn detect_first() -> Self {
-        let best = Self::best();
-        SET.set(Some(best));
-        best
+        SET.get().unwrap_or_else(|| {
+            let best = Self::best();
+            SET.set(Some(best));
+            best
+        })
     }
 
     fn best() -> Self {
@@ -179,13 +172,12 @@ pub fn dispatch_baseline<J: Job>(job: J) -> J::Output {
     }
 }
 
-/// Runs a small job that stands in a loop of another job, as a function that is not inlined, compiled for each
-/// instruction set; the one of this machine is taken, within [`limited_to`] the one that is named there. The choice
-/// is inlined: as a function of its own it made paths of double-doubles 7 % slower (`tests/benches/build.md`).
+/// Runs a small job that stands in a loop of another job, as a function that is never inlined, compiled for each
+/// instruction set; the one of this machine is taken, within [`limited_to`] the one that is named there.
 ///
 /// # Panics
 /// On a machine without fused multiply-add, as [`dispatch_on`] does.
-#[inline(always)]
+#[inline(never)]
 pub fn call<J: Job>(job: J) -> J::Output {
     #[cfg(target_arch = "x86_64")]
     match InstructionSet::detect() {
@@ -193,17 +185,10 @@ pub fn call<J: Job>(job: J) -> J::Output {
         InstructionSet::Avx512 => unsafe { run_avx512(job) },
         // SAFETY: as above.
         InstructionSet::Avx2 => unsafe { run_avx2(job) },
-        InstructionSet::Neon | InstructionSet::Software => refuse(),
+        InstructionSet::Neon | InstructionSet::Software => panic!("{NO_FUSED_MULTIPLY_ADD}"),
     }
     #[cfg(not(target_arch = "x86_64"))]
     job.run()
-}
-
-#[cfg(target_arch = "x86_64")]
-#[cold]
-#[inline(never)]
-fn refuse() -> ! {
-    panic!("{NO_FUSED_MULTIPLY_ADD}")
 }
 
 #[cfg(test)]
