@@ -93,7 +93,10 @@ fn planted_fractions_are_answered_right() {
         };
         let seed = dice.below(1 << 32);
         let verdicts = [
-            ("solve", solve(&planted, &options(by.clone(), seed, false), LIMIT)),
+            (
+                "solve",
+                solve(&planted, &options(by.clone(), seed, false), LIMIT),
+            ),
             ("decompose", decompose(&planted, seed)),
         ];
         for (what, verdict) in verdicts {

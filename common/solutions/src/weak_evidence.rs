@@ -11,6 +11,7 @@ use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_numeric::rational::Rational;
 use cognate_systems::expression::Node;
 use cognate_systems::expression::differentiate::below;
+use cognate_systems::polynomial::has_many_digits;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
@@ -21,8 +22,6 @@ const FARTHEST: f64 = 1e-4;
 const LEAST_POWER_SUM: f64 = 1e-20;
 /// Coefficients below this, or above its inverse, show no more in the digits of doubles beside ordinary ones.
 const FINEST: f64 = 1e-16;
-/// Numbers with more bits than this are not those of double-doubles.
-const MOST_BITS: u32 = 106;
 
 /// How many paths have verdicts that rest on too little.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,8 +48,11 @@ impl WeakEvidence {
             let of_it = decisions.iter().filter(|d| d.verdict == verdict);
             of_it.count() as u64
         };
+        let lacks_digits = has_fine_numbers(system);
         let at_infinity = results.iter().zip(decisions).filter(|(result, decision)| {
-            decision.verdict == Verdict::AtInfinity && may_be_finite(result, shape)
+            decision.verdict == Verdict::AtInfinity
+                && (may_be_finite(result, shape)
+                    || lacks_digits && result.outcome == PathOutcome::Diverging)
         });
         let at_infinity = at_infinity.count() as u64;
         let (on_sets, multiple) = (
@@ -63,7 +65,6 @@ impl WeakEvidence {
                 ..Self::default()
             };
         }
-        let lacks_digits = has_fine_numbers(system);
         Self {
             at_infinity,
             // Some of the paths to a set may end at its points at infinity.
@@ -115,22 +116,21 @@ pub fn is_in_cluster(result: &PathResult) -> bool {
     result.outcome == PathOutcome::Diverging && !matches!(result.winding_number, Some(0 | 1))
 }
 
-/// Whether digits of the equations' numbers lie below those in which points are tracked: solutions that only these part
-/// look like one, or like points of a set.
+/// Whether the equations' numbers have so many digits, or are so small or large, that solutions may lie beyond what paths
+/// show: solutions of norm 1e10 and more look like infinity, and solutions that only these digits part look like one, or
+/// like points of a set.
 fn has_fine_numbers(system: &System) -> bool {
     let is_fine = |part: &Rational| {
         let size = part.to_f64().abs();
-        let bits = part
-            .numer()
-            .significant_bits()
-            .min(part.denom().significant_bits());
-        *part != 0 && (!(FINEST..=1.0 / FINEST).contains(&size) || bits > MOST_BITS)
+        *part != 0 && !(FINEST..=1.0 / FINEST).contains(&size)
     };
     let nodes = below(&system.expressions, &system.equations);
     nodes
         .into_iter()
         .any(|id| match system.expressions.node(id) {
-            Node::Constant(number) => is_fine(&number.re) || is_fine(&number.im),
+            Node::Constant(number) => {
+                is_fine(&number.re) || is_fine(&number.im) || has_many_digits(number)
+            }
             _ => false,
         })
 }

@@ -11,7 +11,9 @@ mod solution_count;
 
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;
-pub use solution_count::{CountedSolutions, NotCounted, SolutionCount, is_chosen, solution_count};
+pub use solution_count::{
+    CountedSolutions, NotCounted, SolutionCount, has_many_digits, is_chosen, solution_count,
+};
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};

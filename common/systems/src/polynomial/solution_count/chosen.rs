@@ -21,9 +21,69 @@ fn part_is_chosen(part: &Rational) -> bool {
     *part.numer().as_abs() <= LARGEST && without(&without(part.denom(), 2), 5) == 1
 }
 
+/// Bits of numerator and denominator together from which on a number has many digits: more than nine decimal ones.
+const MANY_BITS: u32 = 32;
+/// Significant digits of decimals that were rounded: more than a person types, and as many as programs print of a
+/// double.
+const ROUNDED_DIGITS: std::ops::RangeInclusive<usize> = 9..=20;
+
+/// Whether a number is exact and has many digits. Equations with such numbers may have solutions, and distances between
+/// solutions, of very different sizes. A decimal that was rounded has no digits beyond its own, and does not count.
+pub fn has_many_digits(number: &ComplexRational) -> bool {
+    part_has_many_digits(&number.re) || part_has_many_digits(&number.im)
+}
+
+fn part_has_many_digits(part: &Rational) -> bool {
+    let bits = part.numer().significant_bits() + part.denom().significant_bits();
+    let is_rounded = decimal_digits(part).is_some_and(|n| ROUNDED_DIGITS.contains(&n));
+    bits >= MANY_BITS && !is_rounded && !is_double(part)
+}
+
+/// Whether a number that is no integer is a double.
+fn is_double(part: &Rational) -> bool {
+    let is_fraction = *part.denom() != 1 && part.denom().is_power_of_two();
+    is_fraction && part.numer().significant_bits() <= f64::MANTISSA_DIGITS
+}
+
+/// Significant digits of a decimal that is no integer; `None` of another number.
+fn decimal_digits(part: &Rational) -> Option<usize> {
+    if *part.denom() == 1 {
+        return None;
+    }
+    let split = |n: &Integer, factor: u32| n.clone().remove_factor(&Integer::from(factor));
+    let (without_two, twos) = split(part.denom(), 2);
+    let (rest, fives) = split(&without_two, 5);
+    if rest != 1 {
+        return None;
+    }
+    let power = |base: u32, exponent: u32| Integer::from(Integer::u_pow_u(base, exponent));
+    let places = twos.max(fives);
+    let digits = part.numer().clone() * power(2, places - twos) * power(5, places - fives);
+    let text = digits.to_string();
+    Some(text.trim_start_matches('-').trim_end_matches('0').len())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rounded_decimals_have_no_digits_beyond_their_own() {
+        let many = |numerator: &str, denominator: &str| {
+            let integer =
+                |text: &str| -> Integer { text.parse().expect("an integer of this test") };
+            part_has_many_digits(&Rational::from((integer(numerator), integer(denominator))))
+        };
+        assert!(!many("355", "113") && !many("71", "200") && !many("-1929", "15625"));
+        // 600001/100000, 700000002304/125, a decimal of 21 digits.
+        assert!(many("600001", "100000") && many("700000002304", "1125"));
+        assert!(many("724999979000248899979", "100000000000000000000"));
+        // 0.1234567890123 and a double.
+        assert!(!many("1234567890123", "10000000000000"));
+        assert!(!many("59999999999999998", "100000000000000000"));
+        assert!(!many("5404319552844595", "9007199254740992"));
+        assert!(many("12345678901", "1"), "an integer is exact");
+    }
 
     #[test]
     fn short_decimals_are_chosen_and_long_ones_rounded() {

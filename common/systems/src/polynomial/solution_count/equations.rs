@@ -5,8 +5,8 @@
 //! relation that it fulfils. Of other constants, and of parameters with many digits, nobody knows which relations they
 //! fulfil: with random residues the count is that of general values.
 
-use super::chosen::is_chosen;
 use super::Ideal;
+use super::chosen::is_chosen;
 use super::groebner::Terms;
 use super::monomial::{MOST_VARIABLES, Monomial};
 use super::not_counted::NotCounted;

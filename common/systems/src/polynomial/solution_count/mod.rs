@@ -11,7 +11,7 @@ mod quotient;
 use crate::expression::Node;
 use crate::expression::differentiate::below;
 use crate::system::System;
-pub use chosen::is_chosen;
+pub use chosen::{has_many_digits, is_chosen};
 use equations::CountedEquations;
 use groebner::{Budget, Terms, groebner_basis};
 use monomial::Monomial;
