@@ -5,4 +5,3 @@ mod client_output;
 mod decompose;
 mod loci;
 mod mechanism_listings;
-mod mechanisms;
