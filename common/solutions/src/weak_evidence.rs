@@ -48,11 +48,11 @@ impl WeakEvidence {
             let of_it = decisions.iter().filter(|d| d.verdict == verdict);
             of_it.count() as u64
         };
-        let lacks_digits = has_fine_numbers(system);
+        let numbers = Numbers::of(system);
         let at_infinity = results.iter().zip(decisions).filter(|(result, decision)| {
             decision.verdict == Verdict::AtInfinity
                 && (may_be_finite(result, shape)
-                    || lacks_digits && result.outcome == PathOutcome::Diverging)
+                    || numbers.are_long && result.outcome == PathOutcome::Diverging)
         });
         let at_infinity = at_infinity.count() as u64;
         let (on_sets, multiple) = (
@@ -68,12 +68,12 @@ impl WeakEvidence {
         Self {
             at_infinity,
             // Some of the paths to a set may end at its points at infinity.
-            on_sets: if lacks_digits || on_sets + count(Verdict::AtInfinity) < least_on_sets {
+            on_sets: if numbers.are_fine || on_sets + count(Verdict::AtInfinity) < least_on_sets {
                 on_sets
             } else {
                 0
             },
-            multiple: if lacks_digits { multiple } else { 0 },
+            multiple: if numbers.are_long { multiple } else { 0 },
         }
     }
 
@@ -116,23 +116,35 @@ pub fn is_in_cluster(result: &PathResult) -> bool {
     result.outcome == PathOutcome::Diverging && !matches!(result.winding_number, Some(0 | 1))
 }
 
-/// Whether the equations' numbers have so many digits, or are so small or large, that solutions may lie beyond what paths
-/// show: solutions of norm 1e10 and more look like infinity, and solutions that only these digits part look like one, or
-/// like points of a set.
-fn has_fine_numbers(system: &System) -> bool {
-    let is_fine = |part: &Rational| {
-        let size = part.to_f64().abs();
-        *part != 0 && !(FINEST..=1.0 / FINEST).contains(&size)
-    };
-    let nodes = below(&system.expressions, &system.equations);
-    nodes
-        .into_iter()
-        .any(|id| match system.expressions.node(id) {
-            Node::Constant(number) => {
-                is_fine(&number.re) || is_fine(&number.im) || has_many_digits(number)
+/// What the sizes and digits of the equations' numbers leave open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Numbers {
+    /// Some lie below the digits in which points are tracked: solutions that only these part look like one, or like
+    /// points of a set.
+    are_fine: bool,
+    /// Some are fine or have many digits: solutions may lie at norms of 1e10 and more, which look like infinity, and
+    /// nearer to each other than the digits of the paths.
+    are_long: bool,
+}
+
+impl Numbers {
+    fn of(system: &System) -> Self {
+        let is_fine = |part: &Rational| {
+            let size = part.to_f64().abs();
+            *part != 0 && !(FINEST..=1.0 / FINEST).contains(&size)
+        };
+        let mut numbers = Self {
+            are_fine: false,
+            are_long: false,
+        };
+        for id in below(&system.expressions, &system.equations) {
+            if let Node::Constant(number) = system.expressions.node(id) {
+                numbers.are_fine |= is_fine(&number.re) || is_fine(&number.im);
+                numbers.are_long |= numbers.are_fine || has_many_digits(number);
             }
-            _ => false,
-        })
+        }
+        numbers
+    }
 }
 
 #[cfg(test)]
@@ -203,11 +215,13 @@ mod tests {
             system.equations[0] = e.add(system.equations[0], c);
             system
         };
-        let fine = |constant| has_fine_numbers(&system(constant));
-        assert!(!fine(Rational::from((355, 113))));
-        assert!(!fine(Rational::from((1, 1_000_000_000))));
+        let long = |constant| Numbers::of(&system(constant)).are_long;
+        let fine = |constant| Numbers::of(&system(constant)).are_fine;
+        assert!(!long(Rational::from((355, 113))));
+        assert!(!long(Rational::from((1, 1_000_000_000))));
         let tiny = Rational::from((1, 1_000_000_000_000_000_000i64));
         assert!(fine(tiny.clone()) && fine(tiny.clone().recip()));
-        assert!(fine(Rational::from(1) - tiny.clone() * tiny));
+        let long_number = Rational::from(1) - tiny.clone() * tiny;
+        assert!(long(long_number.clone()) && !fine(long_number));
     }
 }
