@@ -15,6 +15,7 @@ mod digits;
 mod ends;
 mod far_out;
 mod handoffs;
+mod iterative_refinement;
 pub(crate) mod lane;
 mod limits;
 pub mod lockstep;
