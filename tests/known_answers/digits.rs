@@ -52,7 +52,11 @@ fn deviation(solution: &Solution, exact: &[ComplexRational]) -> Deviation {
             let apart = Rational::from(&rational(part) - &exact).abs();
             // Rational::to_f64 cuts; the nearest double is at most half a unit away.
             let half = rational(unit_in_the_last_place(exact.to_f64().abs())) / 2;
-            let rounded = if exact == 0 { apart == 0 } else { apart <= half };
+            let rounded = if exact == 0 {
+                apart == 0
+            } else {
+                apart <= half
+            };
             not_rounded += u64::from(!rounded);
             count += 1;
             farthest = farthest.max(apart);
@@ -60,7 +64,8 @@ fn deviation(solution: &Solution, exact: &[ComplexRational]) -> Deviation {
         }
     }
     let apart = farthest.to_f64();
-    let size = largest.to_f64();
+    // Of the point 0 in units of 1.
+    let size = if largest == 0 { 1.0 } else { largest.to_f64() };
     Deviation {
         in_units: apart / unit_in_the_last_place(size),
         in_accuracies: apart / size / solution.accuracy,
@@ -129,14 +134,14 @@ fn solutions_are_rounded_once() {
         }
     }
     for (kind, deviations) in &deviations {
-        let sorted = |of: fn(&Deviation) -> f64| {
-            let mut values: Vec<f64> = deviations.iter().map(of).collect();
+        let sorted = |figure: fn(&Deviation) -> f64| {
+            let mut values: Vec<f64> = deviations.iter().map(figure).collect();
             values.sort_by(f64::total_cmp);
             values
         };
         let units = sorted(|d| d.in_units);
         let accuracies = sorted(|d| d.in_accuracies);
-        let sum = |of: fn(&Deviation) -> u64| deviations.iter().map(of).sum::<u64>();
+        let sum = |figure: fn(&Deviation) -> u64| deviations.iter().map(figure).sum::<u64>();
         println!(
             "{kind}: {} points; units: median {:.3}, 90 % {:.3}, most {:.3}; beyond 1 unit {}; of the accuracy at most \
              {:.3}, beyond {}; parts not rounded to nearest {} of {}; real with an imaginary part {}",
@@ -152,5 +157,10 @@ fn solutions_are_rounded_once() {
             sum(|d| u64::from(d.not_real)),
         );
     }
-    assert!(wrong.is_empty(), "{} points: {}", wrong.len(), wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} points: {}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }

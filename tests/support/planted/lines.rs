@@ -84,10 +84,7 @@ impl Form {
     fn signs(&self) -> Vec<Rational> {
         match self.imaginary == 0 {
             true => vec![Rational::new()],
-            false => vec![
-                self.imaginary.clone(),
-                Rational::from(-&self.imaginary),
-            ],
+            false => vec![self.imaginary.clone(), Rational::from(-&self.imaginary)],
         }
     }
 }
@@ -144,9 +141,7 @@ fn points(equations: &[Vec<Form>]) -> Option<Vec<Vec<ComplexRational>>> {
             return None;
         };
         let parts = re.into_iter().zip(im);
-        let point: Vec<_> = parts
-            .map(|(re, im)| ComplexRational::new(re, im))
-            .collect();
+        let point: Vec<_> = parts.map(|(re, im)| ComplexRational::new(re, im)).collect();
         if points.contains(&point) {
             return None;
         }
@@ -201,7 +196,11 @@ pub fn lines(seed: u64, number: u64) -> Planted {
             multiplicity: 1,
         });
         return Planted {
-            kind: if dense { "lines, dense" } else { "lines, sparse" },
+            kind: if dense {
+                "lines, dense"
+            } else {
+                "lines, sparse"
+            },
             equations: texts.map(|equation| equation.text(&variables)).collect(),
             variables,
             roots: roots.collect(),

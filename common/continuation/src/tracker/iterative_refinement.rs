@@ -1,8 +1,8 @@
 //! Iterative refinement: regular finite ends of paths, brought to the digits that doubles can show.
 //!
 //! Newton's method with residuals in double-doubles and eliminations in doubles, eight ends at a time (Higham, Accuracy
-//! and Stability of Numerical Algorithms, 2002, chapter 12); with more digits where double-doubles do not suffice. What
-//! comes in are the results of a stage's paths; in each that ends at a regular finite point of the system the endpoint
+//! and Stability of Numerical Algorithms, 2002, chapter 12); with more digits where double-doubles do not suffice. The
+//! results of a stage's paths come in; in each that ends at a regular finite point of the system the endpoint
 //! and its accuracy are replaced. The point becomes homogeneous coordinates in which each group's divisor (the homogenising
 //! coordinate, or the largest one of a homogeneous group) is a power of two, so that the values of the variables are
 //! those of the solution, rounded once.
@@ -110,6 +110,8 @@ impl<S: Real> PrecisePoint<S> {
             if !is_finite {
                 return None;
             }
+            // In an affine chart coordinates are the values of the variables.
+            let is_one = divisor == 0 && by_error == 0.0 && by.lane(0) == Complex64::new(1.0, 0.0);
             let inverse = by.inverse();
             for (place, (y, error)) in both.iter().enumerate() {
                 if place == divisor {
@@ -117,7 +119,9 @@ impl<S: Real> PrecisePoint<S> {
                     continue;
                 }
                 let mut quotient = (*y).clone();
-                quotient.mul(&inverse);
+                if !is_one {
+                    quotient.mul(&inverse);
+                }
                 let value = quotient.lane(0);
                 let here = size(value);
                 let error = 4.0 * (error + here * by_error) / by_size + unit * here;
@@ -150,7 +154,7 @@ fn largest_of<S: Real>(coordinates: &[(&Complex<S>, f64)]) -> usize {
     best.0
 }
 
-/// Whether each coordinate of one point is that of another but for its last digits, or 0 in the first.
+/// Whether each coordinate of one point is that of another but for its last digits.
 fn same_in_own_units(chart: &Chart, a: &[Complex64], b: &[Complex64]) -> bool {
     let mut first = 0;
     (0..chart.group_count()).all(|group| {
@@ -265,8 +269,10 @@ struct NewtonAtEnds<'a> {
     matrix: Matrix<Lanes<WIDTH>>,
     x: Vec<Complex<DoubleDoubleLanes>>,
     values: Vec<Complex<DoubleDoubleLanes>>,
-    /// How large the terms of each equation are, with a phase of its own.
+    /// The sum of the moduli of each equation's terms, with the equation's phase.
     rounding: Vec<Complex<Lanes<WIDTH>>>,
+    /// A phase for each equation: rounding errors of equations do not cancel.
+    phases: Vec<Complex64>,
 }
 
 /// How Newton's method goes in one lane.
@@ -320,15 +326,13 @@ impl<'a> NewtonAtEnds<'a> {
             x: vec![Complex::zero(()); n],
             values: vec![Complex::zero(()); n],
             rounding: vec![Complex::zero(()); n],
+            phases: generic_form().take(n).collect(),
         }
     }
 
     /// Ends, at most as many as there are lanes, with the digits of double-doubles; `None` where Newton's method does not
     /// settle.
-    fn refine(
-        &mut self,
-        ends: &[RoughEnd],
-    ) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
+    fn refine(&mut self, ends: &[RoughEnd]) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
         // Lanes without an end of their own have the last one.
         let end_of = |lane: usize| &ends[lane.min(ends.len() - 1)];
         let mut parameters =
@@ -357,11 +361,7 @@ impl<'a> NewtonAtEnds<'a> {
     }
 
     /// The point of a lane in which Newton's method leaves this error.
-    fn point(
-        &self,
-        lane: usize,
-        left: f64,
-    ) -> PrecisePoint<DoubleDouble<f64>> {
+    fn point(&self, lane: usize, left: f64) -> PrecisePoint<DoubleDouble<f64>> {
         let n = self.x.len();
         let unit = unit_roundoff(DOUBLE_DOUBLE);
         let rounding = (0..n).map(|i| MARGIN * unit * size(self.matrix.at(i, n + 1).lane(lane)));
@@ -434,7 +434,7 @@ fn largest_part(numbers: impl Iterator<Item = Complex64>) -> f64 {
 }
 
 impl NewtonAtEnds<'_> {
-    /// The Jacobian in doubles at the ends as they came, and the size of what rounding may be of in each equation.
+    /// The Jacobian in doubles at the ends as they came, and the sum of the moduli of each equation's terms.
     #[inline(always)]
     fn linearize(&mut self, parameters: &[Complex<DoubleDoubleLanes>]) {
         let n = self.x.len();
@@ -443,7 +443,6 @@ impl NewtonAtEnds<'_> {
         let evaluator = self.homotopy.evaluator();
         let scratch = &mut self.scratch_of_doubles;
         evaluator.jacobian(&x, &p, &mut self.jacobian, scratch);
-        let mut phases = generic_form();
         for i in 0..n {
             let mut terms = Lanes::from_f64((), 0.0);
             for (j, x) in x.iter().enumerate() {
@@ -453,7 +452,7 @@ impl NewtonAtEnds<'_> {
                 modulus.sqrt();
                 terms.add(&modulus);
             }
-            let phase = phases.next().expect("a form has any number of coefficients");
+            let phase = self.phases[i];
             let mut rounding = Complex::from_f64((), phase.re, phase.im);
             rounding.scale(&terms);
             self.rounding[i] = rounding;
