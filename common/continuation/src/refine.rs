@@ -14,10 +14,6 @@ use num_complex::Complex64;
 /// The largest condition number that doubles tell: larger ones are found with the digits of the arithmetic.
 const CONDITION_BY_DOUBLES: f64 = 1e13;
 
-/// With the digits of doubles a correction that is at most this is the last: further ones are rounding, and ends at the
-/// system are refined (`tracker::iterative_refinement`).
-const LAST_OF_DOUBLES: f64 = 1e-14;
-
 /// Newton's method has converged where a relative correction is at most this,
 const CONVERGED: f64 = 1e-8;
 /// and with more digits than doubles have also at most this part of the one before,
@@ -117,10 +113,7 @@ impl<'a, S: Real> Refiner<'a, S> {
         Self {
             homotopy,
             context,
-            finest: match S::bits(context) {
-                DOUBLE => LAST_OF_DOUBLES,
-                bits => 2.0 * unit_roundoff(bits),
-            },
+            finest: 2.0 * unit_roundoff(S::bits(context)),
             claimed: f64::EPSILON,
             rounds: 6,
             scratch: Evaluate::<S>::scratch(homotopy.program(), context),
