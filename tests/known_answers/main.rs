@@ -6,6 +6,7 @@
 mod check;
 mod classical_systems;
 mod close_paths;
+mod digits;
 mod every_start;
 mod forty_systems;
 mod fractions;

@@ -136,6 +136,11 @@ impl Chart {
         self.groups[group].patch.len()
     }
 
+    /// Whether a group is homogeneous: none of its coordinates is a homogenising one.
+    pub(crate) fn is_homogeneous(&self, group: usize) -> bool {
+        self.groups[group].homogeneous
+    }
+
     /// The patch of a group: c_0 .. c_m, and where y_1 stands in the chart.
     pub(crate) fn patch(&self, group: usize) -> (&[Complex64], usize) {
         (&self.groups[group].patch, self.groups[group].first)

@@ -164,7 +164,8 @@ pub struct PathResult {
     /// Condition number of the Jacobian at the endpoint, each equation scaled to 1 on the patch;
     /// infinite where unknown.
     pub condition: f64,
-    /// Estimated error of the endpoint, relative to its largest coordinate. Of a path that diverges:
+    /// Error of the endpoint, relative to its largest coordinate: of a regular finite end of the system a bound that
+    /// includes the rounding to doubles (see `tracker::iterative_refinement`), of others an estimate. Of a path that diverges:
     /// a power sum over its sheets of a homogenising coordinate (the largest coordinate being 1)
     /// that is not 0, but too small to tell it from infinity by doubles; infinite where there is none.
     pub accuracy: f64,

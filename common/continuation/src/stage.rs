@@ -426,6 +426,11 @@ impl PreparedStage {
         )
     }
 
+    /// Whether paths end at solutions of the system, rather than of one on the way to it.
+    pub(crate) fn ends_at_the_system(&self) -> bool {
+        self.stage.homotopy.ends_at_the_system()
+    }
+
     /// Whether paths may leave the chart where they begin.
     pub(crate) fn has_projective_homotopy(&self) -> bool {
         self.projective.is_some()

@@ -1,7 +1,8 @@
-//! Whether one solution is real: a fixed point, up to factors, of the system's involution.
+//! Whether one solution is real: a fixed point, up to factors, of the system's involution; and how a real one is written.
 
 use crate::involution::Involution;
 use crate::point_shape::PointShape;
+use crate::solution::NamedValues;
 use num_complex::Complex64;
 
 /// True when the point and its image coincide by the same measure by which two
@@ -15,6 +16,29 @@ pub fn is_real(
 ) -> bool {
     let image = involution.image(&shape.to_variables(point));
     shape.distance(point, &shape.to_coordinates(&image)) <= 2.0 * radius
+}
+
+/// Writes a real solution with real numbers, and partners as exact conjugates: the point of the involution that is nearest.
+///
+/// A homogeneous group whose variables are exchanged is left as it is: its point is fixed only up to a factor.
+pub fn write_as_real(values: &mut NamedValues, shape: &PointShape, involution: &Involution) {
+    for span in shape.spans() {
+        let is_alone = |v: &usize| involution.partner[*v] == *v;
+        if span.group.homogeneous && !span.group.variables.iter().all(is_alone) {
+            continue;
+        }
+        for &v in &span.group.variables {
+            let partner = involution.partner[v];
+            let (value, image) = (values.0[v].value, values.0[partner].value.conj());
+            if partner == v {
+                values.0[v].value = Complex64::new(value.re, 0.0);
+            } else if value != image {
+                let mean = 0.5 * value + 0.5 * image;
+                values.0[v].value = mean;
+                values.0[partner].value = mean.conj();
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -43,6 +67,21 @@ mod tests {
         let point = [scale, scale * 0.5, scale * -2.0];
         assert!(is_real(&point, 1e-12, &shape, &own));
         assert!(!is_real(&point, 1e-12, &shape, &pair));
+    }
+
+    #[test]
+    fn real_solutions_are_written_with_real_numbers_and_exact_conjugates() {
+        let shape = affine_shape(3);
+        let involution = Involution {
+            partner: vec![1, 0, 2],
+        };
+        let names = ["p", "q", "r"].map(String::from).into_iter();
+        let values = [complex(0.5, 0.6), complex(0.75, -0.6), complex(3.0, 1e-17)];
+        let mut values: NamedValues = names.zip(values).collect();
+        write_as_real(&mut values, &shape, &involution);
+        let written: Vec<Complex64> = values.values().collect();
+        let mean = complex(0.625, 0.6);
+        assert_eq!(written, [mean, mean.conj(), complex(3.0, 0.0)]);
     }
 
     #[test]

@@ -61,7 +61,7 @@ pub struct Solution {
     /// Condition number of the Jacobian.
     #[serde(with = "finite")]
     pub condition: f64,
-    /// Estimated error, relative to the largest coordinate.
+    /// Error relative to the largest coordinate: a bound at a nonsingular solution, an estimate at a singular one.
     #[serde(with = "finite")]
     pub accuracy: f64,
     /// Highest precision that a path to it used.

@@ -13,7 +13,7 @@ use crate::denominators::{AskedPoint, Denominator, Denominators};
 use crate::involution::Involution;
 use crate::path_crossing::{broken_cycles, coincidences, crossings, radius};
 use crate::point_shape::PointShape;
-use crate::real::is_real;
+use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
 use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
 use crate::symmetry::classes;
@@ -654,6 +654,9 @@ impl<'a> Draft<'a> {
                     );
                     solution.real = Some(real);
                     count += u64::from(real);
+                    if real {
+                        write_as_real(&mut solution.variables, &self.shape, &involution);
+                    }
                 }
                 self.set.counts.real = Some(count);
             }

@@ -9,7 +9,7 @@ use crate::classification::{Tolerances, Verdict, classify};
 use crate::involution::Involution;
 use crate::path_crossing::{boundary_key, meetings, radius};
 use crate::point_shape::PointShape;
-use crate::real::is_real;
+use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
 use crate::solution_set::SolutionSet;
 use crate::weak_evidence::{is_in_cluster, may_be_finite};
@@ -147,11 +147,16 @@ impl PathFilter {
         }
         let values = self.shape.to_variables(result.endpoint.to_double());
         let winding = result.winding_number.unwrap_or(1).max(1);
+        let mut variables = self.variables.iter().cloned().zip(values).collect();
+        let real = self.is_real(result);
+        if let (Some(true), Some(involution)) = (real, &self.involution) {
+            write_as_real(&mut variables, &self.shape, involution);
+        }
         let solution = Solution {
-            variables: self.variables.iter().cloned().zip(values).collect(),
+            variables,
             multiplicity: 1,
             cycles: vec![winding],
-            real: self.is_real(result),
+            real,
             singular: false,
             residual: result.residual,
             condition: result.condition,

@@ -7,6 +7,7 @@
 pub mod fractions;
 pub mod kinds;
 pub mod linear;
+pub mod lines;
 pub mod polynomial;
 pub mod verdict;
 

@@ -99,6 +99,7 @@ impl PreparedStage {
                 .collect(),
             _ => track(self, items, width, None),
         };
+        self.refine_ends(first, &mut results);
         self.hold_against_asked(first, &mut results);
         results
     }
@@ -118,6 +119,7 @@ impl PreparedStage {
         assert!(item < self.items(), "the item lies within the stage");
         let mut recorder = Recorder::default();
         let mut results = track(self, item..item + 1, NARROWEST, Some(&mut recorder));
+        self.refine_ends(item, &mut results);
         self.hold_against_asked(item, &mut results);
         (results.remove(0), recorder.0)
     }

@@ -2,7 +2,8 @@
 //!
 //! [`lockstep`] follows many paths at once, always in the same phase of a step: [`attempt`], [`prediction`],
 //! [`corrector`], [`acceptance`], [`step_length`] are what it does with all of them; [`lane`] is what one of them knows of itself
-//! between steps, [`decisions`], [`turns`], [`handoffs`] and [`ends`] are how it goes on.
+//! between steps, [`decisions`], [`turns`], [`handoffs`] and [`ends`] are how it goes on; [`iterative_refinement`] gives regular ends
+//! their digits.
 
 mod acceptance;
 mod attempt;
@@ -15,6 +16,7 @@ mod digits;
 mod ends;
 mod far_out;
 mod handoffs;
+mod iterative_refinement;
 pub(crate) mod lane;
 mod limits;
 pub mod lockstep;
